@@ -8,17 +8,17 @@ mod storm;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
-use wayword_run::{error::Error, output::Output};
+use wayword_run::{error::CommandError, output::CommandOutput};
 
 /// Tries what needs load, faults or another implementation.
 #[derive(Debug, Parser)]
-struct Cli {
+struct TrialsCli {
     #[command(subcommand)]
-    what: What,
+    what: Trial,
 }
 
 #[derive(Debug, Subcommand)]
-enum What {
+enum Trial {
     /// Measure calls per second, this program's processor time per call, and memory, with a test provider.
     Calls {
         /// How many calls.
@@ -56,33 +56,33 @@ enum What {
         seed: u64,
     },
     /// Serves the test kit's provider until standard input closes.
-    Provider(provider::Flags),
+    Provider(provider::ProviderArgs),
     /// Compare a detector in process with one in PyTorch, on random weights of the true size: numbers, times, memory.
     #[cfg(feature = "full")]
-    Parity(parity::Flags),
+    Parity(parity::ParityArgs),
 }
 
 fn main() -> ExitCode {
-    let output = Output::new(false, false);
-    match run(Cli::parse().what, &output) {
+    let output = CommandOutput::new(false, false);
+    match run_trial(TrialsCli::parse().what, &output) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            output.error(&error);
+            output.print_error(&error);
             (error.exit_code() as u8).into()
         }
     }
 }
 
-fn run(what: What, output: &Output) -> Result<(), Error> {
+fn run_trial(what: Trial, output: &CommandOutput) -> Result<(), CommandError> {
     match what {
-        What::Calls { calls, latency_ms, concurrency } => calls::measure(calls, latency_ms, concurrency, output),
-        What::Pictures { calls } => calls::pictures(calls, output),
-        What::Storm { calls, requests_per_second, burst, share, seed } => {
-            storm::measure(calls, requests_per_second, burst, share, seed, output)
+        Trial::Calls { calls, latency_ms, concurrency } => calls::measure_calls(calls, latency_ms, concurrency, output),
+        Trial::Pictures { calls } => calls::measure_pictures(calls, output),
+        Trial::Storm { calls, requests_per_second, burst, share, seed } => {
+            storm::measure_storm(calls, requests_per_second, burst, share, seed, output)
         }
-        What::Provider(flags) => provider::serve(&flags, output),
+        Trial::Provider(flags) => provider::serve_provider(&flags, output),
         #[cfg(feature = "full")]
-        What::Parity(flags) => parity::measure(&flags, output),
+        Trial::Parity(flags) => parity::measure_parity(&flags, output),
     }
 }
 
@@ -96,10 +96,10 @@ mod tests {
     fn every_trial_that_the_documents_quote_is_read_by_the_command_line() {
         let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").canonicalize().unwrap();
         let mut measured = 0;
-        for command in documents::commands(&repository).unwrap() {
+        for command in documents::documented_commands(&repository).unwrap() {
             if command.program == "wayword-trials" && !command.args.is_empty() {
                 let words = ["wayword-trials"].into_iter().chain(command.args.iter().map(String::as_str));
-                let read = Cli::try_parse_from(words).map_err(|error| error.to_string());
+                let read = TrialsCli::try_parse_from(words).map_err(|error| error.to_string());
                 assert!(read.is_ok(), "{}: {:?}: {read:?}", command.place, command.args);
                 measured += 1;
             }

@@ -7,15 +7,16 @@ use std::{
     process::{Child, Command, Stdio},
     time::Duration,
 };
-use wayword_run::{error::Error, output::Output};
+use wayword_run::{error::CommandError, output::CommandOutput};
 use wayword_testkit::provider::{
-    Behaviour, Dialect, Faults, Gallery, Provider, Rate, RetryAfter,
-    scripts::{Cast, FlawedEye},
+    FaultSchedule, PictureGallery, ProviderBehaviour, ProviderDialect, ProviderRequestRate, RetryAfter,
+    ScriptedProvider,
+    scripts::{FlawedEye, ScriptedCast},
 };
 
 /// How the provider behaves.
 #[derive(Debug, Clone, clap::Args)]
-pub(super) struct Flags {
+pub(super) struct ProviderArgs {
     /// Time from a request to its answer, milliseconds.
     #[arg(long, default_value_t = 0)]
     latency_ms: u64,
@@ -35,7 +36,7 @@ pub(super) struct Flags {
 
 /// The report of a provider, one line of JSON.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub(super) struct Told {
+pub(super) struct ProviderReport {
     /// Its address.
     pub(super) base_url: String,
     /// Requests that were let in.
@@ -49,35 +50,35 @@ pub(super) struct Told {
 }
 
 /// Serves until standard input closes. Prints a report with its address at the beginning, and one with its counts at the end.
-pub(super) fn serve(flags: &Flags, output: &Output) -> Result<(), Error> {
-    let cast = Cast::new(FlawedEye::new(Gallery::default(), flags.seed, 0.15), flags.seed, 0.2);
-    let rate = (flags.requests_per_second > 0.0).then_some(Rate {
+pub(super) fn serve_provider(flags: &ProviderArgs, output: &CommandOutput) -> Result<(), CommandError> {
+    let cast = ScriptedCast::new(FlawedEye::new(PictureGallery::default(), flags.seed, 0.15), flags.seed, 0.2);
+    let rate = (flags.requests_per_second > 0.0).then_some(ProviderRequestRate {
         requests_per_s: flags.requests_per_second,
         burst: flags.burst,
         retry_after: RetryAfter::Seconds,
     });
-    let behaviour = Behaviour {
+    let behaviour = ProviderBehaviour {
         latency: Duration::from_millis(flags.latency_ms),
-        faults: Faults::storm(flags.storm),
+        faults: FaultSchedule::storm(flags.storm),
         rate,
         seed: flags.seed,
-        ..Behaviour::of("words", cast.clone()).and("eye", cast)
+        ..ProviderBehaviour::for_model("words", cast.clone()).and_model("eye", cast)
     };
-    let provider = Provider::start(behaviour).map_err(|source| Error::Io {
+    let provider = ScriptedProvider::start(behaviour).map_err(|source| CommandError::Io {
         path: "127.0.0.1".into(),
         doing: "serve on",
         source,
     })?;
     let tell = || {
         let log = provider.log();
-        let told = Told {
-            base_url: provider.base_url(Dialect::OpenAi),
+        let told = ProviderReport {
+            base_url: provider.base_url(ProviderDialect::OpenAi),
             admitted: log.admitted,
             answered: log.answered,
             faults: log.faults_committed(),
             rate_limited: log.rate_limited,
         };
-        output.data(&told, serde_json::to_string(&told).unwrap_or_default());
+        output.print_result(&told, serde_json::to_string(&told).unwrap_or_default());
     };
     tell();
     let _ = std::io::stdin().read_to_end(&mut Vec::new());
@@ -86,16 +87,16 @@ pub(super) fn serve(flags: &Flags, output: &Output) -> Result<(), Error> {
 }
 
 /// A provider in a process of its own.
-pub(super) struct Process {
+pub(super) struct ProviderProcess {
     child: Child,
     lines: std::io::Lines<BufReader<std::process::ChildStdout>>,
     pub(super) base_url: String,
 }
 
-impl Process {
+impl ProviderProcess {
     /// Starts one with these flags.
-    pub(super) fn start(flags: &[String]) -> Result<Self, Error> {
-        let failed = |source| Error::Io { path: "wayword-trials".into(), doing: "start", source };
+    pub(super) fn start(flags: &[String]) -> Result<Self, CommandError> {
+        let failed = |source| CommandError::Io { path: "wayword-trials".into(), doing: "start", source };
         let own = std::env::current_exe().map_err(failed)?;
         let mut child = Command::new(own)
             .arg("provider")
@@ -106,20 +107,20 @@ impl Process {
             .map_err(failed)?;
         let stdout = child.stdout.take().ok_or_else(|| failed(std::io::ErrorKind::BrokenPipe.into()))?;
         let mut process = Self { child, lines: BufReader::new(stdout).lines(), base_url: String::new() };
-        process.base_url = process.told()?.base_url;
+        process.base_url = process.read_report()?.base_url;
         Ok(process)
     }
 
-    fn told(&mut self) -> Result<Told, Error> {
+    fn read_report(&mut self) -> Result<ProviderReport, CommandError> {
         let line = self.lines.next().and_then(Result::ok).unwrap_or_default();
         serde_json::from_str(&line)
-            .map_err(|error| Error::usage(format!("the provider said {line:?}: {error}"), "try again"))
+            .map_err(|error| CommandError::usage(format!("the provider said {line:?}: {error}"), "try again"))
     }
 
     /// Stops the process, and returns its last report.
-    pub(super) fn end(mut self) -> Result<Told, Error> {
+    pub(super) fn stop_and_report(mut self) -> Result<ProviderReport, CommandError> {
         drop(self.child.stdin.take());
-        let told = self.told();
+        let told = self.read_report();
         let _ = self.child.wait();
         told
     }

@@ -1,24 +1,24 @@
 //! Measures how many calls succeed, and how fast, with a rate-limited provider that often fails.
 
 use crate::{
-    calls::{Client, words},
-    provider::{Process, Told},
+    calls::{TrialClient, words_request},
+    provider::{ProviderProcess, ProviderReport},
 };
 use std::{collections::BTreeMap, time::Instant};
-use wayword_remote::Concurrency;
-use wayword_run::{error::Error, output::Output};
+use wayword_remote::RequestConcurrency;
+use wayword_run::{error::CommandError, output::CommandOutput};
 
 /// A slow, partial answer is given up after this time, seconds. Every whole answer takes less.
 const TIMEOUT_S: f64 = 3.0;
 
-pub(super) fn measure(
+pub(super) fn measure_storm(
     calls: usize,
     per_s: f64,
     burst: u32,
     share: f64,
     seed: u64,
-    output: &Output,
-) -> Result<(), Error> {
+    output: &CommandOutput,
+) -> Result<(), CommandError> {
     let flags = [
         ("--requests-per-second", per_s.to_string()),
         ("--burst", burst.to_string()),
@@ -27,21 +27,22 @@ pub(super) fn measure(
         ("--latency-ms", "100".to_owned()),
     ];
     let flags: Vec<String> = flags.into_iter().flat_map(|(name, value)| [name.to_owned(), value]).collect();
-    let provider = Process::start(&flags)?;
-    let client = Client::new(&provider.base_url, "server/words", Concurrency::Adaptive { most: 64 }, TIMEOUT_S)?;
+    let provider = ProviderProcess::start(&flags)?;
+    let client =
+        TrialClient::new(&provider.base_url, "server/words", RequestConcurrency::Adaptive { most: 64 }, TIMEOUT_S)?;
     let begun = Instant::now();
-    let failed = client.make(calls, words);
+    let failed = client.make_calls(calls, words_request);
     let took_s = begun.elapsed().as_secs_f64();
-    let told = provider.end()?;
-    let mut lines = goodput(calls, &failed, took_s, per_s * (1.0 - share));
-    let Told { admitted, faults, rate_limited, .. } = told;
+    let told = provider.stop_and_report()?;
+    let mut lines = goodput_lines(calls, &failed, took_s, per_s * (1.0 - share));
+    let ProviderReport { admitted, faults, rate_limited, .. } = told;
     lines.insert(2, format!("{admitted} requests let in, {faults} faults, {rate_limited} refused by the rate limit"));
-    output.data(&(), lines.join("\n"));
+    output.print_result(&(), lines.join("\n"));
     Ok(())
 }
 
 /// The answers, compared with the most that are possible per second; then why the others failed.
-fn goodput(calls: usize, failed: &[String], took_s: f64, bound_per_s: f64) -> Vec<String> {
+fn goodput_lines(calls: usize, failed: &[String], took_s: f64, bound_per_s: f64) -> Vec<String> {
     let answered = calls - failed.len();
     let good = answered as f64 / took_s;
     let mut reasons: BTreeMap<&str, usize> = BTreeMap::new();
@@ -67,7 +68,7 @@ mod tests {
         let mut failed = vec!["timed out".to_owned(); 60];
         failed.extend(vec!["broken answer".to_owned(); 40]);
         assert_eq!(
-            goodput(4000, &failed, 120.0, 50.0 * (1.0 - 0.3)),
+            goodput_lines(4000, &failed, 120.0, 50.0 * (1.0 - 0.3)),
             [
                 "4000 calls: 3900 answered, 100 failed, in 120.0 s",
                 "32.5 answers/s, 92.9 % of 35.0 (allowed rate x share without fault)",

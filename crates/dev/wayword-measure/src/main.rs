@@ -7,17 +7,17 @@ use wayword_quality::{
     budget, claims, corrupt_people, corruptions, coverage, critics, detector, doubts, eye, found, house_views, judged,
     people, reader_figures, reuse, sample, skeleton, stage, steps, study_coverage, sweep, tell_apart, texts, walker,
 };
-use wayword_run::{error::Error, output::Output};
+use wayword_run::{error::CommandError, output::CommandOutput};
 
 /// Measures the figures in Wayword's documents.
 #[derive(Debug, Parser)]
-struct Cli {
+struct MeasureCli {
     #[command(subcommand)]
-    what: What,
+    what: Measurement,
 }
 
 #[derive(Debug, Subcommand)]
-enum What {
+enum Measurement {
     /// Corrupt good instructions of runs, and count how many the checks catch.
     Corruptions {
         /// Run folders.
@@ -43,14 +43,14 @@ enum What {
         show: usize,
     },
     /// Fit the weights of the follower to people's texts, and print how it does on the buildings that were left out.
-    FitFollower(fit_follower::Flags),
+    FitFollower(fit_follower::FitFollowerArgs),
     /// Count the words and clauses of datasets' texts that the reader understands, and show those that it does not.
-    Coverage(coverage::Flags),
+    Coverage(coverage::CoverageArgs),
     /// Correlate critics of texts (words, BLEU-4, ROUGE-L, CIDEr-D, agreement with pictures) with the success of agents that walked by
     /// them, or with the walks and ratings of people in a study.
-    Critics(critics::Flags),
+    Critics(critics::CriticsArgs),
     /// Run `wayword compare` with the agent `tools` and a scripted model: it walks the shortest way, at random, or it breaks.
-    Walker(Box<walker::Flags>),
+    Walker(Box<walker::ScriptedWalkerArgs>),
     /// Show instructions of each style, picked by seed, next to people's texts.
     Sample {
         /// Run folder.
@@ -67,7 +67,7 @@ enum What {
     Eye {
         /// The platform.
         #[command(flatten)]
-        world: stage::World,
+        world: stage::MeasuredWorldArgs,
         /// Views that are captioned.
         #[arg(long, default_value_t = 100)]
         views: usize,
@@ -80,10 +80,10 @@ enum What {
     },
     /// Check true and false claims about paths by labels and by the captions of a flawed eye, and count those that the checks
     /// refuse and catch.
-    Claims(claims::Flags),
+    Claims(claims::ClaimsArgs),
     /// Check right and seeded wrong landmarks by a detector that draws its finds and misses from labels, and count the objects
     /// that a flawed eye hallucinates in texts, with that detector and without.
-    Detector(detector::Flags),
+    Detector(detector::DetectorArgs),
     /// Fit the weights for how much it counts against a claim that no label confirms it, on people's texts.
     FitEvidence {
         /// Folder of Matterport3D's and REVERIE's data.
@@ -100,7 +100,7 @@ enum What {
     Budget {
         /// The platform.
         #[command(flatten)]
-        world: stage::World,
+        world: stage::MeasuredWorldArgs,
         /// Paths of the run without a budget.
         #[arg(long, default_value_t = 330)]
         paths: usize,
@@ -112,94 +112,100 @@ enum What {
     Reuse {
         /// The platform.
         #[command(flatten)]
-        world: stage::World,
+        world: stage::MeasuredWorldArgs,
         /// Paths that instructions are written for.
         #[arg(long, default_value_t = 200)]
         paths: usize,
     },
     /// Take the walks of an export of steps again: whether their actions lead to their ends, and whether their pictures are those
     /// of their poses.
-    Steps(steps::Flags),
+    Steps(steps::StepsArgs),
     /// Compare the findings of `wayword check` with spans of texts that people called right or wrong: HEAR's file.
     #[command(mut_arg("file", |file| file.help("File of labelled texts, in HEAR's format")))]
     #[command(mut_arg("show", |show| show.help("Show at most this many findings about words that people called right")))]
     #[command(after_long_help = "")]
-    People(judged::Judging),
+    People(judged::JudgingArgs),
     /// Make people's own texts wrong, without the words of the program's reader: a file of texts and its key.
-    CorruptPeople(corrupt_people::Flags),
+    CorruptPeople(corrupt_people::CorruptPeopleArgs),
     /// Compare the findings of `wayword check` with the key of a corrupted file: corruptions found, and false alarms.
     #[command(mut_arg("file", |file| file.help("File of corrupted texts")))]
     #[command(mut_arg("show", |show| show.help("Show at most this many corruptions that were not found")))]
     #[command(after_long_help = "")]
-    Found(found::Flags),
+    Found(found::CorruptionFindingArgs),
     /// Measure how far the follower can be believed: its calibration, wrong turns, other paths' texts, ambiguity.
-    ReaderFigures(reader_figures::Flags),
+    ReaderFigures(reader_figures::ReaderFiguresArgs),
     /// Count the words of people's texts that the follower would doubt, because a change would fit the walk better, by kind of change.
-    Doubts(doubts::Flags),
+    Doubts(doubts::DoubtsArgs),
     /// Try out the settings of agents on a train split.
-    Sweep(sweep::Flags),
+    Sweep(sweep::SweepArgs),
     /// Tell generated texts from people's with a plain classifier, cross-validated by building.
-    TellApart(tell_apart::Flags),
+    TellApart(tell_apart::TellApartArgs),
     /// Compare texts about generated houses with their plans: the room at the end, the thing at the stop, the target.
-    Houses(texts::houses::Flags),
+    Houses(texts::houses::HouseTextsArgs),
     /// Count the views on walks through generated houses of which half or more is bare wall, and measure the time that a view takes.
-    HouseViews(house_views::Flags),
+    HouseViews(house_views::HouseViewsArgs),
     /// Simulate studies with people, and count how often the intervals of their figures cover the truth.
-    StudyCoverage(study_coverage::Flags),
+    StudyCoverage(study_coverage::StudyCoverageArgs),
     /// Measure generated texts: bare turns, lengths, word types, openers, and what they share with other texts.
-    Texts(texts::Flags),
+    Texts(texts::TextFiguresArgs),
 }
 
 fn main() -> ExitCode {
-    let what = Cli::parse().what;
+    let what = MeasureCli::parse().what;
     let is_json = match &what {
-        What::Critics(flags) => flags.json,
-        What::People(flags) => flags.json,
-        What::Found(flags) => flags.judging.json,
-        What::TellApart(flags) => flags.json,
-        What::Texts(flags) => flags.json,
-        What::Houses(flags) => flags.json,
-        What::HouseViews(flags) => flags.json,
-        What::StudyCoverage(flags) => flags.json,
+        Measurement::Critics(flags) => flags.json,
+        Measurement::People(flags) => flags.json,
+        Measurement::Found(flags) => flags.judging.json,
+        Measurement::TellApart(flags) => flags.json,
+        Measurement::Texts(flags) => flags.json,
+        Measurement::Houses(flags) => flags.json,
+        Measurement::HouseViews(flags) => flags.json,
+        Measurement::StudyCoverage(flags) => flags.json,
         _ => false,
     };
-    let output = Output::new(is_json, false);
-    match run(what, &output) {
+    let output = CommandOutput::new(is_json, false);
+    match run_measurement(what, &output) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            output.error(&error);
+            output.print_error(&error);
             (error.exit_code() as u8).into()
         }
     }
 }
 
-fn run(what: What, output: &Output) -> Result<(), Error> {
+fn run_measurement(what: Measurement, output: &CommandOutput) -> Result<(), CommandError> {
     match what {
-        What::Corruptions { runs, count, seed, show } => corruptions::measure(&runs, count, seed, show, output),
-        What::StudyCoverage(flags) => study_coverage::measure(&flags, output),
-        What::FitFollower(flags) => fit_follower::measure(&flags, output),
-        What::Coverage(flags) => coverage::measure(&flags, output),
-        What::Walker(flags) => walker::measure(*flags, output),
-        What::Critics(flags) => critics::show(&flags, output),
-        What::Variety { runs, show } => skeleton::measure(&runs, show, output),
-        What::Budget { world, paths, max_usd } => budget::measure(&world, paths, max_usd, output),
-        What::Eye { world, views, paths, hallucinated } => eye::measure(&world, views, paths, hallucinated, output),
-        What::Claims(flags) => claims::measure(&flags, output),
-        What::Detector(flags) => detector::measure(&flags, output),
-        What::Reuse { world, paths } => reuse::measure(&world, paths, output),
-        What::FitEvidence { data, episodes, out } => fit_evidence::measure(&data, &episodes, out.as_deref(), output),
-        What::Steps(flags) => steps::measure(&flags, output),
-        What::People(flags) => people::measure(flags, output),
-        What::CorruptPeople(flags) => corrupt_people::write(&flags, output),
-        What::Found(flags) => found::measure(flags, output),
-        What::ReaderFigures(flags) => reader_figures::measure(&flags, output),
-        What::Doubts(flags) => doubts::measure(&flags, output),
-        What::Sweep(flags) => sweep::measure(&flags, output),
-        What::TellApart(flags) => tell_apart::measure(&flags, output),
-        What::Houses(flags) => texts::houses::measure(&flags, output),
-        What::HouseViews(flags) => house_views::measure(&flags, output),
-        What::Texts(flags) => texts::measure(&flags, output),
-        What::Sample { run, count, seed } => sample::show(&run, count, seed, output),
+        Measurement::Corruptions { runs, count, seed, show } => {
+            corruptions::measure_corruptions(&runs, count, seed, show, output)
+        }
+        Measurement::StudyCoverage(flags) => study_coverage::measure_study_coverage(&flags, output),
+        Measurement::FitFollower(flags) => fit_follower::fit_follower_weights(&flags, output),
+        Measurement::Coverage(flags) => coverage::measure_coverage(&flags, output),
+        Measurement::Walker(flags) => walker::measure_walker(*flags, output),
+        Measurement::Critics(flags) => critics::show_correlations(&flags, output),
+        Measurement::Variety { runs, show } => skeleton::measure_skeletons(&runs, show, output),
+        Measurement::Budget { world, paths, max_usd } => budget::measure_budget(&world, paths, max_usd, output),
+        Measurement::Eye { world, views, paths, hallucinated } => {
+            eye::measure_eye(&world, views, paths, hallucinated, output)
+        }
+        Measurement::Claims(flags) => claims::measure_claims(&flags, output),
+        Measurement::Detector(flags) => detector::measure_played_detector(&flags, output),
+        Measurement::Reuse { world, paths } => reuse::measure_reuse(&world, paths, output),
+        Measurement::FitEvidence { data, episodes, out } => {
+            fit_evidence::fit_evidence_weights(&data, &episodes, out.as_deref(), output)
+        }
+        Measurement::Steps(flags) => steps::replay_steps(&flags, output),
+        Measurement::People(flags) => people::measure_people(flags, output),
+        Measurement::CorruptPeople(flags) => corrupt_people::write_corruptions(&flags, output),
+        Measurement::Found(flags) => found::measure_corruption_findings(flags, output),
+        Measurement::ReaderFigures(flags) => reader_figures::measure_reader_figures(&flags, output),
+        Measurement::Doubts(flags) => doubts::measure_doubts(&flags, output),
+        Measurement::Sweep(flags) => sweep::sweep_settings(&flags, output),
+        Measurement::TellApart(flags) => tell_apart::measure_tell_apart(&flags, output),
+        Measurement::Houses(flags) => texts::houses::measure_house_texts(&flags, output),
+        Measurement::HouseViews(flags) => house_views::measure_house_views(&flags, output),
+        Measurement::Texts(flags) => texts::measure_texts(&flags, output),
+        Measurement::Sample { run, count, seed } => sample::show_sample(&run, count, seed, output),
     }
 }
 
@@ -213,10 +219,10 @@ mod tests {
     fn every_measurement_that_the_documents_quote_is_read_by_the_command_line() {
         let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../..").canonicalize().unwrap();
         let mut measured = 0;
-        for command in documents::commands(&repository).unwrap() {
+        for command in documents::documented_commands(&repository).unwrap() {
             if command.program == "wayword-measure" && !command.args.is_empty() {
                 let words = ["wayword-measure"].into_iter().chain(command.args.iter().map(String::as_str));
-                let read = Cli::try_parse_from(words).map_err(|error| error.to_string());
+                let read = MeasureCli::try_parse_from(words).map_err(|error| error.to_string());
                 assert!(read.is_ok(), "{}: {:?}: {read:?}", command.place, command.args);
                 measured += 1;
             }

@@ -5,30 +5,30 @@
 
 mod made;
 
-use crate::stage::{Stage, World};
-use made::{Claim, Kind, Known};
+use crate::stage::{MeasuredWorldArgs, MeasurementStage};
+use made::{ClaimedPath, SeededClaim, SeededClaimKind};
 use rayon::prelude::*;
 use std::{collections::BTreeMap, path::PathBuf};
-use wayword_checks::{Evidence, Subject, check};
-use wayword_core::{Check, Observation, Style, Verdict, rng};
+use wayword_checks::{CheckSubject, Evidence, check_text};
+use wayword_core::{CheckKind, FrameObservation, InstructionStyle, Verdict, seeded_rng};
 use wayword_run::{
-    error::Error,
-    output::Output,
-    pipeline::{panoramas, path},
-    plan::Plan,
-    platforms::Remembering,
+    error::CommandError,
+    output::CommandOutput,
+    pipeline::{item_path, path_panoramas},
+    plan::RunPlan,
+    platforms::RememberingPlatform,
     run_folder::fresh_id,
-    settings::{Job, LABELS, Perception, RULES, Settings, Sources},
-    team::Team,
+    settings::{EvidenceSources, LABELS_ROLE, Perception, RULES_ROLE, RunJob, RunSettings},
+    team::RoleTeam,
 };
-use wayword_synthesis::{observe::observe, walk::Walk};
+use wayword_synthesis::{observe::observe_path, walk::ObservedWalk};
 
 /// The flags of `claims`.
 #[derive(Debug, clap::Args)]
-pub struct Flags {
+pub struct ClaimsArgs {
     /// The platform.
     #[command(flatten)]
-    world: World,
+    world: MeasuredWorldArgs,
     /// Take the paths of a dataset instead of random ones.
     #[arg(long)]
     episodes: Option<PathBuf>,
@@ -48,57 +48,61 @@ pub struct Flags {
 
 /// How many claims of a kind there were, how many failed, and how many could not be checked.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-struct Count {
+struct SeededClaimCount {
     all: usize,
     failed: usize,
     unverified: usize,
 }
 
 /// Counts by the source of the evidence (`labels` or `captions`) and the kind of claim.
-type Counts = BTreeMap<(&'static str, Kind), Count>;
+type SeededClaimCounts = BTreeMap<(&'static str, SeededClaimKind), SeededClaimCount>;
 
-pub fn measure(flags: &Flags, output: &Output) -> Result<(), Error> {
-    let stage = Stage::new(&flags.world, flags.hallucinated)?;
-    let job = job(&stage, flags)?;
-    let plan = Plan::looking(&job, &stage.world)?;
-    let calls = plan.models.open(&fresh_id("claims"), output)?;
-    let team = Team::new(&job.settings, calls.as_ref(), &stage.world)?;
-    let known: Vec<Known> = plan
+pub fn measure_claims(flags: &ClaimsArgs, output: &CommandOutput) -> Result<(), CommandError> {
+    let stage = MeasurementStage::new(&flags.world, flags.hallucinated)?;
+    let job = claims_job(&stage, flags)?;
+    let plan = RunPlan::for_looking(&job, &stage.world)?;
+    let calls = plan.models.open_calls(&fresh_id("claims"), output)?;
+    let team = RoleTeam::new(&job.settings, calls.as_ref(), &stage.world)?;
+    let known: Vec<ClaimedPath> = plan
         .items
         .par_iter()
         .filter_map(|item| {
-            let world = Remembering::new(&stage.world);
-            let path = path(item, &job.settings, &world).ok()?;
-            Some(observe(&world, &path, job.settings.frames, team.observers()).map_err(Error::from).and_then(|seen| {
-                let panoramas = panoramas(&world, &path)?;
-                Ok((Walk::new(path, seen), panoramas))
-            }))
+            let world = RememberingPlatform::new(&stage.world);
+            let path = item_path(item, &job.settings, &world).ok()?;
+            Some(
+                observe_path(&world, &path, job.settings.frames, team.observers())
+                    .map_err(CommandError::from)
+                    .and_then(|seen| {
+                        let panoramas = path_panoramas(&world, &path)?;
+                        Ok((ObservedWalk::new(path, seen), panoramas))
+                    }),
+            )
         })
         .filter_map(|made| match made {
             Ok((walk, panoramas)) => {
                 let labels = Evidence::from_labels(&walk.path, &panoramas)?;
                 let captions = walk.evidence()?;
-                Some(Ok(Known { walk, labels, captions }))
+                Some(Ok(ClaimedPath { walk, labels, captions }))
             }
             Err(error) => Some(Err(error)),
         })
         .collect::<Result<_, _>>()?;
-    let (counts, wrong) = counted(&known, flags);
+    let (counts, wrong) = count_verdicts(&known, flags);
     for line in wrong {
         output.say(line);
     }
-    output.data(&(), told(&known, &counts, flags));
+    output.print_result(&(), describe_counts(&known, &counts, flags));
     Ok(())
 }
 
 /// A job in which only the eye is a model; rules play all other roles.
-fn job(stage: &Stage, flags: &Flags) -> Result<Job, Error> {
-    let mut job = stage.job(flags.paths)?;
+fn claims_job(stage: &MeasurementStage, flags: &ClaimsArgs) -> Result<RunJob, CommandError> {
+    let mut job = stage.writing_job(flags.paths)?;
     let roles = &mut job.settings.roles;
-    (roles.ask, roles.summarise, roles.write) = (RULES.to_owned(), RULES.to_owned(), RULES.to_owned());
-    debug_assert!(roles.see != LABELS);
-    let Settings { perception, evidence, .. } = &mut job.settings;
-    (*perception, *evidence) = (Perception::Structured, Sources::default());
+    (roles.ask, roles.summarise, roles.write) = (RULES_ROLE.to_owned(), RULES_ROLE.to_owned(), RULES_ROLE.to_owned());
+    debug_assert!(roles.see != LABELS_ROLE);
+    let RunSettings { perception, evidence, .. } = &mut job.settings;
+    (*perception, *evidence) = (Perception::Structured, EvidenceSources::default());
     if flags.episodes.is_some() {
         job.settings.episodes.clone_from(&flags.episodes);
         job.settings.paths = 0;
@@ -107,18 +111,18 @@ fn job(stage: &Stage, flags: &Flags) -> Result<Job, Error> {
     Ok(job)
 }
 
-fn counted(known: &[Known], flags: &Flags) -> (Counts, Vec<String>) {
-    let names = made::Names::of(known);
-    let style = Style { name: "claims".to_owned(), ..Style::default() };
-    let mut counts = Counts::new();
-    let mut shown: BTreeMap<(&str, Kind), usize> = BTreeMap::new();
+fn count_verdicts(known: &[ClaimedPath], flags: &ClaimsArgs) -> (SeededClaimCounts, Vec<String>) {
+    let names = made::ClaimNamePool::from_paths(known);
+    let style = InstructionStyle { name: "claims".to_owned(), ..InstructionStyle::default() };
+    let mut counts = SeededClaimCounts::new();
+    let mut shown: BTreeMap<(&str, SeededClaimKind), usize> = BTreeMap::new();
     let mut wrong = Vec::new();
     for one in known {
-        let mut rng = rng(flags.world.seed, &["claims", &one.walk.path.id]);
-        for Claim { kind, text } in made::claims(one, &names, flags.claims, &mut rng) {
+        let mut rng = seeded_rng(flags.world.seed, &["claims", &one.walk.path.id]);
+        for SeededClaim { kind, text } in made::make_claims(one, &names, flags.claims, &mut rng) {
             for (source, evidence) in [("labels", &one.labels), ("captions", &one.captions)] {
-                let checked = check(&text, Subject::closed(evidence, &style, None));
-                let places = |check| matches!(check, Check::Landmarks | Check::Order | Check::Turns);
+                let checked = check_text(&text, CheckSubject::closed_world(evidence, &style, None));
+                let places = |check| matches!(check, CheckKind::Landmarks | CheckKind::Order | CheckKind::Turns);
                 let verdicts = checked.findings.iter().filter(|finding| places(finding.check));
                 let verdict = verdicts.map(|finding| finding.verdict).max().unwrap_or(Verdict::Unverified);
                 let count = counts.entry((source, kind)).or_default();
@@ -144,10 +148,11 @@ fn counted(known: &[Known], flags: &Flags) -> (Counts, Vec<String>) {
     (counts, wrong)
 }
 
-fn told(known: &[Known], counts: &Counts, flags: &Flags) -> String {
+fn describe_counts(known: &[ClaimedPath], counts: &SeededClaimCounts, flags: &ClaimsArgs) -> String {
     let views: usize =
         known.iter().map(|one| one.walk.observations.iter().map(|seen| seen.looks.len()).sum::<usize>()).sum();
-    let transcripts = |seen: &Observation| seen.looks.iter().map(|look| look.caption.transcript.len()).sum::<usize>();
+    let transcripts =
+        |seen: &FrameObservation| seen.looks.iter().map(|look| look.caption.transcript.len()).sum::<usize>();
     let calls: usize = known.iter().flat_map(|one| &one.walk.observations).map(transcripts).sum();
     let mut lines = vec![
         format!(
@@ -158,7 +163,7 @@ fn told(known: &[Known], counts: &Counts, flags: &Flags) -> String {
         ),
         "held against  claims                      number  passed  unverified  failed".to_owned(),
     ];
-    for ((source, kind), Count { all, failed, unverified }) in counts {
+    for ((source, kind), SeededClaimCount { all, failed, unverified }) in counts {
         let share = |part: usize| 100.0 * part as f64 / (*all).max(1) as f64;
         lines.push(format!(
             "{source:<12}  {:<26}  {all:>6}  {:>5.1}%  {:>9.1}%  {:>5.1}%",

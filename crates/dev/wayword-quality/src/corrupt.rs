@@ -8,13 +8,13 @@ mod by_path;
 use rand::{Rng, seq::IndexedRandom};
 use std::collections::BTreeSet;
 use wayword_checks::Evidence;
-use wayword_core::{MentionKind, Style};
-use wayword_formats::jsonl::Record;
-use wayword_language::lexicon::agree;
+use wayword_core::{InstructionStyle, MentionKind};
+use wayword_formats::jsonl::InstructionRecord;
+use wayword_language::lexicon::names_agree;
 
 /// A way to corrupt an instruction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Corruption {
+pub(super) enum InstructionCorruption {
     /// A left turn becomes a right turn, or the other way round.
     TurnFlipped,
     /// A landmark replaced by one that no frame shows.
@@ -37,7 +37,7 @@ pub(super) enum Corruption {
     TaskUnasked,
 }
 
-impl Corruption {
+impl InstructionCorruption {
     pub(super) const ALL: [Self; 10] = [
         Self::TurnFlipped,
         Self::LandmarkAbsent,
@@ -68,7 +68,7 @@ impl Corruption {
 }
 
 /// Objects of homes that replace landmarks. The list was written for this measurement and doesn't use the checks' lexicon.
-const ABSENT: [&str; 24] = [
+const ABSENT_OBJECTS: [&str; 24] = [
     "piano",
     "treadmill",
     "fireplace",
@@ -96,12 +96,12 @@ const ABSENT: [&str; 24] = [
 ];
 
 /// A corrupted text, or `None` if this kind of corruption is not possible.
-pub(super) fn corrupt(
-    kind: Corruption,
-    record: &Record,
+pub(super) fn corrupt_instruction(
+    kind: InstructionCorruption,
+    record: &InstructionRecord,
     evidence: &Evidence,
     others: &BTreeSet<String>,
-    style: &Style,
+    style: &InstructionStyle,
     rng: &mut impl Rng,
 ) -> Option<String> {
     let text = &record.instruction.text;
@@ -116,7 +116,7 @@ pub(super) fn corrupt(
     };
     let replace = |span: [usize; 2], by: &str| format!("{}{by}{}", &text[..span[0]], &text[span[1]..]);
     match kind {
-        Corruption::TurnFlipped => {
+        InstructionCorruption::TurnFlipped => {
             let turns: Vec<[usize; 2]> = spans(&[MentionKind::Turn])
                 .into_iter()
                 .filter(|span| matches!(&text[span[0]..span[1]], "left" | "right"))
@@ -124,14 +124,14 @@ pub(super) fn corrupt(
             let span = *turns.choose(rng)?;
             Some(replace(span, if &text[span[0]..span[1]] == "left" { "right" } else { "left" }))
         }
-        Corruption::LandmarkAbsent => {
+        InstructionCorruption::LandmarkAbsent => {
             let span = *spans(&[MentionKind::Landmark, MentionKind::Target]).choose(rng)?;
             let absent: Vec<&str> =
-                ABSENT.into_iter().filter(|name| evidence.frames_with_thing(name).is_empty()).collect();
+                ABSENT_OBJECTS.into_iter().filter(|name| evidence.frames_with_thing(name).is_empty()).collect();
             Some(replace(span, absent.choose(rng)?))
         }
-        Corruption::OrderSwapped => swapped(record, evidence, rng),
-        Corruption::ReferenceCopied => {
+        InstructionCorruption::OrderSwapped => swap_places(record, evidence, rng),
+        InstructionCorruption::ReferenceCopied => {
             let reference = style.references.choose(rng)?.trim_end_matches('.');
             let words: Vec<&str> = reference.split(' ').collect();
             let length = rng.random_range(10..=12).min(words.len());
@@ -139,24 +139,24 @@ pub(super) fn corrupt(
             let run = words[start..start + length].join(" ").replace(". ", " ");
             Some(format!("{run}, {text}"))
         }
-        Corruption::TaskElsewhere => {
+        InstructionCorruption::TaskElsewhere => {
             let span = *spans(&[MentionKind::Target]).first()?;
             let elsewhere: Vec<&String> = others
                 .iter()
-                .filter(|name| !evidence.final_things().iter().any(|thing| agree(&thing.name, name)))
+                .filter(|name| !evidence.final_things().iter().any(|thing| names_agree(&thing.name, name)))
                 .collect();
             Some(replace(span, elsewhere.choose(rng)?))
         }
-        Corruption::StairsAdded => by_path::stairs(text, &record.path, style, rng),
-        Corruption::FloorWrong => by_path::floor(text, &record.path, style, rng),
-        Corruption::RoomWrong => by_path::room(text, evidence, style, rng),
-        Corruption::SideWrong => by_path::side(text, evidence, style, rng),
-        Corruption::TaskUnasked => by_path::unasked_task(text, evidence, style, rng),
+        InstructionCorruption::StairsAdded => by_path::add_stairs(text, &record.path, style, rng),
+        InstructionCorruption::FloorWrong => by_path::add_wrong_floor(text, &record.path, style, rng),
+        InstructionCorruption::RoomWrong => by_path::replace_room(text, evidence, style, rng),
+        InstructionCorruption::SideWrong => by_path::put_on_wrong_side(text, evidence, style, rng),
+        InstructionCorruption::TaskUnasked => by_path::unasked_task(text, evidence, style, rng),
     }
 }
 
 /// Swaps two places if every frame that shows the first comes before every frame that shows the second.
-fn swapped(record: &Record, evidence: &Evidence, rng: &mut impl Rng) -> Option<String> {
+fn swap_places(record: &InstructionRecord, evidence: &Evidence, rng: &mut impl Rng) -> Option<String> {
     let text = &record.instruction.text;
     let places: Vec<_> = record
         .instruction

@@ -1,63 +1,70 @@
 //! Corrupts good instructions of runs and counts how many of the corruptions the checks catch.
 
-use crate::corrupt::{Corruption, corrupt};
+use crate::corrupt::{InstructionCorruption, corrupt_instruction};
 use rand::seq::IndexedRandom;
 use rayon::prelude::*;
 use std::{
     collections::{BTreeMap, BTreeSet},
     path::{Path, PathBuf},
 };
-use wayword_checks::{Evidence, Subject, check};
-use wayword_core::{Platform, SceneId, Style, Verdict, rng};
-use wayword_formats::jsonl::{self, Record};
-use wayword_language::lexicon::thing;
+use wayword_checks::{CheckSubject, Evidence, check_text};
+use wayword_core::{InstructionStyle, Platform, SceneId, Verdict, seeded_rng};
+use wayword_formats::jsonl::{self, InstructionRecord};
+use wayword_language::lexicon::find_thing;
 use wayword_run::{
-    error::Error,
-    output::Output,
-    pipeline::panoramas,
-    platforms::{self, Remembering},
+    error::CommandError,
+    output::CommandOutput,
+    pipeline::path_panoramas,
+    platforms::{self, RememberingPlatform},
     run_folder::{file, settings_of},
     styles,
 };
 
 /// The records of a run that passed, with everything that checking them again needs.
-struct Run {
-    styles: Vec<Style>,
-    records: Vec<Record>,
+struct LabelledRun {
+    styles: Vec<InstructionStyle>,
+    records: Vec<InstructionRecord>,
     /// The evidence from labels, by the path's id.
     evidence: BTreeMap<String, Evidence>,
     /// The names of the things along the paths of each scene.
     names: BTreeMap<SceneId, BTreeSet<String>>,
 }
 
-pub fn measure(folders: &[PathBuf], count: usize, seed: u64, show: usize, output: &Output) -> Result<(), Error> {
-    let runs = folders.iter().map(|folder| open(folder, output)).collect::<Result<Vec<_>, _>>()?;
-    let all: Vec<(&Run, &Record)> =
+pub fn measure_corruptions(
+    folders: &[PathBuf],
+    count: usize,
+    seed: u64,
+    show: usize,
+    output: &CommandOutput,
+) -> Result<(), CommandError> {
+    let runs = folders.iter().map(|folder| open_run(folder, output)).collect::<Result<Vec<_>, _>>()?;
+    let all: Vec<(&LabelledRun, &InstructionRecord)> =
         runs.iter().flat_map(|run| run.records.iter().map(move |record| (run, record))).collect();
-    let (counts, missed) = counted(&all, count, seed);
+    let (counts, missed) = count_caught(&all, count, seed);
     for line in missed.iter().take(show) {
         output.say(line);
     }
-    output.data(&(), table(&counts));
+    output.print_result(&(), catch_table(&counts));
     Ok(())
 }
 
 /// For each kind of corruption: how many the checks caught, and how many there were.
-type Counts = BTreeMap<Corruption, (usize, usize)>;
+type CatchCounts = BTreeMap<InstructionCorruption, (usize, usize)>;
 
 /// Makes the same number of corruptions of each kind and checks them. Also returns a line for each one that the checks missed.
-fn counted(all: &[(&Run, &Record)], count: usize, seed: u64) -> (Counts, Vec<String>) {
-    let mut rng = rng(seed, &["corruptions"]);
-    let mut counts = Counts::new();
+fn count_caught(all: &[(&LabelledRun, &InstructionRecord)], count: usize, seed: u64) -> (CatchCounts, Vec<String>) {
+    let mut rng = seeded_rng(seed, &["corruptions"]);
+    let mut counts = CatchCounts::new();
     let mut missed = Vec::new();
-    for kind in Corruption::ALL {
+    for kind in InstructionCorruption::ALL {
         let mut tries = 0;
-        while counts.entry(kind).or_default().1 < count / Corruption::ALL.len() && tries < 100 * count {
+        while counts.entry(kind).or_default().1 < count / InstructionCorruption::ALL.len() && tries < 100 * count {
             tries += 1;
             let Some((run, record)) = all.choose(&mut rng) else { break };
             let Some((evidence, style, others)) = run.needed_for(record) else { continue };
-            let Some(text) = corrupt(kind, record, evidence, others, style, &mut rng) else { continue };
-            let verdict = check(&text, Subject::closed(evidence, style, record.path.target.as_ref())).verdict();
+            let Some(text) = corrupt_instruction(kind, record, evidence, others, style, &mut rng) else { continue };
+            let verdict =
+                check_text(&text, CheckSubject::closed_world(evidence, style, record.path.target.as_ref())).verdict();
             let (caught, total) = counts.entry(kind).or_default();
             *total += 1;
             *caught += usize::from(verdict == Verdict::Fail);
@@ -70,7 +77,7 @@ fn counted(all: &[(&Run, &Record)], count: usize, seed: u64) -> (Counts, Vec<Str
     (counts, missed)
 }
 
-fn table(counts: &Counts) -> String {
+fn catch_table(counts: &CatchCounts) -> String {
     let line = |name: &str, (caught, total): (usize, usize)| {
         format!("{name:<39} {caught:>5} of {total:>5}  {:>5.1} %", 100.0 * caught as f64 / total.max(1) as f64)
     };
@@ -79,20 +86,20 @@ fn table(counts: &Counts) -> String {
     kinds.chain([line("all", sum)]).collect::<Vec<_>>().join("\n")
 }
 
-fn open(folder: &Path, output: &Output) -> Result<Run, Error> {
+fn open_run(folder: &Path, output: &CommandOutput) -> Result<LabelledRun, CommandError> {
     let settings = settings_of(folder)?;
-    let platform = platforms::open(&settings)?;
-    let styles = styles::find(&settings.style)?.into_iter().map(|measured| measured.style).collect();
-    let mut records = jsonl::read(&folder.join(file::INSTRUCTIONS))?;
+    let platform = platforms::open_platform(&settings)?;
+    let styles = styles::find_styles(&settings.style)?.into_iter().map(|measured| measured.style).collect();
+    let mut records = jsonl::read_records(&folder.join(file::INSTRUCTIONS))?;
     records.retain(|record| record.instruction.verdict == Verdict::Pass);
     let mut paths: Vec<_> = records.iter().map(|record| &record.path).collect();
     paths.dedup_by_key(|path| &path.id);
-    let bar = output.progress(paths.len(), "paths");
+    let bar = output.progress_bar(paths.len(), "paths");
     let seen: Vec<(String, SceneId, Evidence)> = paths
         .par_iter()
         .filter_map(|path| {
             bar.inc(1);
-            let evidence = labels(platform.as_ref(), path).transpose()?;
+            let evidence = label_evidence(platform.as_ref(), path).transpose()?;
             Some(evidence.map(|evidence| (path.id.clone(), path.scene.clone(), evidence)))
         })
         .collect::<Result<_, _>>()?;
@@ -100,19 +107,19 @@ fn open(folder: &Path, output: &Output) -> Result<Run, Error> {
     let mut names: BTreeMap<SceneId, BTreeSet<String>> = BTreeMap::new();
     for (_, scene, evidence) in &seen {
         let things = evidence.frames.iter().flat_map(|frame| &frame.things).map(|thing| thing.name.clone());
-        names.entry(scene.clone()).or_default().extend(things.filter(|name| thing(name).is_some()));
+        names.entry(scene.clone()).or_default().extend(things.filter(|name| find_thing(name).is_some()));
     }
     let evidence = seen.into_iter().map(|(id, _, evidence)| (id, evidence)).collect();
-    Ok(Run { styles, records, evidence, names })
+    Ok(LabelledRun { styles, records, evidence, names })
 }
 
-fn labels(platform: &dyn Platform, path: &wayword_core::Path) -> Result<Option<Evidence>, Error> {
-    let world = Remembering::new(platform);
-    Ok(Evidence::from_labels(path, &panoramas(&world, path)?))
+fn label_evidence(platform: &dyn Platform, path: &wayword_core::Path) -> Result<Option<Evidence>, CommandError> {
+    let world = RememberingPlatform::new(platform);
+    Ok(Evidence::from_labels(path, &path_panoramas(&world, path)?))
 }
 
-impl Run {
-    fn needed_for(&self, record: &Record) -> Option<(&Evidence, &Style, &BTreeSet<String>)> {
+impl LabelledRun {
+    fn needed_for(&self, record: &InstructionRecord) -> Option<(&Evidence, &InstructionStyle, &BTreeSet<String>)> {
         let style = self.styles.iter().find(|style| style.name == record.instruction.style)?;
         Some((self.evidence.get(&record.path.id)?, style, self.names.get(&record.path.scene)?))
     }
@@ -121,24 +128,24 @@ impl Run {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::made_up::{instruction, path, record};
+    use crate::made_up::{test_instruction, test_path, test_record};
     use MentionKind::{Landmark, Room as InRoom, Turn};
-    use wayword_checks::{FrameEvidence, SeenThing, Source};
+    use wayword_checks::{EvidenceSource, FrameEvidence, SeenThing};
     use wayword_core::MentionKind;
 
     const TEXT: &str = "Walk past the sofa. Turn left at the lamp. Stop in the kitchen.";
 
-    fn good() -> Record {
+    fn good() -> InstructionRecord {
         let mentions = [("sofa", Landmark), ("left", Turn), ("lamp", Landmark), ("kitchen", InRoom)];
-        record("p", instruction("mine", TEXT, &mentions))
+        test_record("p", test_instruction("mine", TEXT, &mentions))
     }
 
     /// A run of that one record, with the evidence about its path.
-    fn run(evidence: Evidence) -> Run {
+    fn run(evidence: Evidence) -> LabelledRun {
         let references = vec!["Head through the archway and wait near the tall window.".to_owned()];
-        let style = Style { name: "mine".into(), references, ..Style::default() };
+        let style = InstructionStyle { name: "mine".into(), references, ..InstructionStyle::default() };
         let names = ["sofa", "lamp", "table"].map(str::to_owned).into();
-        Run {
+        LabelledRun {
             styles: vec![style],
             records: vec![good()],
             evidence: BTreeMap::from([("p".to_owned(), evidence)]),
@@ -168,13 +175,13 @@ mod tests {
             frame("hallway", Some(("lamp", -10.0))),
             frame("kitchen", None),
         ];
-        Evidence { frames, source: Source::Labels, ..Evidence::of_path_alone(&path("p")) }
+        Evidence { frames, source: EvidenceSource::Labels, ..Evidence::of_path_alone(&test_path("p")) }
     }
 
-    fn counts_of(evidence: Evidence) -> Counts {
+    fn counts_of(evidence: Evidence) -> CatchCounts {
         let run = run(evidence);
-        let all: Vec<(&Run, &Record)> = run.records.iter().map(|record| (&run, record)).collect();
-        counted(&all, 40, 0).0
+        let all: Vec<(&LabelledRun, &InstructionRecord)> = run.records.iter().map(|record| (&run, record)).collect();
+        count_caught(&all, 40, 0).0
     }
 
     /// Each corruption of this text contradicts the evidence about the path, so the checks must catch each. The text has no task,
@@ -182,8 +189,8 @@ mod tests {
     #[test]
     fn with_full_evidence_every_corruption_is_caught() {
         let counts = counts_of(known());
-        for kind in Corruption::ALL {
-            let expected = if kind == Corruption::TaskElsewhere { (0, 0) } else { (4, 4) };
+        for kind in InstructionCorruption::ALL {
+            let expected = if kind == InstructionCorruption::TaskElsewhere { (0, 0) } else { (4, 4) };
             assert_eq!(counts[&kind], expected, "{}", kind.name());
         }
     }
@@ -192,26 +199,26 @@ mod tests {
     /// storeys follow from the path, and a copied reference from the text.
     #[test]
     fn with_the_path_alone_wrong_objects_and_rooms_are_not_caught() {
-        let counts = counts_of(Evidence::of_path_alone(&path("p")));
+        let counts = counts_of(Evidence::of_path_alone(&test_path("p")));
         let expected = [
-            (Corruption::TurnFlipped, (4, 4)),
-            (Corruption::LandmarkAbsent, (0, 4)),
-            (Corruption::OrderSwapped, (0, 0)),
-            (Corruption::ReferenceCopied, (4, 4)),
-            (Corruption::TaskElsewhere, (0, 0)),
-            (Corruption::StairsAdded, (4, 4)),
-            (Corruption::FloorWrong, (4, 4)),
-            (Corruption::RoomWrong, (0, 0)),
-            (Corruption::SideWrong, (0, 0)),
-            (Corruption::TaskUnasked, (0, 4)),
+            (InstructionCorruption::TurnFlipped, (4, 4)),
+            (InstructionCorruption::LandmarkAbsent, (0, 4)),
+            (InstructionCorruption::OrderSwapped, (0, 0)),
+            (InstructionCorruption::ReferenceCopied, (4, 4)),
+            (InstructionCorruption::TaskElsewhere, (0, 0)),
+            (InstructionCorruption::StairsAdded, (4, 4)),
+            (InstructionCorruption::FloorWrong, (4, 4)),
+            (InstructionCorruption::RoomWrong, (0, 0)),
+            (InstructionCorruption::SideWrong, (0, 0)),
+            (InstructionCorruption::TaskUnasked, (0, 4)),
         ];
         assert_eq!(counts, BTreeMap::from(expected));
     }
 
     #[test]
     fn missed_corruptions_are_listed_with_their_original_text() {
-        let run = run(Evidence::of_path_alone(&path("p")));
-        let missed = counted(&[(&run, &run.records[0])], 40, 0).1;
+        let run = run(Evidence::of_path_alone(&test_path("p")));
+        let missed = count_caught(&[(&run, &run.records[0])], 40, 0).1;
         assert_eq!(missed.len(), 8);
         assert!(
             missed.iter().all(|line| line.ends_with(&format!("\n    was: {TEXT}")) && !line.starts_with(TEXT)),
@@ -222,11 +229,11 @@ mod tests {
     #[test]
     fn the_table_has_shares_of_each_kind_and_of_all() {
         let counts = BTreeMap::from([
-            (Corruption::TurnFlipped, (3, 4)),
-            (Corruption::RoomWrong, (1, 1)),
-            (Corruption::FloorWrong, (0, 0)),
+            (InstructionCorruption::TurnFlipped, (3, 4)),
+            (InstructionCorruption::RoomWrong, (1, 1)),
+            (InstructionCorruption::FloorWrong, (0, 0)),
         ]);
-        let table = table(&counts);
+        let table = catch_table(&counts);
         let shares: Vec<&str> = table.lines().map(|line| line[40..].trim()).collect();
         assert_eq!(
             shares,

@@ -5,12 +5,12 @@ use std::{
     collections::{BTreeMap, BTreeSet},
     path::PathBuf,
 };
-use wayword_language::reading::{Reading, read};
-use wayword_run::{error::Error, output::Output};
+use wayword_language::reading::{TextReading, read_instruction};
+use wayword_run::{error::CommandError, output::CommandOutput};
 
 /// The flags of `coverage`.
 #[derive(Debug, Args)]
-pub struct Flags {
+pub struct CoverageArgs {
     /// Dataset files, of any format.
     #[arg(required = true)]
     files: Vec<PathBuf>,
@@ -25,24 +25,24 @@ pub struct Flags {
     show: usize,
 }
 
-pub fn measure(flags: &Flags, output: &Output) -> Result<(), Error> {
+pub fn measure_coverage(flags: &CoverageArgs, output: &CommandOutput) -> Result<(), CommandError> {
     for file in &flags.files {
-        let mut counts = Counts::default();
-        for episode in wayword_formats::read(file)? {
+        let mut counts = UnderstandingCounts::default();
+        for episode in wayword_formats::read_any_format(file)? {
             let scan = episode.scene.as_str();
             let is_in = |scans: &[String]| scans.iter().any(|one| one == scan);
             if (flags.scans.is_empty() || is_in(&flags.scans)) && !is_in(&flags.except) {
-                episode.instructions.iter().for_each(|text| counts.add(text));
+                episode.instructions.iter().for_each(|text| counts.add_text(text));
             }
         }
-        output.data(&(), format!("{}\n{}", file.display(), counts.lines(flags.show).join("\n")));
+        output.print_result(&(), format!("{}\n{}", file.display(), counts.report_lines(flags.show).join("\n")));
     }
     Ok(())
 }
 
 /// Counts over texts. The reader gets no names from evidence, so it has only its lexicon.
 #[derive(Debug, Default)]
-struct Counts {
+struct UnderstandingCounts {
     texts: usize,
     whole_texts: usize,
     words: usize,
@@ -52,9 +52,9 @@ struct Counts {
     unknown: BTreeMap<String, usize>,
 }
 
-impl Counts {
-    fn add(&mut self, text: &str) {
-        let Reading { words, clauses, .. } = read(text, &BTreeSet::new());
+impl UnderstandingCounts {
+    fn add_text(&mut self, text: &str) {
+        let TextReading { words, clauses, .. } = read_instruction(text, &BTreeSet::new());
         let counted = || words.iter().filter(|word| word.is_counted);
         let unknown = counted().filter(|word| !word.is_understood());
         let said = |span: [usize; 2]| text.get(span[0]..span[1]).unwrap_or_default().to_lowercase();
@@ -68,7 +68,7 @@ impl Counts {
         self.whole_texts += usize::from(spoken().all(|clause| clause.understood));
     }
 
-    fn lines(&self, show: usize) -> Vec<String> {
+    fn report_lines(&self, show: usize) -> Vec<String> {
         let share = |name: &str, part: usize, all: usize| {
             format!("{name:<52} {part:>7} of {all:>7}  {:>5.1} %", 100.0 * part as f64 / all.max(1) as f64)
         };
@@ -90,10 +90,10 @@ mod tests {
 
     #[test]
     fn words_and_clauses_are_counted_over_texts() {
-        let mut counts = Counts::default();
-        counts.add("Walk past the sofa. Stop at the zorble.");
-        counts.add("Grab the zorble!");
-        let lines = counts.lines(1).join("\n");
+        let mut counts = UnderstandingCounts::default();
+        counts.add_text("Walk past the sofa. Stop at the zorble.");
+        counts.add_text("Grab the zorble!");
+        let lines = counts.report_lines(1).join("\n");
         assert!(lines.contains("4 of       6   66.7 %") && lines.contains("not understood: zorble 2"), "{lines}");
         assert!(lines.contains("1 of       3   33.3 %") && lines.contains("0 of       2    0.0 %"), "{lines}");
     }

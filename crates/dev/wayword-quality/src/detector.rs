@@ -5,36 +5,36 @@
 //! in them are counted.
 
 use crate::{
-    eye::Named,
-    stage::{Stage, World},
+    eye::NamedObjectCounts,
+    stage::{MeasuredWorldArgs, MeasurementStage},
 };
 use rand::seq::SliceRandom;
 use std::{collections::BTreeSet, sync::Arc};
-use wayword_checks::{Evidence, Subject, check, detected::DetectorFigures};
-use wayword_core::{Check, Path, Style, Verdict, rng};
+use wayword_checks::{CheckSubject, Evidence, check_text, detected::DetectorFigures};
+use wayword_core::{CheckKind, InstructionStyle, Path, Verdict, seeded_rng};
 use wayword_experiments::perceive::measure_detector;
-use wayword_language::lexicon::{agree, normal, thing};
+use wayword_language::lexicon::{find_thing, names_agree, normalise_name};
 use wayword_run::{
-    error::Error,
-    looking_for::Lookout,
-    output::Output,
-    pipeline::{panoramas, path},
-    plan::Plan,
-    platforms::Remembering,
-    settings::{Job, Perception, Settings},
+    error::CommandError,
+    looking_for::DetectorLookout,
+    output::CommandOutput,
+    pipeline::{item_path, path_panoramas},
+    plan::RunPlan,
+    platforms::RememberingPlatform,
+    settings::{Perception, RunJob, RunSettings},
 };
 use wayword_synthesis::{
-    detection::{seek_claims, usual},
+    detection::{seek_claims, usual_nouns},
     walk::FrameSelection,
 };
 use wayword_testkit::PlayedDetector;
 
 /// The flags of `detector`.
 #[derive(Debug, clap::Args)]
-pub struct Flags {
+pub struct DetectorArgs {
     /// The platform.
     #[command(flatten)]
-    world: World,
+    world: MeasuredWorldArgs,
     /// Paths: the detector's figures are measured on every second one, and claims are made about the others.
     #[arg(long, default_value_t = 80)]
     paths: usize,
@@ -60,25 +60,25 @@ pub struct Flags {
 
 /// How many landmarks of a kind there were, and how many failed and passed.
 #[derive(Debug, Clone, Copy, Default)]
-struct Count {
+struct LandmarkVerdictCount {
     all: usize,
     failed: usize,
     passed: usize,
 }
 
-pub fn measure(flags: &Flags, output: &Output) -> Result<(), Error> {
-    let stage = Stage::new(&flags.world, flags.hallucinated)?;
-    let job = stage.job(flags.paths)?;
-    let job = Job { settings: Settings { frames: FrameSelection::Panoramic, ..job.settings }, ..job };
-    let mut plan = Plan::looking(&job, &stage.world)?;
+pub fn measure_played_detector(flags: &DetectorArgs, output: &CommandOutput) -> Result<(), CommandError> {
+    let stage = MeasurementStage::new(&flags.world, flags.hallucinated)?;
+    let job = stage.writing_job(flags.paths)?;
+    let job = RunJob { settings: RunSettings { frames: FrameSelection::Panoramic, ..job.settings }, ..job };
+    let mut plan = RunPlan::for_looking(&job, &stage.world)?;
     let items = std::mem::take(&mut plan.items);
     let (measured, claimed): (Vec<_>, Vec<_>) = items.into_iter().enumerate().partition(|(at, _)| at % 2 == 0);
     plan.items = measured.into_iter().map(|(_, item)| item).collect();
-    let found = measure_detector(&plan, usize::MAX, &lookout(flags, None), output)?;
+    let found = measure_detector(&plan, usize::MAX, &played_lookout(flags, None), output)?;
     plan.items = claimed.into_iter().map(|(_, item)| item).collect();
-    let (right, wrong, places) = claims(flags, &plan, &found.figures)?;
+    let (right, wrong, places) = judge_landmarks(flags, &plan, &found.figures)?;
     let share = |part: usize, whole: usize| 100.0 * part as f64 / whole.max(1) as f64;
-    let line = |name: &str, Count { all, failed, passed }: Count| {
+    let line = |name: &str, LandmarkVerdictCount { all, failed, passed }: LandmarkVerdictCount| {
         format!(
             "{name:<10} {all:>6} {:>7.1}% {:>10.1}% {:>7.1}%",
             share(passed, all),
@@ -98,71 +98,77 @@ pub fn measure(flags: &Flags, output: &Output) -> Result<(), Error> {
         line("wrong", wrong),
         format!("of those that failed, wrong: {:.1}%", share(wrong.failed, right.failed + wrong.failed)),
     ];
-    lines.extend(texts(flags, &stage, &found.figures)?);
-    output.data(&(), lines.join("\n"));
+    lines.extend(hallucination_lines(flags, &stage, &found.figures)?);
+    output.print_result(&(), lines.join("\n"));
     Ok(())
 }
 
 /// The played detector, with its measured figures, or with assumed ones where `figures` is `None`.
-fn lookout(flags: &Flags, figures: Option<&DetectorFigures>) -> Lookout {
-    let Flags { recall, alarms, repeats, .. } = *flags;
-    let played = PlayedDetector { same: agree, recall, alarms, repeats, seed: flags.world.seed };
-    let figures = figures.cloned().unwrap_or_else(|| DetectorFigures::assumed("played/detector", 0.5));
-    Lookout::new(Arc::new(played), figures, usual(std::iter::empty()))
+fn played_lookout(flags: &DetectorArgs, figures: Option<&DetectorFigures>) -> DetectorLookout {
+    let DetectorArgs { recall, alarms, repeats, .. } = *flags;
+    let played = PlayedDetector { same: names_agree, recall, alarms, repeats, seed: flags.world.seed };
+    let figures = figures.cloned().unwrap_or_else(|| DetectorFigures::for_unmeasured("played/detector", 0.5));
+    DetectorLookout::new(Arc::new(played), figures, usual_nouns(std::iter::empty()))
 }
 
 /// The verdicts on right landmarks and on wrong ones, and the number of different places on the paths.
-fn claims(flags: &Flags, plan: &Plan<'_>, figures: &DetectorFigures) -> Result<(Count, Count, usize), Error> {
-    let lookout = lookout(flags, Some(figures));
-    let pool = usual(std::iter::empty());
-    let (mut right, mut wrong, mut places) = (Count::default(), Count::default(), BTreeSet::new());
+fn judge_landmarks(
+    flags: &DetectorArgs,
+    plan: &RunPlan<'_>,
+    figures: &DetectorFigures,
+) -> Result<(LandmarkVerdictCount, LandmarkVerdictCount, usize), CommandError> {
+    let lookout = played_lookout(flags, Some(figures));
+    let pool = usual_nouns(std::iter::empty());
+    let (mut right, mut wrong, mut places) =
+        (LandmarkVerdictCount::default(), LandmarkVerdictCount::default(), BTreeSet::new());
     for item in &plan.items {
-        let world = Remembering::new(plan.platform);
-        let Ok(path) = path(item, &plan.job.settings, &world) else { continue };
-        let Some(labels) = Evidence::from_labels(&path, &panoramas(&world, &path)?) else { continue };
-        places.extend(path.frames.iter().map(|frame| (path.scene.clone(), frame.place())));
-        let things = labels.frames.iter().flat_map(|frame| &frame.things).map(|thing| normal(&thing.name));
+        let world = RememberingPlatform::new(plan.platform);
+        let Ok(path) = item_path(item, &plan.job.settings, &world) else { continue };
+        let Some(labels) = Evidence::from_labels(&path, &path_panoramas(&world, &path)?) else { continue };
+        places.extend(path.frames.iter().map(|frame| (path.scene.clone(), frame.place_key())));
+        let things = labels.frames.iter().flat_map(|frame| &frame.things).map(|thing| normalise_name(&thing.name));
         let there: BTreeSet<String> = things.filter(|name| is_landmark(name)).collect();
-        let absent = pool.iter().filter(|name| is_landmark(name) && !there.iter().any(|other| agree(other, name)));
-        let mut rng = rng(flags.world.seed, &["landmarks", &path.id]);
+        let absent =
+            pool.iter().filter(|name| is_landmark(name) && !there.iter().any(|other| names_agree(other, name)));
+        let mut rng = seeded_rng(flags.world.seed, &["landmarks", &path.id]);
         let mut some = |mut names: Vec<String>| {
             names.shuffle(&mut rng);
             names.truncate(flags.claims);
             names
         };
         let (there, absent) = (some(there.iter().cloned().collect()), some(absent.cloned().collect()));
-        let evidence = detected(&path, &world, there.iter().chain(&absent), &lookout)?;
-        there.iter().for_each(|name| right.add(judged(name, &evidence)));
-        absent.iter().for_each(|name| wrong.add(judged(name, &evidence)));
+        let evidence = detect_evidence(&path, &world, there.iter().chain(&absent), &lookout)?;
+        there.iter().for_each(|name| right.add_verdict(judge_landmark(name, &evidence)));
+        absent.iter().for_each(|name| wrong.add_verdict(judge_landmark(name, &evidence)));
     }
     Ok((right, wrong, places.len()))
 }
 
 /// Whether a text would use the thing as a landmark.
 fn is_landmark(name: &str) -> bool {
-    thing(name).is_some_and(|thing| thing.salience >= 2)
+    find_thing(name).is_some_and(|thing| thing.salience >= 2)
 }
 
-fn detected<'a>(
+fn detect_evidence<'a>(
     path: &Path,
-    world: &Remembering<'_>,
+    world: &RememberingPlatform<'_>,
     names: impl Iterator<Item = &'a String>,
-    lookout: &Lookout,
-) -> Result<Evidence, Error> {
-    let seen = seek_claims(world, path, &names.cloned().collect(), lookout.seeker())?;
+    lookout: &DetectorLookout,
+) -> Result<Evidence, CommandError> {
+    let seen = seek_claims(world, path, &names.cloned().collect(), lookout.to_seeker())?;
     Ok(Evidence::from_detector(path, &seen).unwrap_or_else(|| Evidence::of_path_alone(path)))
 }
 
 /// The verdict of the checks on a text that names one landmark.
-fn judged(name: &str, evidence: &Evidence) -> Verdict {
-    let style = Style { name: "claims".to_owned(), ..Style::default() };
-    let checked = check(&format!("Walk past the {name}."), Subject::closed(evidence, &style, None));
-    let landmarks = checked.findings.iter().filter(|finding| finding.check == Check::Landmarks);
+fn judge_landmark(name: &str, evidence: &Evidence) -> Verdict {
+    let style = InstructionStyle { name: "claims".to_owned(), ..InstructionStyle::default() };
+    let checked = check_text(&format!("Walk past the {name}."), CheckSubject::closed_world(evidence, &style, None));
+    let landmarks = checked.findings.iter().filter(|finding| finding.check == CheckKind::Landmarks);
     landmarks.map(|finding| finding.verdict).max().unwrap_or(Verdict::Unverified)
 }
 
-impl Count {
-    fn add(&mut self, verdict: Verdict) {
+impl LandmarkVerdictCount {
+    fn add_verdict(&mut self, verdict: Verdict) {
         self.all += 1;
         self.failed += usize::from(verdict == Verdict::Fail);
         self.passed += usize::from(verdict == Verdict::Pass);
@@ -170,17 +176,21 @@ impl Count {
 }
 
 /// The hallucinated objects of texts that were written from a flawed eye's captions, without the detector and with it.
-fn texts(flags: &Flags, stage: &Stage, figures: &DetectorFigures) -> Result<Vec<String>, Error> {
-    let job = stage.job(flags.texts)?;
-    let job = Job { settings: Settings { perception: Perception::Structured, ..job.settings }, ..job };
+fn hallucination_lines(
+    flags: &DetectorArgs,
+    stage: &MeasurementStage,
+    figures: &DetectorFigures,
+) -> Result<Vec<String>, CommandError> {
+    let job = stage.writing_job(flags.texts)?;
+    let job = RunJob { settings: RunSettings { perception: Perception::Structured, ..job.settings }, ..job };
     let mut lines = vec![
         format!("texts by an eye that hallucinates {:.0} %", 100.0 * flags.hallucinated),
         "detector  texts  rejected  objects  hallucinated  texts with one".to_owned(),
     ];
-    for (name, lookout) in [("without", None), ("with", Some(lookout(flags, Some(figures))))] {
-        let mut named = Named::default();
+    for (name, lookout) in [("without", None), ("with", Some(played_lookout(flags, Some(figures))))] {
+        let mut named = NamedObjectCounts::default();
         for made in stage.make_with(&job, lookout)?.0 {
-            named.count(&made?, &stage.world)?;
+            named.count_item(&made?, &stage.world)?;
         }
         lines.push(format!(
             "{name:<8} {:>6} {:>9} {:>8} {:>13} {:>14.1}%",

@@ -2,26 +2,26 @@
 //! of true texts may be doubted, and many of the turns that were flipped on purpose should be.
 
 use crate::{
-    corrupt_people::turned,
-    share::{Share, cell, table},
+    corrupt_people::flip_one_turn,
+    share::{ClusteredShare, aligned_table, share_cell},
 };
 use clap::Args;
 use rayon::prelude::*;
 use std::path::PathBuf;
-use wayword_core::{Grade, doubt::overlap, rng};
-use wayword_fit::fit_follower::texts::{Scene, Text, texts};
+use wayword_core::{DoubtGrade, doubt::spans_overlap, seeded_rng};
+use wayword_fit::fit_follower::texts::{FollowerScene, WalkedText, read_texts};
 use wayword_follower::{
-    Guide, Weights,
-    doubt::{Bounds, Site, Source, sites},
-    route::Known,
+    FeatureWeights, Guide,
+    doubt::{DoubtBounds, DoubtSite, DoubtSource, find_sites},
+    route::KnownWalk,
 };
-use wayword_run::{error::Error, output::Output};
+use wayword_run::{error::CommandError, output::CommandOutput};
 
 /// The table shows which gain these shares of the words exceed.
-const SHARES: [f64; 5] = [0.005, 0.01, 0.02, 0.05, 0.1];
+const EXCEEDING_SHARES: [f64; 5] = [0.005, 0.01, 0.02, 0.05, 0.1];
 
 #[derive(Debug, Args)]
-pub struct Flags {
+pub struct DoubtsArgs {
     /// File with people's texts, as R2R_train.json.
     file: PathBuf,
     /// Folder of Matterport3D's and REVERIE's data.
@@ -36,49 +36,51 @@ pub struct Flags {
 }
 
 /// The doubtful sites of a text as it is, and the grade of a turn that was flipped in it.
-struct Held {
+struct TextDoubtSites {
     /// The number of its scene.
     scene: usize,
-    sites: Vec<Site>,
+    sites: Vec<DoubtSite>,
     /// The grade of the words of a turn that was flipped; `None` without a turn.
-    flipped: Option<Option<Grade>>,
+    flipped: Option<Option<DoubtGrade>>,
 }
 
-pub fn measure(flags: &Flags, output: &Output) -> Result<(), Error> {
-    let (scenes, files) = texts(&flags.data, std::slice::from_ref(&flags.file))?;
-    let all: Vec<Text> = files.into_iter().flatten().collect();
+pub fn measure_doubts(flags: &DoubtsArgs, output: &CommandOutput) -> Result<(), CommandError> {
+    let (scenes, files) = read_texts(&flags.data, std::slice::from_ref(&flags.file))?;
+    let all: Vec<WalkedText> = files.into_iter().flatten().collect();
     let every = flags.limit.map_or(1, |limit| all.len().div_ceil(limit.max(1))).max(1);
     let picked: Vec<usize> = (0..all.len()).step_by(every).collect();
-    let held: Vec<Held> = picked.par_iter().map(|at| held(&scenes, &all[*at], *at, flags.seed)).collect();
-    output.data(&(), lines(&held, flags.seed).join("\n"));
+    let held: Vec<TextDoubtSites> =
+        picked.par_iter().map(|at| find_doubt_sites(&scenes, &all[*at], *at, flags.seed)).collect();
+    output.print_result(&(), report_lines(&held, flags.seed).join("\n"));
     Ok(())
 }
 
-fn held(scenes: &[Scene], text: &Text, at: usize, seed: u64) -> Held {
+fn find_doubt_sites(scenes: &[FollowerScene], text: &WalkedText, at: usize, seed: u64) -> TextDoubtSites {
     let found = |words: &str, guide: &Guide| {
         let building = &scenes[text.scene].building;
-        let known = Known { building, walk: &text.walk, heading_rad: text.heading_rad };
-        sites(words, guide, known, Weights::fitted())
+        let known = KnownWalk { building, walk: &text.walk, heading_rad: text.heading_rad };
+        find_sites(words, guide, known, FeatureWeights::fitted())
     };
-    let turned = turned(&text.words, &mut rng(seed, &["doubts", "turn", &at.to_string()]));
+    let turned = flip_one_turn(&text.words, &mut seeded_rng(seed, &["doubts", "turn", &at.to_string()]));
     let flipped = turned.map(|turned| {
         let place = text.words.bytes().zip(turned.bytes()).position(|(a, b)| a != b).unwrap_or_default();
-        let sites = found(&turned, &Guide::read(&turned));
-        let here = sites.iter().filter(|site| overlap(site.span, [place, place + 1]));
-        here.filter_map(|site| Bounds::default().grade(site.source, site.gain())).max()
+        let sites = found(&turned, &Guide::read_text(&turned));
+        let here = sites.iter().filter(|site| spans_overlap(site.span, [place, place + 1]));
+        here.filter_map(|site| DoubtBounds::default().grade_gain(site.source, site.best_gain())).max()
     });
-    Held { scene: text.scene, sites: found(&text.words, &text.guide), flipped }
+    TextDoubtSites { scene: text.scene, sites: found(&text.words, &text.guide), flipped }
 }
 
-fn lines(held: &[Held], seed: u64) -> Vec<String> {
-    let mut rows = vec![head()];
-    rows.extend(Source::ALL.into_iter().map(|source| row(held, source)));
-    let share = |is: &dyn Fn(&Held) -> Option<bool>| {
+fn report_lines(held: &[TextDoubtSites], seed: u64) -> Vec<String> {
+    let mut rows = vec![table_head()];
+    rows.extend(DoubtSource::ALL.into_iter().map(|source| source_row(held, source)));
+    let share = |is: &dyn Fn(&TextDoubtSites) -> Option<bool>| {
         let cases = held.iter().filter_map(|text| Some((text.scene, is(text)?)));
-        cell(Share::of(cases, seed).as_ref())
+        share_cell(ClusteredShare::from_cases(cases, seed).as_ref())
     };
-    let mut lines = vec![table(&rows), format!("{} texts; intervals of 95 %, clustered by building", held.len())];
-    for grade in Grade::ALL {
+    let mut lines =
+        vec![aligned_table(&rows), format!("{} texts; intervals of 95 %, clustered by building", held.len())];
+    for grade in DoubtGrade::ALL {
         let own = share(&|text| Some(text.sites.iter().any(|site| at_least(site, grade))));
         let flipped = share(&|text| Some(text.flipped? >= Some(grade)));
         let name = grade.name();
@@ -87,27 +89,27 @@ fn lines(held: &[Held], seed: u64) -> Vec<String> {
     lines
 }
 
-fn at_least(site: &Site, grade: Grade) -> bool {
-    Bounds::default().grade(site.source, site.gain()) >= Some(grade)
+fn at_least(site: &DoubtSite, grade: DoubtGrade) -> bool {
+    DoubtBounds::default().grade_gain(site.source, site.best_gain()) >= Some(grade)
 }
 
-fn head() -> Vec<String> {
-    let shares = SHARES.map(|share| format!("{} %", 100.0 * share));
+fn table_head() -> Vec<String> {
+    let shares = EXCEEDING_SHARES.map(|share| format!("{} %", 100.0 * share));
     let names = ["change of", "words"].map(str::to_owned).into_iter().chain(shares);
-    names.chain(Grade::ALL.map(|grade| format!("{} or worse", grade.name()))).collect()
+    names.chain(DoubtGrade::ALL.map(|grade| format!("{} or worse", grade.name()))).collect()
 }
 
-/// A row of the table: the gains that [`SHARES`] of the words exceed, and the shares of words that the bounds call doubtful.
-fn row(held: &[Held], source: Source) -> Vec<String> {
+/// A row of the table: the gains that [`EXCEEDING_SHARES`] of the words exceed, and the shares of words that the bounds call doubtful.
+fn source_row(held: &[TextDoubtSites], source: DoubtSource) -> Vec<String> {
     let of_source = || held.iter().flat_map(|text| &text.sites).filter(move |site| site.source == source);
-    let mut gains: Vec<f64> = of_source().map(Site::gain).collect();
+    let mut gains: Vec<f64> = of_source().map(DoubtSite::best_gain).collect();
     gains.sort_by(|a, b| b.total_cmp(a));
     let at = |share: f64| gains.get((share * gains.len() as f64) as usize).map(|gain| format!("{gain:.2}"));
-    let doubted = |grade: Grade| {
+    let doubted = |grade: DoubtGrade| {
         let count = of_source().filter(|site| at_least(site, grade)).count();
         format!("{:.1} %", 100.0 * count as f64 / gains.len().max(1) as f64)
     };
     let named = [source.name().to_owned(), gains.len().to_string()].into_iter();
-    let shares = SHARES.map(|share| at(share).unwrap_or_else(|| "-".into()));
-    named.chain(shares).chain(Grade::ALL.map(doubted)).collect()
+    let shares = EXCEEDING_SHARES.map(|share| at(share).unwrap_or_else(|| "-".into()));
+    named.chain(shares).chain(DoubtGrade::ALL.map(doubted)).collect()
 }

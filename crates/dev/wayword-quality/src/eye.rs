@@ -1,23 +1,23 @@
 //! Measures whether the dialogue removes hallucinated objects: counts them in captions and in instructions, for each way of asking a
 //! scripted, flawed model about the pictures.
 
-use crate::stage::{CARELESSNESS, Stage, World};
+use crate::stage::{MeasuredWorldArgs, MeasurementStage, TEXT_ROLE_ERROR_SHARE};
 use std::collections::BTreeSet;
 use wayword_checks::Evidence;
 use wayword_core::Platform;
-use wayword_experiments::perceive::{Extent, perceive};
-use wayword_language::reading::{What, read};
+use wayword_experiments::perceive::{MeasurementExtent, measure_perception};
+use wayword_language::reading::{EventContent, read_instruction};
 use wayword_run::{
-    error::Error,
-    output::Output,
-    pipeline::{Made, panoramas},
-    settings::{Job, Perception, Settings},
+    error::CommandError,
+    output::CommandOutput,
+    pipeline::{MadeItem, path_panoramas},
+    settings::{Perception, RunJob, RunSettings},
 };
-use wayword_synthesis::repair::Outcome;
+use wayword_synthesis::repair::WritingOutcome;
 
 /// Counts of the objects that instructions name, and of those that no label along the path confirms.
 #[derive(Debug, Default)]
-pub(super) struct Named {
+pub(super) struct NamedObjectCounts {
     pub(super) texts: usize,
     pub(super) rejected: usize,
     finished_by_rules: usize,
@@ -26,17 +26,17 @@ pub(super) struct Named {
     pub(super) with_hallucinations: usize,
 }
 
-pub fn measure(
-    world: &World,
+pub fn measure_eye(
+    world: &MeasuredWorldArgs,
     views: usize,
     paths: usize,
     hallucinated_share: f64,
-    output: &Output,
-) -> Result<(), Error> {
-    let stage = Stage::new(world, hallucinated_share)?;
+    output: &CommandOutput,
+) -> Result<(), CommandError> {
+    let stage = MeasurementStage::new(world, hallucinated_share)?;
     let ways = [Perception::Fixed, Perception::Single, Perception::Dialogue];
-    let extent = Extent { views, show: 0 };
-    let captions = perceive(&stage.world, &stage.job(views)?, extent, &ways, output)?;
+    let extent = MeasurementExtent { views, show: 0 };
+    let captions = measure_perception(&stage.world, &stage.writing_job(views)?, extent, &ways, output)?;
     let mut lines = vec![
         format!(
             "{} views of {}, and instructions for {paths} paths; a scripted eye that names {:.0} % hallucinated objects and denies 70 % of \
@@ -44,17 +44,17 @@ pub fn measure(
             captions.views,
             captions.platform,
             100.0 * hallucinated_share,
-            100.0 * CARELESSNESS
+            100.0 * TEXT_ROLE_ERROR_SHARE
         ),
         "asked     caption: hallucinated  with one  precision  recall  calls/view | instruction: hallucinated  with one  by rules  rejected"
             .to_owned(),
     ];
     for row in &captions.rows {
-        let job = stage.job(paths)?;
-        let job = Job { settings: Settings { perception: row.perception, ..job.settings }, ..job };
-        let mut named = Named::default();
-        for made in stage.make(&job)?.0 {
-            named.count(&made?, &stage.world)?;
+        let job = stage.writing_job(paths)?;
+        let job = RunJob { settings: RunSettings { perception: row.perception, ..job.settings }, ..job };
+        let mut named = NamedObjectCounts::default();
+        for made in stage.make_items(&job)?.0 {
+            named.count_item(&made?, &stage.world)?;
         }
         lines.push(format!(
             "{:<9}{:>21.1}% {:>8.1}% {:>9.1}% {:>6.1}% {:>11.1} | {:>24.1}% {:>8.1}% {:>9} {:>9}",
@@ -70,24 +70,24 @@ pub fn measure(
             named.rejected
         ));
     }
-    output.data(&(), lines.join("\n"));
+    output.print_result(&(), lines.join("\n"));
     Ok(())
 }
 
-impl Named {
-    pub(super) fn count(&mut self, made: &Made, world: &dyn Platform) -> Result<(), Error> {
-        let panoramas = panoramas(world, &made.walk.path)?;
+impl NamedObjectCounts {
+    pub(super) fn count_item(&mut self, made: &MadeItem, world: &dyn Platform) -> Result<(), CommandError> {
+        let panoramas = path_panoramas(world, &made.walk.path)?;
         let Some(labels) = Evidence::from_labels(&made.walk.path, &panoramas) else { return Ok(()) };
         for outcome in &made.outcomes {
-            let Outcome::Accepted(instruction) = outcome else {
+            let WritingOutcome::Accepted(instruction) = outcome else {
                 self.rejected += 1;
                 continue;
             };
             self.texts += 1;
             self.finished_by_rules += usize::from(instruction.provenance.finished_for.is_some());
-            let reading = read(&instruction.text, &BTreeSet::new());
+            let reading = read_instruction(&instruction.text, &BTreeSet::new());
             let things = reading.events.iter().filter_map(|event| match &event.what {
-                What::Place(place) if place.is_thing && !place.is_room => Some(place.name.as_str()),
+                EventContent::Place(place) if place.is_thing && !place.is_room => Some(place.name.as_str()),
                 _ => None,
             });
             // An object that the labels neither confirm nor deny is not counted at all.
@@ -105,29 +105,29 @@ impl Named {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::made_up::{Building, instruction};
-    use wayword_run::{item::items, platforms};
-    use wayword_synthesis::walk::Walk;
+    use crate::made_up::{TestBuildingFolder, test_instruction};
+    use wayword_run::{item::run_items, platforms};
+    use wayword_synthesis::walk::ObservedWalk;
 
     /// A path of the made-up building from the entryway, which has a bench, with these outcomes.
-    fn counted(outcomes: Vec<Outcome>) -> Named {
-        let building = Building::new();
-        let stage = Stage::new(&building.world(), 0.15).unwrap();
-        let mut settings = stage.job(1).unwrap().settings;
-        settings.episodes = Some(building.data().join("reverie/REVERIE_val_seen.json"));
-        let world = platforms::open_named("matterport", Some(&building.data()), None, None).unwrap();
-        let first = items(&settings, world.as_ref()).unwrap().remove(0);
-        let path = first.path(&settings, world.as_ref()).unwrap();
-        let made = Made { walk: Walk::new(path, Vec::new()), outcomes, pictures: Vec::new() };
-        let mut named = Named::default();
-        named.count(&made, world.as_ref()).unwrap();
+    fn counted(outcomes: Vec<WritingOutcome>) -> NamedObjectCounts {
+        let building = TestBuildingFolder::new();
+        let stage = MeasurementStage::new(&building.matterport_world(), 0.15).unwrap();
+        let mut settings = stage.writing_job(1).unwrap().settings;
+        settings.episodes = Some(building.data_folder().join("reverie/REVERIE_val_seen.json"));
+        let world = platforms::open_named("matterport", Some(&building.data_folder()), None, None).unwrap();
+        let first = run_items(&settings, world.as_ref()).unwrap().remove(0);
+        let path = first.find_path(&settings, world.as_ref()).unwrap();
+        let made = MadeItem { walk: ObservedWalk::new(path, Vec::new()), outcomes, pictures: Vec::new() };
+        let mut named = NamedObjectCounts::default();
+        named.count_item(&made, world.as_ref()).unwrap();
         named
     }
 
     /// Of three objects that two texts name, a piano is nowhere in the building.
     #[test]
     fn an_object_that_no_label_along_the_path_confirms_is_hallucinated() {
-        let text = |text: &str| Outcome::Accepted(instruction("r2r", text, &[]));
+        let text = |text: &str| WritingOutcome::Accepted(test_instruction("r2r", text, &[]));
         let named = counted(vec![
             text("Walk past the bench. Stop at the piano."),
             text("Walk past the bench. Stop in the hallway."),
@@ -142,11 +142,11 @@ mod tests {
 
     #[test]
     fn texts_that_were_rejected_or_that_rules_finished_are_counted_apart() {
-        let mut finished = instruction("r2r", "Walk past the bench.", &[]);
+        let mut finished = test_instruction("r2r", "Walk past the bench.", &[]);
         finished.provenance.finished_for = Some("server/words".into());
         let named = counted(vec![
-            Outcome::Accepted(finished),
-            Outcome::Rejected { last: None, reason: "there is no text".into() },
+            WritingOutcome::Accepted(finished),
+            WritingOutcome::Rejected { last: None, reason: "there is no text".into() },
         ]);
         assert_eq!((named.texts, named.rejected, named.finished_by_rules), (1, 1, 1), "{named:?}");
     }

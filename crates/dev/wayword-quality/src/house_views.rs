@@ -1,23 +1,23 @@
 //! Counts the views on walks through generated houses that show mostly bare wall, and measures the processor time of a view.
 
-use crate::share::Share;
+use crate::share::ClusteredShare;
 use clap::Args;
 use serde::Serialize;
 use std::{collections::BTreeMap, fmt, time::Duration};
-use wayword_core::{Gaze, PathRequest, Platform, Pose, seed::derive};
-use wayword_house::{HousePlatform, HouseScene, Role, generate};
-use wayword_render::Camera;
-use wayword_run::{error::Error, output::Output};
+use wayword_core::{PathRequest, Platform, Pose, ViewGaze, seed::derive_seed};
+use wayword_house::{HousePlatform, HouseScene, ObjectRole, generate_house};
+use wayword_render::PinholeCamera;
+use wayword_run::{error::CommandError, output::CommandOutput};
 use wayword_testkit::resources;
 
 /// From this share of a picture on, it counts as a picture of bare wall.
-const HALF: f64 = 0.5;
+const BARE_WALL_SHARE: f64 = 0.5;
 /// Width and height of the pictures, pixels.
 const SIZE_PX: [u32; 2] = [640, 480];
 
 /// The flags of `house-views`.
 #[derive(Debug, Args)]
-pub struct Flags {
+pub struct HouseViewsArgs {
     /// How many houses.
     #[arg(long, default_value_t = 20)]
     houses: u64,
@@ -37,9 +37,9 @@ pub struct Flags {
 
 /// The figures that are printed.
 #[derive(Debug, Serialize)]
-struct Told {
+struct BareWallReport {
     /// Views of which at least half is bare wall, by walk.
-    half_wall: Option<Share>,
+    half_wall: Option<ClusteredShare>,
     /// The number of bare views and of all views, by the walker's room.
     rooms: BTreeMap<&'static str, [usize; 2]>,
     /// Processor time of a view, milliseconds.
@@ -47,41 +47,45 @@ struct Told {
 }
 
 /// One view on a walk.
-struct Seen {
+struct WalkedView {
     walk: (u64, u64),
     room: &'static str,
     is_bare: bool,
 }
 
-pub fn measure(flags: &Flags, output: &Output) -> Result<(), Error> {
+pub fn measure_house_views(flags: &HouseViewsArgs, output: &CommandOutput) -> Result<(), CommandError> {
     let (mut seen, mut spent) = (Vec::new(), Duration::ZERO);
     for house in flags.first..flags.first.saturating_add(flags.houses) {
-        let home = HouseScene::new(generate(house)).map_err(|error| refused(house, &error))?;
-        for (walk, pose) in poses(flags, house)? {
-            let before = resources::cpu();
-            let camera = Camera::level(pose.position, Gaze::quarter(pose.heading), SIZE_PX);
-            let picture = home.picture(&camera).map_err(|error| refused(house, &error))?;
-            spent += resources::cpu().saturating_sub(before);
+        let home = HouseScene::new(generate_house(house)).map_err(|error| drawing_error(house, &error))?;
+        for (walk, pose) in walk_poses(flags, house)? {
+            let before = resources::processor_time();
+            let camera = PinholeCamera::for_level_gaze(pose.position, ViewGaze::quarter_view(pose.heading), SIZE_PX);
+            let picture = home.render_picture(&camera).map_err(|error| drawing_error(house, &error))?;
+            spent += resources::processor_time().saturating_sub(before);
             let eye = pose.position;
             let room = home.house.room_at(eye.x, eye.y, eye.z).map_or("nowhere", |room| room.kind.word());
-            seen.push(Seen { walk: (house, walk), room, is_bare: bare_share(&home, &picture.ids) >= HALF });
+            seen.push(WalkedView {
+                walk: (house, walk),
+                room,
+                is_bare: bare_share(&home, &picture.ids) >= BARE_WALL_SHARE,
+            });
         }
     }
-    let told = told(&seen, flags.seed, spent);
-    output.data(&told, &told);
+    let told = summarise_views(&seen, flags.seed, spent);
+    output.print_result(&told, &told);
     Ok(())
 }
 
-fn refused(house: u64, error: &dyn std::error::Error) -> Error {
-    Error::usage(format!("house {house} cannot be drawn: {error}"), "choose other houses with --first")
+fn drawing_error(house: u64, error: &dyn std::error::Error) -> CommandError {
+    CommandError::usage(format!("house {house} cannot be drawn: {error}"), "choose other houses with --first")
 }
 
 /// Each frame of the walks through a house, with the number of its walk.
-fn poses(flags: &Flags, house: u64) -> Result<Vec<(u64, Pose)>, Error> {
+fn walk_poses(flags: &HouseViewsArgs, house: u64) -> Result<Vec<(u64, Pose)>, CommandError> {
     let (platform, scene) = (HousePlatform::default(), HousePlatform::scene_of(house)?);
     let mut poses = Vec::new();
     for walk in 0..flags.walks {
-        let seed = derive(flags.seed, &["house views", &house.to_string(), &walk.to_string()]);
+        let seed = derive_seed(flags.seed, &["house views", &house.to_string(), &walk.to_string()]);
         let path = platform.sample_path(&scene, &PathRequest::default(), seed)?;
         poses.extend(path.frames.iter().map(|frame| (walk, frame.pose)));
     }
@@ -90,24 +94,24 @@ fn poses(flags: &Flags, house: u64) -> Result<Vec<(u64, Pose)>, Error> {
 
 /// The share of a picture's pixels that show the wall itself. Hangings, doors and windows are objects with ids of their own.
 fn bare_share(home: &HouseScene, ids: &[u32]) -> f64 {
-    let is_wall = |id: &&u32| home.objects.get(id).is_some_and(|it| it.role == Role::Shell && it.name == "wall");
+    let is_wall = |id: &&u32| home.objects.get(id).is_some_and(|it| it.role == ObjectRole::Shell && it.name == "wall");
     ids.iter().filter(is_wall).count() as f64 / ids.len().max(1) as f64
 }
 
-fn told(seen: &[Seen], seed: u64, spent: Duration) -> Told {
+fn summarise_views(seen: &[WalkedView], seed: u64, spent: Duration) -> BareWallReport {
     let mut rooms: BTreeMap<&'static str, [usize; 2]> = BTreeMap::new();
     for view in seen {
         let [bare, all] = rooms.entry(view.room).or_default();
         (*bare, *all) = (*bare + usize::from(view.is_bare), *all + 1);
     }
-    Told {
-        half_wall: Share::of(seen.iter().map(|view| (view.walk, view.is_bare)), seed),
+    BareWallReport {
+        half_wall: ClusteredShare::from_cases(seen.iter().map(|view| (view.walk, view.is_bare)), seed),
         rooms,
         cpu_ms: 1000.0 * spent.as_secs_f64() / seen.len().max(1) as f64,
     }
 }
 
-impl fmt::Display for Told {
+impl fmt::Display for BareWallReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let share = self.half_wall.as_ref().map_or("-".to_owned(), ToString::to_string);
         write!(f, "views of which half or more is bare wall: {share}")?;
@@ -124,7 +128,7 @@ mod tests {
 
     #[test]
     fn bare_share_counts_walls_without_their_hangings() {
-        let home = HouseScene::new(generate(3)).unwrap();
+        let home = HouseScene::new(generate_house(3)).unwrap();
         let number = |named: &str| *home.objects.iter().find(|(_, object)| object.name == named).unwrap().0;
         let (wall, painting, floor) = (number("wall"), number("painting"), number("floor"));
         assert!((bare_share(&home, &[wall, wall, painting, floor]) - 0.5).abs() < 1e-9);
@@ -133,8 +137,12 @@ mod tests {
 
     #[test]
     fn views_are_counted_by_room() {
-        let view = |room, is_bare| Seen { walk: (0, 0), room, is_bare };
-        let told = told(&[view("hallway", true), view("hallway", false), view("kitchen", false)], 0, Duration::ZERO);
+        let view = |room, is_bare| WalkedView { walk: (0, 0), room, is_bare };
+        let told = summarise_views(
+            &[view("hallway", true), view("hallway", false), view("kitchen", false)],
+            0,
+            Duration::ZERO,
+        );
         assert_eq!(told.rooms, BTreeMap::from([("hallway", [1, 2]), ("kitchen", [0, 1])]));
         assert_eq!(told.half_wall.map(|share| (share.count, share.of)), Some((1, 3)));
     }

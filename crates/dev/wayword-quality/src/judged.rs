@@ -3,19 +3,19 @@
 use clap::Args;
 use serde_json::{Map, Value};
 use std::path::Path;
-use wayword_core::{Doubt, Finding};
+use wayword_core::{CheckFinding, TextDoubt};
 use wayword_formats::{Episode, FormatError, r2r, reverie};
 use wayword_run::{
-    check::{CheckReport, args::Check, checked},
-    error::Error,
-    output::Output,
+    check::{CheckReport, args::CheckArgs, check_texts},
+    error::CommandError,
+    output::CommandOutput,
 };
 
 /// The flags of a measurement that runs `wayword check`: all that `check` has, so that a new one needs no change here.
 #[derive(Debug, Args)]
-pub struct Judging {
+pub struct JudgingArgs {
     #[command(flatten)]
-    pub(crate) check: Check,
+    pub(crate) check: CheckArgs,
     /// Seed of the intervals.
     #[arg(long, default_value_t = 0)]
     pub(crate) seed: u64,
@@ -25,11 +25,11 @@ pub struct Judging {
 }
 
 /// The report of `check`, sorted by text.
-pub(crate) struct Judged {
+pub(crate) struct CheckedTexts {
     /// For each text, in the order given, the findings that did not pass.
-    pub(crate) findings: Vec<Vec<Finding>>,
+    pub(crate) findings: Vec<Vec<CheckFinding>>,
     /// For each text, the words that a reader should doubt; empty unless doubts were asked for.
-    pub(crate) doubts: Vec<Vec<Doubt>>,
+    pub(crate) doubts: Vec<Vec<TextDoubt>>,
     /// The rest of the report of `check`.
     pub(crate) report: Map<String, Value>,
 }
@@ -38,23 +38,27 @@ pub(crate) struct Judged {
 ///
 /// # Errors
 /// As `wayword check`.
-pub(crate) fn judged(texts: &[(&Episode, &str)], mut check: Check, output: &Output) -> Result<Judged, Error> {
-    let io = |source| Error::Io { path: std::env::temp_dir(), doing: "write a file of texts in", source };
+pub(crate) fn check_in_memory(
+    texts: &[(&Episode, &str)],
+    mut check: CheckArgs,
+    output: &CommandOutput,
+) -> Result<CheckedTexts, CommandError> {
+    let io = |source| CommandError::Io { path: std::env::temp_dir(), doing: "write a file of texts in", source };
     let folder = tempfile::tempdir().map_err(io)?;
     check.file = folder.path().join("texts.json");
-    let items: Vec<Episode> = texts.iter().enumerate().map(|(at, (of, text))| item(at, of, text)).collect();
+    let items: Vec<Episode> = texts.iter().enumerate().map(|(at, (of, text))| text_item(at, of, text)).collect();
     write_items(&check.file, &items)?;
-    sorted(&checked(&check, output)?, texts.len())
+    sort_findings(&check_texts(&check, output)?, texts.len())
 }
 
 /// Writes items in the format of REVERIE where they have objects, and else of R2R.
 pub(crate) fn write_items(file: &Path, items: &[Episode]) -> Result<(), FormatError> {
     let has_objects = items.iter().any(|item| item.target_object.is_some());
-    if has_objects { reverie::write(file, items) } else { r2r::write(file, items) }
+    if has_objects { reverie::write_reverie_file(file, items) } else { r2r::write_r2r_file(file, items) }
 }
 
 /// An item for one text. `check` tells items apart by their names, so the name is the text's number.
-pub(crate) fn item(number: usize, of: &Episode, text: &str) -> Episode {
+pub(crate) fn text_item(number: usize, of: &Episode, text: &str) -> Episode {
     let mut item = Episode::new(number.to_string(), number.to_string(), of.scene.clone());
     item.viewpoints.clone_from(&of.viewpoints);
     item.start_heading = of.start_heading;
@@ -63,13 +67,13 @@ pub(crate) fn item(number: usize, of: &Episode, text: &str) -> Episode {
     item
 }
 
-fn sorted(report: &CheckReport, texts: usize) -> Result<Judged, Error> {
+fn sort_findings(report: &CheckReport, texts: usize) -> Result<CheckedTexts, CommandError> {
     let (mut findings, mut doubts) = (vec![Vec::new(); texts], vec![Vec::new(); texts]);
     for text in &report.not_passed {
-        findings[number(&text.path, texts)?].extend(text.findings.iter().cloned());
+        findings[text_number(&text.path, texts)?].extend(text.findings.iter().cloned());
     }
     for text in &report.doubted {
-        doubts[number(&text.path, texts)?].extend(text.doubts.iter().cloned());
+        doubts[text_number(&text.path, texts)?].extend(text.doubts.iter().cloned());
     }
     let mut rest = match serde_json::to_value(report) {
         Ok(Value::Object(rest)) => rest,
@@ -79,18 +83,19 @@ fn sorted(report: &CheckReport, texts: usize) -> Result<Judged, Error> {
     for list in ["not_passed", "ambiguous_texts", "doubted"] {
         rest.shift_remove(list);
     }
-    Ok(Judged { findings, doubts, report: rest })
+    Ok(CheckedTexts { findings, doubts, report: rest })
 }
 
 /// The number of a text, by the name that its item has here. REVERIE's names end in the object.
-fn number(path: &str, texts: usize) -> Result<usize, Error> {
+fn text_number(path: &str, texts: usize) -> Result<usize, CommandError> {
     let number = path.split('_').next().and_then(|number| number.parse::<usize>().ok());
-    let unknown = || Error::usage(format!("check named an item {path} that there is not"), "report this as a bug");
+    let unknown =
+        || CommandError::usage(format!("check named an item {path} that there is not"), "report this as a bug");
     number.filter(|number| *number < texts).ok_or_else(unknown)
 }
 
 /// A line for each field of the report of `check` that is words or counts, such as the evidence.
-pub(crate) fn said_of(report: &Map<String, Value>) -> Vec<String> {
+pub(crate) fn report_words(report: &Map<String, Value>) -> Vec<String> {
     let words = |value: &Value| match value {
         Value::String(word) => Some(word.clone()),
         Value::Array(list) => list.iter().map(Value::as_str).collect::<Option<Vec<_>>>().map(|list| list.join(", ")),
@@ -106,7 +111,7 @@ pub(crate) fn said_of(report: &Map<String, Value>) -> Vec<String> {
 }
 
 /// Whether a finding is about words of this byte range.
-pub(crate) fn is_about(finding: &Finding, [from, to]: [usize; 2]) -> bool {
+pub(crate) fn is_about(finding: &CheckFinding, [from, to]: [usize; 2]) -> bool {
     finding.span.is_some_and(|[start, end]| start < to && from < end)
 }
 
@@ -122,6 +127,6 @@ mod tests {
             "by_check": { "route": { "passed": 2, "unverified": 0, "failed": 0 } },
         });
         let Value::Object(report) = report else { unreachable!() };
-        assert_eq!(said_of(&report), ["checked against: labels", "worlds: open (40)"]);
+        assert_eq!(report_words(&report), ["checked against: labels", "worlds: open (40)"]);
     }
 }

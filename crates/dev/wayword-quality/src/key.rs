@@ -2,30 +2,30 @@
 
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
-use wayword_run::error::Error;
+use wayword_run::error::CommandError;
 use wayword_world::files;
 
 /// The format of a key, with its version.
-const FORMAT: &str = "wayword-corruptions/1";
+const KEY_FORMAT: &str = "wayword-corruptions/1";
 /// Largest key, bytes.
 const MOST_BYTES: u64 = 256 << 20;
-const HINT: &str = "give the key that was written with the texts";
+const KEY_HINT: &str = "give the key that was written with the texts";
 
 /// The changes in the texts of a file.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Key {
+pub(crate) struct CorruptionKey {
     format: String,
     /// The seed that the changes were drawn with.
     pub(crate) seed: u64,
     /// One entry for each text.
-    pub(crate) corruptions: Vec<Corruption>,
+    pub(crate) corruptions: Vec<TextCorruption>,
 }
 
 /// The changes in one text.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Corruption {
+pub(crate) struct TextCorruption {
     /// The id of the item with the changed text.
     pub(crate) item: String,
     /// The id of the item that had the original text.
@@ -37,13 +37,13 @@ pub(crate) struct Corruption {
     /// The kind of corruption.
     pub(crate) kind: String,
     /// The changes, in the order of the text.
-    pub(crate) changes: Vec<Change>,
+    pub(crate) changes: Vec<WordChange>,
 }
 
 /// One stretch of words that was replaced.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Change {
+pub(crate) struct WordChange {
     /// Byte range of the new words in the new text.
     pub(crate) span: [usize; 2],
     /// The old words.
@@ -54,7 +54,7 @@ pub(crate) struct Change {
 
 /// New words for a stretch of a text.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Edit {
+pub(crate) struct WordEdit {
     /// Byte range of the old words in the old text.
     pub(crate) span: [usize; 2],
     /// The new words.
@@ -62,15 +62,15 @@ pub(crate) struct Edit {
 }
 
 /// Applies edits to a text. Returns the new text and its changes; `None` where two edits overlap or one is outside the text.
-pub(crate) fn edited(text: &str, mut edits: Vec<Edit>) -> Option<(String, Vec<Change>)> {
+pub(crate) fn apply_edits(text: &str, mut edits: Vec<WordEdit>) -> Option<(String, Vec<WordChange>)> {
     edits.sort_by_key(|edit| edit.span);
     let mut new = String::new();
     let mut from = 0;
     let mut changes = Vec::new();
-    for Edit { span, now } in edits {
+    for WordEdit { span, now } in edits {
         new.push_str(text.get(from..span[0])?);
         let was = text.get(span[0]..span[1])?.to_owned();
-        changes.push(Change { span: [new.len(), new.len() + now.len()], was, now: now.clone() });
+        changes.push(WordChange { span: [new.len(), new.len() + now.len()], was, now: now.clone() });
         new.push_str(&now);
         from = span[1];
     }
@@ -79,11 +79,11 @@ pub(crate) fn edited(text: &str, mut edits: Vec<Edit>) -> Option<(String, Vec<Ch
 }
 
 /// Undoes changes. Returns the old text and the byte ranges of the old words; `None` where the text does not have the changed words.
-pub(crate) fn undone(text: &str, changes: &[Change]) -> Option<(String, Vec<[usize; 2]>)> {
+pub(crate) fn undo_changes(text: &str, changes: &[WordChange]) -> Option<(String, Vec<[usize; 2]>)> {
     let mut old = String::new();
     let mut from = 0;
     let mut spans = Vec::new();
-    for Change { span, was, now } in changes {
+    for WordChange { span, was, now } in changes {
         old.push_str(text.get(from..span[0])?);
         if text.get(span[0]..span[1])? != now {
             return None;
@@ -96,28 +96,28 @@ pub(crate) fn undone(text: &str, changes: &[Change]) -> Option<(String, Vec<[usi
     Some((old, spans))
 }
 
-impl Key {
-    pub(crate) fn new(seed: u64, corruptions: Vec<Corruption>) -> Self {
-        Self { format: FORMAT.to_owned(), seed, corruptions }
+impl CorruptionKey {
+    pub(crate) fn new(seed: u64, corruptions: Vec<TextCorruption>) -> Self {
+        Self { format: KEY_FORMAT.to_owned(), seed, corruptions }
     }
 
     /// The default path of the key of a file of texts: `FILE.key.json` next to `FILE.json`.
-    pub(crate) fn beside(texts: &Path) -> PathBuf {
+    pub(crate) fn path_for_texts(texts: &Path) -> PathBuf {
         texts.with_extension("key.json")
     }
 
-    pub(crate) fn write(&self, file: &Path) -> Result<(), Error> {
+    pub(crate) fn write(&self, file: &Path) -> Result<(), CommandError> {
         let text = serde_json::to_string_pretty(self).map_err(std::io::Error::from);
-        text.and_then(|text| std::fs::write(file, text + "\n")).map_err(Error::io(file, "write it"))
+        text.and_then(|text| std::fs::write(file, text + "\n")).map_err(CommandError::io(file, "write it"))
     }
 
-    pub(crate) fn read(file: &Path) -> Result<Self, Error> {
-        let wrong = |problem: String| Error::usage(format!("{}: {problem}", file.display()), HINT);
-        let bytes = files::json_if_there(file, MOST_BYTES, HINT)?;
+    pub(crate) fn read(file: &Path) -> Result<Self, CommandError> {
+        let wrong = |problem: String| CommandError::usage(format!("{}: {problem}", file.display()), KEY_HINT);
+        let bytes = files::json_if_there(file, MOST_BYTES, KEY_HINT)?;
         let bytes = bytes.ok_or_else(|| wrong("there is no such file".to_owned()))?;
         let key: Self = serde_json::from_slice(&bytes).map_err(|error| wrong(error.to_string()))?;
-        if key.format != FORMAT {
-            return Err(wrong(format!("its format is {:?}, not {FORMAT:?}", key.format)));
+        if key.format != KEY_FORMAT {
+            return Err(wrong(format!("its format is {:?}, not {KEY_FORMAT:?}", key.format)));
         }
         Ok(key)
     }
@@ -130,22 +130,24 @@ mod tests {
     #[test]
     fn undone_restores_an_edited_text() {
         let text = "Turn left at the sofa.";
-        let edits =
-            vec![Edit { span: [17, 21], now: "grand piano".into() }, Edit { span: [5, 9], now: "right".into() }];
-        let (new, changes) = edited(text, edits.clone()).unwrap();
+        let edits = vec![
+            WordEdit { span: [17, 21], now: "grand piano".into() },
+            WordEdit { span: [5, 9], now: "right".into() },
+        ];
+        let (new, changes) = apply_edits(text, edits.clone()).unwrap();
         assert_eq!(new, "Turn right at the grand piano.");
         assert!(changes.iter().all(|change| new[change.span[0]..change.span[1]] == change.now));
-        assert_eq!(undone(&new, &changes), Some((text.to_owned(), vec![[5, 9], [17, 21]])));
-        assert_eq!(undone(text, &changes), None, "these are not the changed words");
-        let overlapping = vec![edits[0].clone(), Edit { span: [16, 18], now: String::new() }];
-        assert_eq!(edited(text, overlapping), None);
+        assert_eq!(undo_changes(&new, &changes), Some((text.to_owned(), vec![[5, 9], [17, 21]])));
+        assert_eq!(undo_changes(text, &changes), None, "these are not the changed words");
+        let overlapping = vec![edits[0].clone(), WordEdit { span: [16, 18], now: String::new() }];
+        assert_eq!(apply_edits(text, overlapping), None);
     }
 
     #[test]
     fn a_hostile_key_is_refused_without_a_panic() {
-        let change = |span| [Change { span, was: String::new(), now: "t".into() }];
+        let change = |span| [WordChange { span, was: String::new(), now: "t".into() }];
         for span in [[3, 2], [0, 99], [99, 100], [1, 2], [usize::MAX, 0]] {
-            assert_eq!(undone("\u{e4}t", &change(span)), None, "{span:?}");
+            assert_eq!(undo_changes("\u{e4}t", &change(span)), None, "{span:?}");
         }
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("a.key.json");
@@ -155,21 +157,21 @@ mod tests {
             ("{\"format\": \"wayword-corruptions/1\", \"seed\": 0, \"corruptions\": [], \"x\": 1}", "unknown field"),
         ] {
             std::fs::write(&file, text).unwrap();
-            let error = Key::read(&file).unwrap_err().to_string();
+            let error = CorruptionKey::read(&file).unwrap_err().to_string();
             assert!(error.contains(problem), "{error}");
         }
-        assert!(Key::read(&folder.path().join("b")).unwrap_err().to_string().contains("no such file"));
+        assert!(CorruptionKey::read(&folder.path().join("b")).unwrap_err().to_string().contains("no such file"));
     }
 
     #[test]
     fn a_key_is_read_as_it_was_written() {
-        let changes = vec![Change { span: [0, 1], was: "a".into(), now: "b".into() }];
+        let changes = vec![WordChange { span: [0, 1], was: "a".into(), now: "b".into() }];
         let [item, of, path, kind] = ["1", "2", "s/2", "k"].map(str::to_owned);
-        let key = Key::new(7, vec![Corruption { item, of, instruction: 0, path, kind, changes }]);
+        let key = CorruptionKey::new(7, vec![TextCorruption { item, of, instruction: 0, path, kind, changes }]);
         let folder = tempfile::tempdir().unwrap();
-        let file = Key::beside(&folder.path().join("texts.json"));
+        let file = CorruptionKey::path_for_texts(&folder.path().join("texts.json"));
         key.write(&file).unwrap();
         assert_eq!(file.file_name().unwrap(), "texts.key.json");
-        assert_eq!(Key::read(&file).unwrap(), key);
+        assert_eq!(CorruptionKey::read(&file).unwrap(), key);
     }
 }

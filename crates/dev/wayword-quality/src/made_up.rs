@@ -1,20 +1,21 @@
 //! Made-up instructions, paths and a building for tests, so that every figure can be worked out by hand.
 
-use crate::stage::World;
+use crate::stage::MeasuredWorldArgs;
 use std::path::PathBuf;
 use tempfile::TempDir;
 use wayword_core::{
-    DVec3, Heading, Instruction, Mention, MentionKind, Motion, Path, Provenance, SceneId, Verdict, path::Stop,
+    DVec3, Heading, Instruction, MentionKind, Path, PathMotion, SceneId, TextMention, TextProvenance, Verdict,
+    path::PathStop,
 };
-use wayword_formats::jsonl::Record;
+use wayword_formats::jsonl::InstructionRecord;
 
 /// An instruction that passed. Each mention is given by its words, which are searched from the end of the last mention.
-pub(crate) fn instruction(style: &str, text: &str, mentions: &[(&str, MentionKind)]) -> Instruction {
+pub(crate) fn test_instruction(style: &str, text: &str, mentions: &[(&str, MentionKind)]) -> Instruction {
     let mut from = 0;
     let mentions = mentions.iter().map(|(words, kind)| {
         let start = from + text[from..].find(words).unwrap();
         from = start + words.len();
-        Mention { span: [start, from], kind: *kind, frame: 0 }
+        TextMention { span: [start, from], kind: *kind, frame: 0 }
     });
     let by = |name: &str| name.to_owned();
     Instruction {
@@ -24,7 +25,7 @@ pub(crate) fn instruction(style: &str, text: &str, mentions: &[(&str, MentionKin
         verdict: Verdict::Pass,
         findings: Vec::new(),
         ambiguity: None,
-        provenance: Provenance {
+        provenance: TextProvenance {
             wayword: by("test"),
             asker: by("rules"),
             answerer: by("labels"),
@@ -44,37 +45,37 @@ pub(crate) fn instruction(style: &str, text: &str, mentions: &[(&str, MentionKin
 }
 
 /// Four metres north, then four to the west: straight ahead, and one left turn. On the lowest storey.
-pub(crate) fn path(id: &str) -> Path {
-    let stop = |x, y| Stop { position: DVec3::new(x, y, 1.5), viewpoint: None, level: Some(1) };
+pub(crate) fn test_path(id: &str) -> Path {
+    let stop = |x, y| PathStop { position: DVec3::new(x, y, 1.5), viewpoint: None, level: Some(1) };
     let stops = vec![stop(0.0, 0.0), stop(0.0, 4.0), stop(-4.0, 4.0)];
     Path {
         id: id.to_owned(),
         scene: SceneId::new("flat").unwrap(),
         frames: Path::frames_along(stops, Some(Heading::NORTH)),
-        motion: Motion::Known,
+        motion: PathMotion::Known,
         target: None,
     }
 }
 
-pub(crate) fn record(id: &str, instruction: Instruction) -> Record {
-    Record::new("made up", path(id), instruction)
+pub(crate) fn test_record(id: &str, instruction: Instruction) -> InstructionRecord {
+    InstructionRecord::new("made up", test_path(id), instruction)
 }
 
 /// The test kit's building on disk.
-pub(crate) struct Building(TempDir);
+pub(crate) struct TestBuildingFolder(TempDir);
 
-impl Building {
+impl TestBuildingFolder {
     pub(crate) fn new() -> Self {
         let folder = tempfile::tempdir().unwrap();
         wayword_testkit::write_building(folder.path()).unwrap();
         Self(folder)
     }
 
-    pub(crate) fn data(&self) -> PathBuf {
+    pub(crate) fn data_folder(&self) -> PathBuf {
         self.0.path().to_owned()
     }
 
-    pub(crate) fn world(&self) -> World {
-        World { platform: "matterport".into(), data: Some(self.data()), scan: None, seed: 0 }
+    pub(crate) fn matterport_world(&self) -> MeasuredWorldArgs {
+        MeasuredWorldArgs { platform: "matterport".into(), data: Some(self.data_folder()), scan: None, seed: 0 }
     }
 }

@@ -2,27 +2,27 @@
 //!
 //! Wrong texts are made in two ways: by flipping a turn of a person's text, and by taking the text of another path in the building.
 
-use crate::{corrupt_people::turned, share::table};
+use crate::{corrupt_people::flip_one_turn, share::aligned_table};
 use clap::Args;
 use rand::seq::IndexedRandom;
 use rayon::prelude::*;
 use std::{collections::BTreeMap, path::PathBuf};
-use wayword_core::rng;
-use wayword_fit::fit_follower::texts::{SUCCESS_M, Scene, Text, texts};
+use wayword_core::seeded_rng;
+use wayword_fit::fit_follower::texts::{FollowerScene, SUCCESS_M, WalkedText, read_texts};
 use wayword_follower::{
-    Fit, Guide, Prior, Tree, Trial, Weights, best,
-    route::{Known, Thresholds, judge, route},
-    shares,
+    FeatureWeights, Guide, GuideTrial, WalkFit, WalkPrior, WalkTree, best_walk,
+    route::{GainThresholds, KnownWalk, judge_route, judge_steps},
+    walk_shares,
 };
-use wayword_run::{error::Error, output::Output};
+use wayword_run::{error::CommandError, output::CommandOutput};
 
 /// Bins of the calibration error, of equal width.
 const BINS: usize = 10;
 /// Bounds of ambiguity that are tried: another walk's share of the annotated one's.
-const BOUNDS: [f64; 7] = [0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 0.8];
+const AMBIGUITY_BOUNDS: [f64; 7] = [0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 0.8];
 
 #[derive(Debug, Args)]
-pub struct Flags {
+pub struct ReaderFiguresArgs {
     /// File with the texts: a dataset, or the instructions of a run over its paths.
     file: PathBuf,
     /// Folder of Matterport3D's and REVERIE's data.
@@ -43,9 +43,9 @@ pub struct Flags {
 }
 
 /// The follower's judgement of one text.
-struct Said {
+struct FollowerJudgement {
     /// The best walk; `None` without one.
-    best: Option<Best>,
+    best: Option<BestWalk>,
     /// How much better the best walk to another end fits than the annotated walk, as a natural logarithm of the ratio.
     elsewhere: f64,
     /// The best gain from changing a turn: of the text itself, and of the text with one turn flipped; `None` without a turn.
@@ -55,7 +55,7 @@ struct Said {
 }
 
 /// The walk that fits best.
-struct Best {
+struct BestWalk {
     share: f64,
     /// The share of all walks that end near its end.
     nearby: f64,
@@ -65,10 +65,10 @@ struct Best {
     is_right: bool,
 }
 
-pub fn measure(flags: &Flags, output: &Output) -> Result<(), Error> {
-    let (scenes, files) = texts(&flags.data, std::slice::from_ref(&flags.file))?;
-    let mut all: Vec<Text> = files.into_iter().flatten().collect();
-    let is_in = |text: &Text, scans: &[String]| scans.iter().any(|one| one == scenes[text.scene].name.as_str());
+pub fn measure_reader_figures(flags: &ReaderFiguresArgs, output: &CommandOutput) -> Result<(), CommandError> {
+    let (scenes, files) = read_texts(&flags.data, std::slice::from_ref(&flags.file))?;
+    let mut all: Vec<WalkedText> = files.into_iter().flatten().collect();
+    let is_in = |text: &WalkedText, scans: &[String]| scans.iter().any(|one| one == scenes[text.scene].name.as_str());
     all.retain(|text| (flags.scans.is_empty() || is_in(text, &flags.scans)) && !is_in(text, &flags.except));
     let every = flags.limit.map_or(1, |limit| all.len().div_ceil(limit.max(1)));
     let mut by_scene: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
@@ -76,45 +76,52 @@ pub fn measure(flags: &Flags, output: &Output) -> Result<(), Error> {
         by_scene.entry(text.scene).or_default().push(at);
     }
     let picked: Vec<usize> = (0..all.len()).step_by(every.max(1)).collect();
-    let said = picked.par_iter().map(|at| said(&scenes, &all, &by_scene[&all[*at].scene], *at, flags.seed));
-    let said: Vec<Said> = said.collect();
-    output.data(&(), lines(&said).join("\n"));
+    let said = picked.par_iter().map(|at| judge_text(&scenes, &all, &by_scene[&all[*at].scene], *at, flags.seed));
+    let said: Vec<FollowerJudgement> = said.collect();
+    output.print_result(&(), report_lines(&said).join("\n"));
     Ok(())
 }
 
-fn said(scenes: &[Scene], all: &[Text], neighbours: &[usize], at: usize, seed: u64) -> Said {
-    let (text, weights) = (&all[at], Weights::fitted());
+fn judge_text(
+    scenes: &[FollowerScene],
+    all: &[WalkedText],
+    neighbours: &[usize],
+    at: usize,
+    seed: u64,
+) -> FollowerJudgement {
+    let (text, weights) = (&all[at], FeatureWeights::fitted());
     let building = &scenes[text.scene].building;
-    let tree = Tree::of(building, text.walk[0], text.heading_rad, Prior::default());
-    let fit = Fit::new(&Trial::new(&text.guide, building), &tree, weights);
-    let shares = shares(&fit, &tree);
-    let best = best(&fit, &tree).map(|walk| {
-        let is_near = |other: &usize| building.distance(tree.end(*other), tree.end(walk)) < SUCCESS_M;
+    let tree = WalkTree::from_prior(building, text.walk[0], text.heading_rad, WalkPrior::default());
+    let fit = WalkFit::new(&GuideTrial::new(&text.guide, building), &tree, weights);
+    let shares = walk_shares(&fit, &tree);
+    let best = best_walk(&fit, &tree).map(|walk| {
+        let is_near =
+            |other: &usize| building.distance_m(tree.end_viewpoint(*other), tree.end_viewpoint(walk)) < SUCCESS_M;
         let (near, far): (Vec<usize>, Vec<usize>) = (1..tree.len()).partition(is_near);
         let runner_up = far.into_iter().map(|other| shares[other]).fold(0.0, f64::max);
-        Best {
+        BestWalk {
             share: shares[walk],
             nearby: near.into_iter().map(|other| shares[other]).sum(),
             runner_up: log_ratio(runner_up, shares[walk]),
-            is_right: text.to_goal_m[tree.end(walk)] < SUCCESS_M,
+            is_right: text.to_goal_m[tree.end_viewpoint(walk)] < SUCCESS_M,
         }
     });
-    let known = Known { building, walk: &text.walk, heading_rad: text.heading_rad };
+    let known = KnownWalk { building, walk: &text.walk, heading_rad: text.heading_rad };
     let elsewhere = |guide: &Guide| {
-        let route = route(guide, known, Some(Prior::default()), weights, Thresholds::default());
+        let route = judge_route(guide, known, Some(WalkPrior::default()), weights, GainThresholds::default());
         route.map_or(0.0, |route| log_ratio(route.other, route.share))
     };
-    let gain = |guide: &Guide| judge(guide, known, weights, Thresholds::default()).turn_gain;
-    let purpose = |what: &'static str| rng(seed, &["reader figures", what, &at.to_string()]);
-    let turns = turned(&text.words, &mut purpose("turn"))
-        .and_then(|turned| Some([gain(&text.guide)?, gain(&Guide::read(&turned))?]));
+    let gain = |guide: &Guide| judge_steps(guide, known, weights, GainThresholds::default()).turn_gain;
+    let purpose = |what: &'static str| seeded_rng(seed, &["reader figures", what, &at.to_string()]);
+    let turns = flip_one_turn(&text.words, &mut purpose("turn"))
+        .and_then(|turned| Some([gain(&text.guide)?, gain(&Guide::read_text(&turned))?]));
     let is_apart = |other: &&usize| {
         let end = all[**other].walk.last();
         end.is_some_and(|end| text.to_goal_m[*end] >= SUCCESS_M)
     };
     let others: Vec<&usize> = neighbours.iter().filter(is_apart).collect();
     let other_path = others.choose(&mut purpose("path")).map(|other| elsewhere(&all[**other].guide));
-    Said { best, elsewhere: elsewhere(&text.guide), turns, other_path }
+    FollowerJudgement { best, elsewhere: elsewhere(&text.guide), turns, other_path }
 }
 
 /// The natural logarithm of a ratio of shares. Shares that were rounded to 0 count as the smallest positive number.
@@ -122,15 +129,15 @@ fn log_ratio(other: f64, own: f64) -> f64 {
     (other.max(f64::MIN_POSITIVE) / own.max(f64::MIN_POSITIVE)).ln()
 }
 
-fn lines(said: &[Said]) -> Vec<String> {
-    let best: Vec<&Best> = said.iter().filter_map(|said| said.best.as_ref()).collect();
+fn report_lines(said: &[FollowerJudgement]) -> Vec<String> {
+    let best: Vec<&BestWalk> = said.iter().filter_map(|said| said.best.as_ref()).collect();
     let right = best.iter().filter(|best| best.is_right).count();
-    let error = |share: fn(&Best) -> f64| {
+    let error = |share: fn(&BestWalk) -> f64| {
         calibration_error(&best.iter().map(|best| (share(best), best.is_right)).collect::<Vec<_>>())
     };
     let turns: Vec<[f64; 2]> = said.iter().filter_map(|said| said.turns).collect();
     let paths: Vec<[f64; 2]> = said.iter().filter_map(|said| Some([said.elsewhere, said.other_path?])).collect();
-    let told = |name: &str, pairs: &[[f64; 2]]| match auc(pairs) {
+    let told = |name: &str, pairs: &[[f64; 2]]| match pairwise_auc(pairs) {
         Some(auc) => format!("{name}: AUC {auc:.3} ({} texts)", pairs.len()),
         None => format!("{name}: no such text"),
     };
@@ -144,12 +151,12 @@ fn lines(said: &[Said]) -> Vec<String> {
         told("one turn flipped", &turns),
         told("another path's text", &paths),
     ];
-    lines.push(table(&ambiguous(said)));
+    lines.push(aligned_table(&ambiguity_rows(said)));
     lines
 }
 
 /// How often texts are called ambiguous at several bounds.
-fn ambiguous(said: &[Said]) -> Vec<Vec<String>> {
+fn ambiguity_rows(said: &[FollowerJudgement]) -> Vec<Vec<String>> {
     let head = [
         "another end fits",
         "as well as the annotated one: all",
@@ -158,12 +165,12 @@ fn ambiguous(said: &[Said]) -> Vec<Vec<String>> {
         "reader is right of these",
     ];
     let percent = |count: usize, of: usize| format!("{:.1} %", 100.0 * count as f64 / of.max(1) as f64);
-    let best: Vec<&Best> = said.iter().filter_map(|said| said.best.as_ref()).collect();
+    let best: Vec<&BestWalk> = said.iter().filter_map(|said| said.best.as_ref()).collect();
     let all_right = best.iter().filter(|best| best.is_right).count();
     let row = |bound: f64| {
         let near_own = said.iter().filter(|said| said.elsewhere >= bound.ln()).count();
         let near_best = best.iter().filter(|best| best.runner_up >= bound.ln());
-        let (right, wrong): (Vec<&Best>, Vec<&Best>) = near_best.copied().partition(|best| best.is_right);
+        let (right, wrong): (Vec<&BestWalk>, Vec<&BestWalk>) = near_best.copied().partition(|best| best.is_right);
         vec![
             format!("{bound:.2}"),
             percent(near_own, said.len()),
@@ -173,7 +180,7 @@ fn ambiguous(said: &[Said]) -> Vec<Vec<String>> {
         ]
     };
     let head = head.map(str::to_owned).to_vec();
-    std::iter::once(head).chain(BOUNDS.map(row)).collect()
+    std::iter::once(head).chain(AMBIGUITY_BOUNDS.map(row)).collect()
 }
 
 /// The expected calibration error: in each bin, the difference between the mean share and the rate of right cases, averaged over bins
@@ -190,7 +197,7 @@ fn calibration_error(cases: &[(f64, bool)]) -> f64 {
 
 /// How often the second of a pair (of a wrong text) is higher than the first of any pair (of a right one); a tie counts
 /// half. `None` without pairs.
-fn auc(pairs: &[[f64; 2]]) -> Option<f64> {
+fn pairwise_auc(pairs: &[[f64; 2]]) -> Option<f64> {
     let mut values: Vec<(f64, bool)> =
         pairs.iter().flat_map(|[right, wrong]| [(*right, false), (*wrong, true)]).collect();
     values.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -210,11 +217,11 @@ mod tests {
 
     #[test]
     fn auc_is_one_where_every_wrong_text_is_above_every_right_one() {
-        assert_eq!(auc(&[[0.0, 2.0], [1.0, 3.0]]), Some(1.0));
-        assert_eq!(auc(&[[2.0, 0.0], [3.0, 1.0]]), Some(0.0));
-        assert_eq!(auc(&[[1.0, 1.0], [1.0, 1.0]]), Some(0.5));
-        assert_eq!(auc(&[[0.0, 1.0], [1.0, 2.0]]), Some(0.875));
-        assert_eq!(auc(&[]), None);
+        assert_eq!(pairwise_auc(&[[0.0, 2.0], [1.0, 3.0]]), Some(1.0));
+        assert_eq!(pairwise_auc(&[[2.0, 0.0], [3.0, 1.0]]), Some(0.0));
+        assert_eq!(pairwise_auc(&[[1.0, 1.0], [1.0, 1.0]]), Some(0.5));
+        assert_eq!(pairwise_auc(&[[0.0, 1.0], [1.0, 2.0]]), Some(0.875));
+        assert_eq!(pairwise_auc(&[]), None);
     }
 
     #[test]

@@ -1,13 +1,13 @@
 //! Compares the calls per instruction with those of the paper's method, which asks about every frame of every path in all rounds and reuses
 //! no answer.
 
-use crate::stage::{Stage, World};
-use wayword_run::{error::Error, output::Output};
-use wayword_synthesis::dialogue::QUESTIONS;
+use crate::stage::{MeasuredWorldArgs, MeasurementStage};
+use wayword_run::{error::CommandError, output::CommandOutput};
+use wayword_synthesis::dialogue::DEFAULT_MAX_QUESTIONS;
 
 /// The instructions that were made, and the calls that they took.
 #[derive(Debug)]
-struct Figures {
+struct ReuseFigures {
     instructions: usize,
     frames: usize,
     /// Questions with their answers, in all dialogues.
@@ -18,13 +18,13 @@ struct Figures {
     here: u64,
 }
 
-pub fn measure(world: &World, paths: usize, output: &Output) -> Result<(), Error> {
-    output.data(&(), figures(&Stage::new(world, 0.15)?, paths)?.lines().join("\n"));
+pub fn measure_reuse(world: &MeasuredWorldArgs, paths: usize, output: &CommandOutput) -> Result<(), CommandError> {
+    output.print_result(&(), reuse_figures(&MeasurementStage::new(world, 0.15)?, paths)?.report_lines().join("\n"));
     Ok(())
 }
 
-fn figures(stage: &Stage, paths: usize) -> Result<Figures, Error> {
-    let made = stage.make(&stage.job(paths)?)?.0.into_iter().collect::<Result<Vec<_>, _>>()?;
+fn reuse_figures(stage: &MeasurementStage, paths: usize) -> Result<ReuseFigures, CommandError> {
+    let made = stage.make_items(&stage.writing_job(paths)?)?.0.into_iter().collect::<Result<Vec<_>, _>>()?;
     let frames: usize = made.iter().map(|made| made.walk.path.frames.len()).sum();
     let exchanges: usize = made
         .iter()
@@ -33,13 +33,13 @@ fn figures(stage: &Stage, paths: usize) -> Result<Figures, Error> {
         .map(|look| look.caption.transcript.len())
         .sum();
     // An opening, as many questions and answers as there are, and a summary for each frame; a text for each path.
-    let per_frame = 2 * QUESTIONS + 2;
+    let per_frame = 2 * DEFAULT_MAX_QUESTIONS + 2;
     let papers = frames * per_frame + made.len();
-    Ok(Figures { instructions: made.len(), frames, exchanges, papers, here: stage.provider.log().answered })
+    Ok(ReuseFigures { instructions: made.len(), frames, exchanges, papers, here: stage.provider.log().answered })
 }
 
-impl Figures {
-    fn lines(&self) -> [String; 3] {
+impl ReuseFigures {
+    fn report_lines(&self) -> [String; 3] {
         let Self { instructions, frames, exchanges, papers, here } = self;
         let per = |count: f64, of: usize| count / of.max(1) as f64;
         [
@@ -56,14 +56,14 @@ impl Figures {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::made_up::Building;
-    use wayword_run::item::items;
+    use crate::made_up::TestBuildingFolder;
+    use wayword_run::item::run_items;
 
     #[test]
     fn lines_give_the_calls_per_instruction() {
-        let figures = Figures { instructions: 4, frames: 20, exchanges: 90, papers: 404, here: 62 };
+        let figures = ReuseFigures { instructions: 4, frames: 20, exchanges: 90, papers: 404, here: 62 };
         assert_eq!(
-            figures.lines(),
+            figures.report_lines(),
             [
                 "4 paths, 20 frames, 4.5 exchanges per dialogue",
                 "the paper's method: 404 calls, 101.0 per instruction",
@@ -76,12 +76,12 @@ mod tests {
     /// ledger, which counts on its own, has one row for each call.
     #[test]
     fn calls_here_are_those_in_the_ledger_and_those_of_the_paper_follow_from_the_frames() {
-        let building = Building::new();
-        let stage = Stage::new(&building.world(), 0.15).unwrap();
-        let settings = stage.job(3).unwrap().settings;
-        let frames = |item: &wayword_run::item::Item| item.path(&settings, &stage.world).unwrap().frames.len();
-        let frames: usize = items(&settings, &stage.world).unwrap().iter().map(frames).sum();
-        let figures = figures(&stage, 3).unwrap();
+        let building = TestBuildingFolder::new();
+        let stage = MeasurementStage::new(&building.matterport_world(), 0.15).unwrap();
+        let settings = stage.writing_job(3).unwrap().settings;
+        let frames = |item: &wayword_run::item::RunItem| item.find_path(&settings, &stage.world).unwrap().frames.len();
+        let frames: usize = run_items(&settings, &stage.world).unwrap().iter().map(frames).sum();
+        let figures = reuse_figures(&stage, 3).unwrap();
         assert_eq!((figures.instructions, figures.frames, figures.papers), (3, frames, 20 * frames + 3));
         assert_eq!(figures.here, stage.calls().unwrap().len() as u64);
         assert!(figures.here < figures.papers as u64, "{figures:?}");

@@ -5,13 +5,13 @@ use std::fmt;
 use wayword_metrics::clustered_interval;
 
 /// How many resamples an interval is drawn from.
-const RESAMPLES: usize = 10_000;
+const RESAMPLE_COUNT: usize = 10_000;
 /// The confidence level of the intervals.
-const LEVEL: f64 = 0.95;
+const CONFIDENCE_LEVEL: f64 = 0.95;
 
 /// A share of cases, with an interval from a bootstrap that draws whole clusters.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub(crate) struct Share {
+pub(crate) struct ClusteredShare {
     /// Cases that count.
     pub(crate) count: usize,
     /// All cases.
@@ -23,18 +23,18 @@ pub(crate) struct Share {
     high: f64,
 }
 
-impl Share {
+impl ClusteredShare {
     /// The share of cases, each given with its cluster; `None` where there are no cases.
-    pub(crate) fn of<C: Ord>(cases: impl IntoIterator<Item = (C, bool)>, seed: u64) -> Option<Self> {
+    pub(crate) fn from_cases<C: Ord>(cases: impl IntoIterator<Item = (C, bool)>, seed: u64) -> Option<Self> {
         let cases: Vec<(C, f64)> = cases.into_iter().map(|(cluster, counts)| (cluster, f64::from(counts))).collect();
-        let estimate = clustered_interval(&cases, RESAMPLES, LEVEL, seed)?;
+        let estimate = clustered_interval(&cases, RESAMPLE_COUNT, CONFIDENCE_LEVEL, seed)?;
         let count = cases.iter().filter(|(_, counts)| *counts > 0.0).count();
         let (share, low, high) = (estimate.mean, estimate.low, estimate.high);
         Some(Self { count, of: cases.len(), clusters: estimate.clusters, share, low, high })
     }
 }
 
-impl fmt::Display for Share {
+impl fmt::Display for ClusteredShare {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [share, low, high] = [self.share, self.low, self.high].map(|share| 100.0 * share);
         write!(f, "{share:.1} % [{low:.1}, {high:.1}] ({}/{})", self.count, self.of)
@@ -42,12 +42,12 @@ impl fmt::Display for Share {
 }
 
 /// A share as a cell of a table.
-pub(crate) fn cell(share: Option<&Share>) -> String {
-    share.map_or_else(|| "-".to_owned(), Share::to_string)
+pub(crate) fn share_cell(share: Option<&ClusteredShare>) -> String {
+    share.map_or_else(|| "-".to_owned(), ClusteredShare::to_string)
 }
 
 /// A table with columns as wide as their widest cell. The first row is its head.
-pub(crate) fn table(rows: &[Vec<String>]) -> String {
+pub(crate) fn aligned_table(rows: &[Vec<String>]) -> String {
     let columns = rows.first().map_or(0, Vec::len);
     let width = |column: usize| rows.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count()).max();
     let widths: Vec<usize> = (0..columns).map(|column| width(column).unwrap_or(0)).collect();
@@ -64,22 +64,22 @@ mod tests {
 
     #[test]
     fn a_share_counts_its_cases_and_a_single_cluster_cannot_vary() {
-        let share = Share::of([(1, true), (1, false), (1, false), (1, true)], 0).unwrap();
+        let share = ClusteredShare::from_cases([(1, true), (1, false), (1, false), (1, true)], 0).unwrap();
         assert_eq!(share.to_string(), "50.0 % [50.0, 50.0] (2/4)");
         assert_eq!(share.clusters, 1);
-        assert_eq!(Share::of::<u8>([], 0), None);
-        assert_eq!(cell(None), "-");
+        assert_eq!(ClusteredShare::from_cases::<u8>([], 0), None);
+        assert_eq!(share_cell(None), "-");
     }
 
     #[test]
     fn clusters_that_differ_widen_the_interval() {
-        let share = Share::of((0..20).map(|n| (n % 2, n % 2 == 0)), 0).unwrap();
+        let share = ClusteredShare::from_cases((0..20).map(|n| (n % 2, n % 2 == 0)), 0).unwrap();
         assert_eq!((share.count, share.of, share.low, share.high), (10, 20, 0.0, 1.0));
     }
 
     #[test]
     fn table_aligns_its_columns() {
         let row = |cells: [&str; 3]| cells.map(str::to_owned).to_vec();
-        assert_eq!(table(&[row(["a", "b", "c"]), row(["long", "x", ""])]), "a     b  c\nlong  x");
+        assert_eq!(aligned_table(&[row(["a", "b", "c"]), row(["long", "x", ""])]), "a     b  c\nlong  x");
     }
 }

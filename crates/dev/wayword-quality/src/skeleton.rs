@@ -3,19 +3,20 @@
 use std::{collections::BTreeMap, path::PathBuf};
 use wayword_core::{Instruction, MentionKind};
 use wayword_formats::jsonl;
-use wayword_run::{error::Error, output::Output, run_folder::file};
+use wayword_run::{error::CommandError, output::CommandOutput, run_folder::file};
 
-pub fn measure(folders: &[PathBuf], show: usize, output: &Output) -> Result<(), Error> {
+pub fn measure_skeletons(folders: &[PathBuf], show: usize, output: &CommandOutput) -> Result<(), CommandError> {
     let mut instructions = Vec::new();
     for folder in folders {
-        instructions
-            .extend(jsonl::read(&folder.join(file::INSTRUCTIONS))?.into_iter().map(|record| record.instruction));
+        instructions.extend(
+            jsonl::read_records(&folder.join(file::INSTRUCTIONS))?.into_iter().map(|record| record.instruction),
+        );
     }
-    output.data(&(), lines(&instructions, show).join("\n"));
+    output.print_result(&(), skeleton_lines(&instructions, show).join("\n"));
     Ok(())
 }
 
-fn lines(instructions: &[Instruction], show: usize) -> Vec<String> {
+fn skeleton_lines(instructions: &[Instruction], show: usize) -> Vec<String> {
     let mut styles: BTreeMap<&str, BTreeMap<String, usize>> = BTreeMap::new();
     for instruction in instructions {
         let skeletons = styles.entry(&instruction.style).or_default();
@@ -62,24 +63,24 @@ fn skeletons_of(instruction: &Instruction) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::made_up::instruction;
+    use crate::made_up::test_instruction;
     use MentionKind::{Floor, Landmark, Room, Target, Turn};
 
     /// Six sentences: three with one skeleton, two with another, one with a third.
     #[test]
     fn a_skeleton_s_share_is_that_of_all_sentences_of_its_style() {
         let texts = [
-            instruction("r2r", "Turn left at the sofa. Stop.", &[("left", Turn), ("sofa", Landmark)]),
-            instruction(
+            test_instruction("r2r", "Turn left at the sofa. Stop.", &[("left", Turn), ("sofa", Landmark)]),
+            test_instruction(
                 "r2r",
                 "Turn right at the piano. Wait in the kitchen.",
                 &[("right", Turn), ("piano", Landmark), ("kitchen", Room)],
             ),
-            instruction("r2r", "Turn left at the floor lamp. Stop.", &[("left", Turn), ("floor lamp", Landmark)]),
-            instruction("reverie", "Go up to level 2 and clean the sink", &[("level 2", Floor), ("sink", Target)]),
+            test_instruction("r2r", "Turn left at the floor lamp. Stop.", &[("left", Turn), ("floor lamp", Landmark)]),
+            test_instruction("reverie", "Go up to level 2 and clean the sink", &[("level 2", Floor), ("sink", Target)]),
         ];
         assert_eq!(
-            lines(&texts, 2),
+            skeleton_lines(&texts, 2),
             [
                 "r2r (sentences: 6, skeletons: 3)",
                 "  50.00 %  turn turn at the landmark.",

@@ -6,31 +6,31 @@ use std::path::PathBuf;
 use tempfile::TempDir;
 use wayword_core::Platform;
 use wayword_run::{
-    calls::Spent,
-    error::Error,
+    calls::CallSpending,
+    error::CommandError,
     follow::KnownScenes,
-    looking_for::Lookout,
-    output::Output,
-    pipeline::{Made, RunPlatform, make},
-    plan::Plan,
+    looking_for::DetectorLookout,
+    output::CommandOutput,
+    pipeline::{MadeItem, RunPlatform, make_item},
+    plan::RunPlan,
     platforms,
     run_folder::fresh_id,
-    settings::{Asked, AskedPlatform, AskedRoles, Draw, Job, Service, Sources, Walks, Writing},
-    team::Team,
+    settings::{AskedPlatform, AskedRoles, AskedSettings, Draw, EvidenceSources, RunJob, Service, Walks, Writing},
+    team::RoleTeam,
 };
 use wayword_testkit::provider::{
-    Behaviour, Dialect, Gallery, Pictured, Provider,
-    scripts::{Cast, FlawedEye},
+    BarcodePlatform, PictureGallery, ProviderBehaviour, ProviderDialect, ScriptedProvider,
+    scripts::{FlawedEye, ScriptedCast},
 };
 
 /// How often the scripted text roles make mistakes, as a share.
-pub(super) const CARELESSNESS: f64 = 0.2;
+pub(super) const TEXT_ROLE_ERROR_SHARE: f64 = 0.2;
 /// Items that are made at a time; they mostly wait for calls.
 const AT_A_TIME: usize = 16;
 
 /// The platform of a measurement.
 #[derive(Debug, Clone, clap::Args)]
-pub struct World {
+pub struct MeasuredWorldArgs {
     /// house or matterport.
     #[arg(long, default_value = "house")]
     pub(super) platform: String,
@@ -46,24 +46,31 @@ pub struct World {
 }
 
 /// A platform, a provider, and a ledger only for them.
-pub(super) struct Stage {
-    pub(super) world: Pictured<Box<dyn Platform>>,
-    pub(super) provider: Provider,
+pub(super) struct MeasurementStage {
+    pub(super) world: BarcodePlatform<Box<dyn Platform>>,
+    pub(super) provider: ScriptedProvider,
     folder: TempDir,
     seed: u64,
-    asked: World,
+    asked: MeasuredWorldArgs,
 }
 
-impl Stage {
+impl MeasurementStage {
     /// A setup in which `hallucinated_share` of the objects that the scripted eye names are not there.
-    pub(super) fn new(asked: &World, hallucinated_share: f64) -> Result<Self, Error> {
-        let io = |source| Error::Io { path: std::env::temp_dir(), doing: "set the measurement up in", source };
-        let gallery = Gallery::default();
-        let platform = platforms::open(&asked_job(asked, 1).resolve()?)?;
-        let cast = Cast::new(FlawedEye::new(gallery.clone(), asked.seed, hallucinated_share), asked.seed, CARELESSNESS);
+    pub(super) fn new(asked: &MeasuredWorldArgs, hallucinated_share: f64) -> Result<Self, CommandError> {
+        let io = |source| CommandError::Io { path: std::env::temp_dir(), doing: "set the measurement up in", source };
+        let gallery = PictureGallery::default();
+        let platform = platforms::open_platform(&asked_job(asked, 1).resolve()?)?;
+        let cast = ScriptedCast::new(
+            FlawedEye::new(gallery.clone(), asked.seed, hallucinated_share),
+            asked.seed,
+            TEXT_ROLE_ERROR_SHARE,
+        );
         Ok(Self {
-            world: Pictured::new(platform, gallery),
-            provider: Provider::start(Behaviour::of("words", cast.clone()).and("eye", cast)).map_err(io)?,
+            world: BarcodePlatform::new(platform, gallery),
+            provider: ScriptedProvider::start(
+                ProviderBehaviour::for_model("words", cast.clone()).and_model("eye", cast),
+            )
+            .map_err(io)?,
             folder: tempfile::tempdir().map_err(io)?,
             seed: asked.seed,
             asked: asked.clone(),
@@ -72,78 +79,81 @@ impl Stage {
 
     /// A job of `paths` paths with every role played by the provider. Texts are checked against captions, as on a
     /// platform without labels.
-    pub(super) fn job(&self, paths: usize) -> Result<Job, Error> {
+    pub(super) fn writing_job(&self, paths: usize) -> Result<RunJob, CommandError> {
         let roles = AskedRoles {
             llm: Some("server/words".into()),
             see: Some("server/eye".into()),
-            base_url: Some(self.provider.base_url(Dialect::OpenAi)),
+            base_url: Some(self.provider.base_url(ProviderDialect::OpenAi)),
             ..AskedRoles::default()
         };
         let service = Service { ledger: Some(self.folder.path().join("ledger.db")), ..Service::default() };
-        Asked {
+        AskedSettings {
             roles,
             service,
             writing: Writing {
-                evidence: Some(Sources::CAPTIONS),
+                evidence: Some(EvidenceSources::CAPTIONS_ALONE),
                 style: Some(vec!["r2r".into()]),
                 ..Writing::default()
             },
             draw: Draw { seed: Some(self.seed), ..Draw::default() },
             ..asked_job(&self.asked, paths)
         }
-        .job()
+        .into_job()
     }
 
     /// The calls in the ledger.
     #[cfg(test)]
-    pub(super) fn calls(&self) -> Result<Vec<wayword_ledger::Row>, Error> {
+    pub(super) fn calls(&self) -> Result<Vec<wayword_ledger::LedgerEntry>, CommandError> {
         let ledger = wayword_ledger::Ledger::open(&self.folder.path().join("ledger.db"))?;
-        Ok(ledger.list(&wayword_ledger::Filter::default())?)
+        Ok(ledger.list_calls(&wayword_ledger::LedgerFilter::default())?)
     }
 
     /// Writes a price list in which every token costs something, and returns its path.
-    pub(super) fn prices(&self) -> Result<PathBuf, Error> {
+    pub(super) fn write_prices(&self) -> Result<PathBuf, CommandError> {
         let file = self.folder.path().join("prices.toml");
         let row = "usd_per_million_in = 10.0\nusd_per_million_out = 20.0\nas_of = \"2026-11-01\"\n";
         let text = format!("[\"server/words\"]\n{row}[\"server/eye\"]\n{row}");
-        std::fs::write(&file, text).map_err(Error::io(&file, "write"))?;
+        std::fs::write(&file, text).map_err(CommandError::io(&file, "write"))?;
         Ok(file)
     }
 
     /// Makes every item of a job, and returns what was spent.
-    pub(super) fn make(&self, job: &Job) -> Result<(Vec<Result<Made, Error>>, Spent), Error> {
+    pub(super) fn make_items(
+        &self,
+        job: &RunJob,
+    ) -> Result<(Vec<Result<MadeItem, CommandError>>, CallSpending), CommandError> {
         self.make_with(job, None)
     }
 
     /// The same, with a detector that looks along the paths.
     pub(super) fn make_with(
         &self,
-        job: &Job,
-        lookout: Option<Lookout>,
-    ) -> Result<(Vec<Result<Made, Error>>, Spent), Error> {
-        let plan = Plan::writing(job, &self.world)?;
-        let calls = plan.models.open(&fresh_id("measure"), &Output::new(false, true))?;
-        let team = Team::new(&job.settings, calls.as_ref(), &self.world)?.with(lookout);
+        job: &RunJob,
+        lookout: Option<DetectorLookout>,
+    ) -> Result<(Vec<Result<MadeItem, CommandError>>, CallSpending), CommandError> {
+        let plan = RunPlan::for_writing(job, &self.world)?;
+        let calls = plan.models.open_calls(&fresh_id("measure"), &CommandOutput::new(false, true))?;
+        let team = RoleTeam::new(&job.settings, calls.as_ref(), &self.world)?.with_lookout(lookout);
         let threads = ThreadPoolBuilder::new().num_threads(AT_A_TIME).build();
         let world = RunPlatform { platform: &self.world, data: None, scenes: &KnownScenes::new() };
-        let one = |item| make(item, &job.settings, world, &team, &plan.styles, 1);
+        let one = |item| make_item(item, &job.settings, world, &team, &plan.styles, 1);
         let work = || plan.items.par_iter().map(one).collect();
         let made = match threads {
             Ok(threads) => threads.install(work),
             Err(_) => work(),
         };
-        Ok((made, calls.map_or_else(Spent::default, |calls| calls.spent())))
+        Ok((made, calls.map_or_else(CallSpending::default, |calls| calls.spent_so_far())))
     }
 }
 
-fn asked_job(world: &World, paths: usize) -> Asked {
-    Asked {
+fn asked_job(world: &MeasuredWorldArgs, paths: usize) -> AskedSettings {
+    AskedSettings {
         platform: AskedPlatform {
             platform: Some(world.platform.clone()),
             data: world.data.clone(),
             ..AskedPlatform::default()
         },
         walks: Walks { scan: world.scan.clone().map(|scan| vec![scan]), paths: Some(paths), ..Walks::default() },
-        ..Asked::default()
+        ..AskedSettings::default()
     }
 }

@@ -1,12 +1,12 @@
 //! Replays the walks of an export of steps, and counts those that end elsewhere and pictures that differ.
 
 use std::path::PathBuf;
-use wayword_report::export::replayed;
-use wayword_run::{error::Error, output::Output};
+use wayword_report::export::replay_export;
+use wayword_run::{error::CommandError, output::CommandOutput};
 
 /// The flags of `steps`.
 #[derive(Debug, clap::Args)]
-pub struct Flags {
+pub struct StepsArgs {
     /// Folder that `wayword export --format steps` wrote.
     #[arg(long, value_name = "DIR")]
     steps: PathBuf,
@@ -18,9 +18,9 @@ pub struct Flags {
     every: usize,
 }
 
-pub fn measure(flags: &Flags, output: &Output) -> Result<(), Error> {
-    let told = replayed(&flags.steps, &flags.run, flags.every)?;
-    output.data(
+pub fn replay_steps(flags: &StepsArgs, output: &CommandOutput) -> Result<(), CommandError> {
+    let told = replay_export(&flags.steps, &flags.run, flags.every)?;
+    output.print_result(
         &told,
         format_args!(
             "{} walks, {} astray, the farthest ends {:.2} m from its walk's end; {} pictures, {} others than those of their poses",

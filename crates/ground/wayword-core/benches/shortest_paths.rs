@@ -6,7 +6,7 @@
 use criterion::{Criterion, criterion_group, criterion_main};
 use rand::Rng;
 use std::hint::black_box;
-use wayword_core::{DVec3, ViewpointGraph, ViewpointId, rng};
+use wayword_core::{DVec3, ViewpointGraph, ViewpointId, seeded_rng};
 
 /// Viewpoints of a storey, along x and y.
 const FLOOR: [usize; 2] = [11, 6];
@@ -22,12 +22,12 @@ fn name(floor: usize, x: usize, y: usize) -> ViewpointId {
 /// storeys.
 fn building() -> ViewpointGraph {
     let mut graph = ViewpointGraph::default();
-    let mut rng = rng(7, &["building"]);
+    let mut rng = seeded_rng(7, &["building"]);
     for floor in 0..FLOORS {
         for (x, y) in places() {
             let [x_m, y_m] = [x, y].map(|at| 2.0 * at as f64 + rng.random_range(-0.4..0.4));
             let position = DVec3::new(x_m, y_m, 1.5 + 2.9 * floor as f64);
-            graph.add(name(floor, x, y), position, Some(floor as u32 + 1)).expect("names are unique");
+            graph.add_viewpoint(name(floor, x, y), position, Some(floor as u32 + 1)).expect("names are unique");
         }
     }
     for floor in 0..FLOORS {
@@ -36,16 +36,18 @@ fn building() -> ViewpointGraph {
                 // Rooms open onto a corridor along y = 2; there are doors between some of them.
                 let is_open = dx == 0 || (y == 2 && dy == 0) || rng.random_bool(0.4);
                 if is_open && x + dx < FLOOR[0] && y + dy < FLOOR[1] {
-                    graph.join(&name(floor, x, y), &name(floor, x + dx, y + dy)).expect("both are there");
+                    graph.join_viewpoints(&name(floor, x, y), &name(floor, x + dx, y + dy)).expect("both are there");
                 }
             }
         }
     }
     for floor in 0..LANDINGS {
         let landing = ViewpointId::new(format!("landing-{floor}")).expect("a plain name");
-        graph.add(landing.clone(), DVec3::new(20.0, 4.0, 2.95 + 2.9 * floor as f64), None).expect("names are unique");
+        graph
+            .add_viewpoint(landing.clone(), DVec3::new(20.0, 4.0, 2.95 + 2.9 * floor as f64), None)
+            .expect("names are unique");
         for end in [floor, floor + 1] {
-            graph.join(&name(end, 10, 2), &landing).expect("both are there");
+            graph.join_viewpoints(&name(end, 10, 2), &landing).expect("both are there");
         }
     }
     graph
@@ -57,7 +59,7 @@ fn places() -> impl Iterator<Item = (usize, usize)> {
 
 fn shortest_paths(criterion: &mut Criterion) {
     let graph = building();
-    println!("{} viewpoints, {} edges, {} components", graph.len(), graph.edges().count(), graph.components());
+    println!("{} viewpoints, {} edges, {} components", graph.len(), graph.edges().count(), graph.count_components());
     let names: Vec<ViewpointId> = graph.viewpoints().cloned().collect();
     criterion.bench_function("one shortest path across the building", |bencher| {
         let (start, goal) = (name(0, 0, 2), name(2, 0, 2));

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 /// An action, with its number in VLN-CE and habitat-lab (`HabitatSimActions`).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(into = "u8", try_from = "u8")]
-pub enum Action {
+pub enum AgentAction {
     /// Ends the walk.
     Stop = 0,
     /// One step forward.
@@ -21,13 +21,13 @@ pub enum Action {
 #[error("{0} is no action: expected 0 (stop), 1 (forward), 2 (left) or 3 (right)")]
 pub struct NoAction(u8);
 
-impl From<Action> for u8 {
-    fn from(action: Action) -> Self {
+impl From<AgentAction> for u8 {
+    fn from(action: AgentAction) -> Self {
         action as Self
     }
 }
 
-impl TryFrom<u8> for Action {
+impl TryFrom<u8> for AgentAction {
     type Error = NoAction;
 
     fn try_from(number: u8) -> Result<Self, NoAction> {
@@ -42,9 +42,9 @@ mod tests {
 
     #[test]
     fn actions_have_habitats_numbers() {
-        let all = [Action::Stop, Action::Forward, Action::Left, Action::Right];
+        let all = [AgentAction::Stop, AgentAction::Forward, AgentAction::Left, AgentAction::Right];
         let told = serde_json::to_string(&all).unwrap();
-        assert_eq!((told.as_str(), serde_json::from_str::<[Action; 4]>(&told).unwrap()), ("[0,1,2,3]", all));
-        assert!(serde_json::from_str::<Action>("4").unwrap_err().to_string().contains("4 is no action"));
+        assert_eq!((told.as_str(), serde_json::from_str::<[AgentAction; 4]>(&told).unwrap()), ("[0,1,2,3]", all));
+        assert!(serde_json::from_str::<AgentAction>("4").unwrap_err().to_string().contains("4 is no action"));
     }
 }

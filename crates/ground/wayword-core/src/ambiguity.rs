@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 /// How many ends and objects an instruction fits. It is no verdict: an ambiguous text can be true of its path.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Ambiguity {
+pub struct TextAmbiguity {
     /// Places, 3 m apart or more, at which walks end that fit the text about as well as the annotated one, which counts too.
     /// `None` where no other walk is known.
     pub ends: Option<usize>,
@@ -17,7 +17,7 @@ pub struct Ambiguity {
     pub unverified: Option<String>,
 }
 
-impl Ambiguity {
+impl TextAmbiguity {
     /// Whether the text may mean several places, or several objects.
     #[must_use]
     pub fn is_ambiguous(&self) -> bool {
@@ -26,7 +26,7 @@ impl Ambiguity {
 
     /// A sentence for the user that names the ambiguity; `None` if the text is not ambiguous.
     #[must_use]
-    pub fn told(&self) -> Option<String> {
+    pub fn to_sentence(&self) -> Option<String> {
         match (self.ends, self.objects) {
             (Some(ends), _) if ends > 1 => Some(format!("the text is ambiguous: it may end at {ends} places")),
             (_, objects) if objects > 1 => Some(format!("the text is ambiguous: its task may mean {objects} objects")),
@@ -41,7 +41,7 @@ mod tests {
 
     #[test]
     fn ambiguity_counts_ends_and_objects() {
-        let told = |ends, objects| Ambiguity { ends, objects, ..Ambiguity::default() }.told();
+        let told = |ends, objects| TextAmbiguity { ends, objects, ..TextAmbiguity::default() }.to_sentence();
         assert!(told(Some(3), 1).unwrap().contains("3 places"));
         assert!(told(Some(1), 2).unwrap().contains("2 objects"));
         assert!(told(None, 2).is_some());

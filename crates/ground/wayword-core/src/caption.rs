@@ -1,6 +1,6 @@
 //! Captions: a view in words, the sightings behind them with their sources, and the dialogue that led to them.
 
-use crate::{Found, ModelError, Schema, Side, View};
+use crate::{DetectedBox, ModelError, ReplySchema, Side, View};
 use serde::{Deserialize, Serialize};
 
 /// A view in words, with the evidence behind them.
@@ -15,12 +15,12 @@ pub struct Caption {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub perhaps_rooms: Vec<String>,
     /// Objects that a witness saw, denied or was not sure of.
-    pub sightings: Vec<Sighting>,
+    pub sightings: Vec<ObjectSighting>,
     /// The ways out of the room that were named.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub ways: Vec<WayOut>,
     /// The whole dialogue.
-    pub transcript: Vec<Exchange>,
+    pub transcript: Vec<DialogueExchange>,
     /// The writer of the text, where it is not the run's summariser: that failed, or the dialogue had no usable
     /// answer.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -31,13 +31,13 @@ pub struct Caption {
     pub is_structured: bool,
     /// The outcome of asking for a form, where an answer did not have it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub form: Option<Form>,
+    pub form: Option<FormOutcome>,
 }
 
 /// The outcome of asking for a form, where the first answer did not have it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Form {
+pub enum FormOutcome {
     /// The second answer had it.
     Mended,
     /// No answer had it: the last one was read as words.
@@ -51,7 +51,7 @@ pub struct WayOut {
     pub name: String,
     /// Where in the view the witness placed it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub place: Option<Where>,
+    pub place: Option<ViewThird>,
     /// The room that is seen through it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub leads_to: Option<String>,
@@ -59,14 +59,14 @@ pub struct WayOut {
 
 /// One object, and what a witness answered about it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Sighting {
+pub struct ObjectSighting {
     /// Its name as the witness gave it.
     pub name: String,
     /// Seen, denied or unsure.
-    pub witness: Witness,
+    pub witness: WitnessAnswer,
     /// Where in the view the witness placed it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub place: Option<Where>,
+    pub place: Option<ViewThird>,
     /// Its colour, as the witness named it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub colour: Option<String>,
@@ -87,16 +87,16 @@ pub struct Sighting {
     pub several: bool,
     /// Where a detector found it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub spot: Option<Spot>,
+    pub spot: Option<DetectionSpot>,
     /// The witness (`labels`, `provider/model`).
     pub by: String,
 }
 
 /// Where in a view a detector found an object.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Spot {
+pub struct DetectionSpot {
     /// Its box in the view's picture, and how sure the detector was.
-    pub found: Found,
+    pub found: DetectedBox,
     /// The direction of the box's middle from that of the view, radians, positive right.
     pub off_rad: f64,
     /// How far over the floor it is from the eye, metres, where the platform knows the depth of the picture.
@@ -104,11 +104,11 @@ pub struct Spot {
     pub distance_m: Option<f64>,
 }
 
-impl Spot {
+impl DetectionSpot {
     /// A detection in a picture that is `width_px` wide and shows `horizontal_fov_rad`, as a pinhole camera does. Its
     /// distance is not known.
     #[must_use]
-    pub fn new(found: Found, width_px: u32, horizontal_fov_rad: f64) -> Self {
+    pub fn new(found: DetectedBox, width_px: u32, horizontal_fov_rad: f64) -> Self {
         let half_px = f64::from(width_px) / 2.0;
         let [left, _, right, _] = found.box_px.map(f64::from);
         let off = ((left + right) / 2.0 - half_px) / half_px.max(0.5);
@@ -116,10 +116,10 @@ impl Spot {
     }
 }
 
-impl Sighting {
+impl ObjectSighting {
     /// A sighting with a name, an answer and its witness, and no further details.
     #[must_use]
-    pub fn new(name: impl Into<String>, witness: Witness, by: impl Into<String>) -> Self {
+    pub fn new(name: impl Into<String>, witness: WitnessAnswer, by: impl Into<String>) -> Self {
         Self {
             name: name.into(),
             witness,
@@ -139,7 +139,7 @@ impl Sighting {
 /// A witness's answer about an object.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Witness {
+pub enum WitnessAnswer {
     /// It is there.
     Seen,
     /// It is not there.
@@ -151,7 +151,7 @@ pub enum Witness {
 /// A third of a view.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Where {
+pub enum ViewThird {
     /// The left third.
     Left,
     /// The middle.
@@ -160,10 +160,10 @@ pub enum Where {
     Right,
 }
 
-impl Where {
+impl ViewThird {
     /// The side of a robot that looks along the view; the middle is ahead.
     #[must_use]
-    pub fn side(self) -> Side {
+    pub fn to_side(self) -> Side {
         match self {
             Self::Left => Side::Left,
             Self::Middle => Side::Ahead,
@@ -184,7 +184,7 @@ impl Where {
     /// The third of a view of this width in which a direction lies. The direction is `off_rad` from the view's own,
     /// positive right.
     #[must_use]
-    pub fn at(off_rad: f64, horizontal_fov_rad: f64) -> Self {
+    pub fn from_offset(off_rad: f64, horizontal_fov_rad: f64) -> Self {
         let sixth = horizontal_fov_rad / 6.0;
         if off_rad < -sixth {
             Self::Left
@@ -198,17 +198,17 @@ impl Where {
 
 /// A question and its answer.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Exchange {
+pub struct DialogueExchange {
     /// The question.
     pub question: String,
     /// The answer; empty where no answer could be used.
     pub answer: String,
     /// Why the question was asked again in other words, where it was.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub trouble: Option<Trouble>,
+    pub trouble: Option<AnswerTrouble>,
 }
 
-impl Exchange {
+impl DialogueExchange {
     /// A question that was answered at once.
     #[must_use]
     pub fn new(question: impl Into<String>, answer: impl Into<String>) -> Self {
@@ -219,7 +219,7 @@ impl Exchange {
 /// Why an answer cannot be used (the first four are known of BLIP-2: ChatCaptioner #4 and #7).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Trouble {
+pub enum AnswerTrouble {
     /// There is no answer.
     Empty,
     /// It repeats the question.
@@ -236,13 +236,13 @@ pub enum Trouble {
 
 /// A question about a view, with the dialogue so far.
 #[derive(Debug, Clone, Copy)]
-pub struct Ask<'a> {
+pub struct ViewQuestion<'a> {
     /// The view that the question is about.
     pub view: &'a View,
     /// The question.
     pub question: &'a str,
     /// The dialogue so far.
-    pub history: &'a [Exchange],
+    pub history: &'a [DialogueExchange],
     /// The form that the answer should have.
     pub answer: AnswerForm,
 }
@@ -254,19 +254,19 @@ pub enum AnswerForm {
     #[default]
     Words,
     /// JSON of this form, whatever else surrounds it.
-    Json(Schema),
+    Json(ReplySchema),
 }
 
 /// The words of an answer.
-pub type Answer = String;
+pub type AnswerText = String;
 
 /// The role `see`: answers questions about views.
 ///
 /// Blocking, object-safe and batching; threads belong to the caller.
-pub trait Answerer: Send + Sync {
+pub trait ViewAnswerer: Send + Sync {
     /// `provider/model`, or `labels`.
     fn name(&self) -> &str;
 
     /// One result per question, in their order. One that fails does not fail the others.
-    fn answer(&self, asks: &[Ask<'_>]) -> Vec<Result<Answer, ModelError>>;
+    fn answer_questions(&self, asks: &[ViewQuestion<'_>]) -> Vec<Result<AnswerText, ModelError>>;
 }

@@ -6,7 +6,7 @@ use std::fmt;
 
 /// The condition of a scene's files.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Condition {
+pub struct SceneCondition {
     /// The scene.
     pub scene: SceneId,
     /// Whether its pictures can be drawn.
@@ -20,11 +20,11 @@ pub struct Condition {
     /// Where the names of its rooms come from.
     pub rooms: RoomNames,
     /// How its viewpoint graph lies in it, where that was examined.
-    pub fit: Option<Fit>,
+    pub fit: Option<GraphFit>,
     /// Defects that do not keep a run from using the scene.
-    pub lacks: Vec<Lack>,
+    pub lacks: Vec<SceneLack>,
     /// Why the scene cannot be used; `None` if it can.
-    pub unusable: Option<Lack>,
+    pub unusable: Option<SceneLack>,
 }
 
 /// How large a viewpoint graph is.
@@ -50,7 +50,7 @@ pub enum RoomNames {
 
 /// How a viewpoint graph lies in its scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-pub struct Fit {
+pub struct GraphFit {
     /// Viewpoints.
     pub viewpoints: usize,
     /// Viewpoints with a floor below them, where the floor of an eye is.
@@ -63,17 +63,17 @@ pub struct Fit {
 
 /// Something that is missing or wrong in a scene's files, and how the user can repair it.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Lack {
+pub struct SceneLack {
     /// The problem, in words.
     pub what: String,
     /// Advice for the user.
     pub hint: String,
 }
 
-impl Condition {
+impl SceneCondition {
     /// The condition of a scene that cannot be used and was not examined further.
     #[must_use]
-    pub fn unusable(scene: SceneId, why: Lack) -> Self {
+    pub fn for_unusable(scene: SceneId, why: SceneLack) -> Self {
         Self {
             scene,
             has_pictures: false,
@@ -88,7 +88,7 @@ impl Condition {
     }
 }
 
-impl fmt::Display for Fit {
+impl fmt::Display for GraphFit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { viewpoints, over_floor, edges, through_walls } = self;
         write!(

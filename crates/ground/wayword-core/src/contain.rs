@@ -12,7 +12,7 @@ thread_local! {
 /// Runs third-party code on untrusted bytes; `None` where it panicked.
 ///
 /// After a panic, do not use values that `work` could change. Values that it only read can still be used.
-pub fn contained<T>(work: impl FnOnce() -> T) -> Option<T> {
+pub fn run_contained<T>(work: impl FnOnce() -> T) -> Option<T> {
     DEPTH.set(DEPTH.get() + 1);
     let done = catch_unwind(AssertUnwindSafe(work));
     DEPTH.set(DEPTH.get() - 1);
@@ -23,8 +23,8 @@ pub fn contained<T>(work: impl FnOnce() -> T) -> Option<T> {
 ///
 /// # Errors
 /// In words, when the decoder refuses its input or panics.
-pub fn decoded<T>(decode: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
-    contained(decode).unwrap_or_else(|| Err("is broken".to_owned()))
+pub fn run_decoder<T>(decode: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
+    run_contained(decode).unwrap_or_else(|| Err("is broken".to_owned()))
 }
 
 /// Whether this thread runs contained code. If so, the program's panic hook prints no message, because the caller
@@ -41,10 +41,10 @@ mod tests {
     #[test]
     fn contained_stops_a_panic_and_marks_the_thread() {
         let panics = || -> u32 { panic!("contained: {}", is_contained()) };
-        assert_eq!(contained(|| contained(panics).map_or_else(is_contained, |_| false)), Some(true));
+        assert_eq!(run_contained(|| run_contained(panics).map_or_else(is_contained, |_| false)), Some(true));
         assert!(!is_contained());
-        assert_eq!(contained(|| 7), Some(7));
-        assert_eq!(decoded(|| -> Result<u8, String> { panic!("broken") }), Err("is broken".to_owned()));
-        assert_eq!(decoded(|| Ok(7)), Ok(7));
+        assert_eq!(run_contained(|| 7), Some(7));
+        assert_eq!(run_decoder(|| -> Result<u8, String> { panic!("broken") }), Err("is broken".to_owned()));
+        assert_eq!(run_decoder(|| Ok(7)), Ok(7));
     }
 }

@@ -2,7 +2,7 @@
 
 /// For each pixel of a view's picture, the distance along the view's axis.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Depth {
+pub struct DepthImage {
     width_px: u32,
     height_px: u32,
     metres: Vec<f32>,
@@ -19,9 +19,9 @@ pub struct WrongDepthCount {
 
 /// Which of a box's distances counts, as a share of its pixels, the nearest first. A thing hardly fills its box:
 /// between its legs and over its back one sees the background.
-const NEARER: f64 = 0.25;
+const NEAREST_PIXEL_SHARE: f64 = 0.25;
 
-impl Depth {
+impl DepthImage {
     /// `metres` holds one value per pixel, rows from the top: the distance along the view's axis, in front of the eye.
     /// A value that is 0, negative or not finite means that the distance is not known.
     ///
@@ -41,8 +41,8 @@ impl Depth {
     #[must_use]
     pub fn level_m(&self, edges: [f64; 4], horizontal_fov_rad: f64) -> Option<f64> {
         let [left, top, right, bottom] = edges;
-        let columns = middle([left, right], self.width_px)?;
-        let rows = middle([top, bottom], self.height_px)?;
+        let columns = middle_pixels([left, right], self.width_px)?;
+        let rows = middle_pixels([top, bottom], self.height_px)?;
         let half_px = f64::from(self.width_px) / 2.0;
         let half_width = libm::tan(horizontal_fov_rad / 2.0);
         let level = |column: usize| {
@@ -52,13 +52,13 @@ impl Depth {
         let at = |row: usize, column: usize| f64::from(self.metres[row * self.width_px as usize + column]);
         let pixels = rows.flat_map(|row| columns.clone().map(move |column| at(row, column) * level(column)));
         let mut known: Vec<f64> = pixels.filter(|metres| metres.is_finite() && *metres > 0.0).collect();
-        let quartile = (known.len() as f64 * NEARER) as usize;
+        let quartile = (known.len() as f64 * NEAREST_PIXEL_SHARE) as usize;
         (!known.is_empty()).then(|| *known.select_nth_unstable_by(quartile, f64::total_cmp).1)
     }
 }
 
 /// The pixels of the middle half of a span, at least one. `None` where it lies outside or is none.
-fn middle([from, to]: [f64; 2], side_px: u32) -> Option<std::ops::Range<usize>> {
+fn middle_pixels([from, to]: [f64; 2], side_px: u32) -> Option<std::ops::Range<usize>> {
     let (from, to) = (from.clamp(0.0, 1.0), to.clamp(0.0, 1.0));
     let quarter = (to - from) / 4.0;
     let side = f64::from(side_px);
@@ -74,9 +74,9 @@ mod tests {
     use std::f64::consts::FRAC_PI_2;
 
     /// A wall at 4 m along the axis, with a post of 2 m in the columns 4 and 5 of 10.
-    fn post() -> Depth {
+    fn post() -> DepthImage {
         let metres = (0..60).map(|at| if (4..6).contains(&(at % 10)) { 2.0 } else { 4.0 });
-        Depth::new(10, 6, metres.collect()).unwrap()
+        DepthImage::new(10, 6, metres.collect()).unwrap()
     }
 
     #[test]
@@ -95,7 +95,7 @@ mod tests {
     #[test]
     fn level_m_leaves_out_unknown_distances() {
         let mut metres = vec![0.0, f32::NAN, f32::INFINITY, -1.0, 3.0];
-        let of = |metres: Vec<f32>| Depth::new(5, 1, metres).unwrap().level_m([-1.0, 0.0, 3.0, 1.0], 1e-3);
+        let of = |metres: Vec<f32>| DepthImage::new(5, 1, metres).unwrap().level_m([-1.0, 0.0, 3.0, 1.0], 1e-3);
         assert_eq!(of(metres.clone()), None, "the middle half holds nothing that is known");
         metres[3] = 7.0;
         assert!((of(metres).unwrap() - 7.0).abs() < 1e-3);
@@ -103,12 +103,12 @@ mod tests {
         assert_eq!(depth.level_m([0.7, 0.0, 0.3, 1.0], 1.0), None, "edges in the wrong order");
         assert_eq!(depth.level_m([f64::NAN, 0.0, 0.3, 1.0], 1.0), None);
         assert!(depth.level_m([1.0, 1.0, 1.0, 1.0], 1.0).is_some(), "a box without width lies in a pixel");
-        assert_eq!(Depth::new(0, 0, Vec::new()).unwrap().level_m([0.0, 0.0, 1.0, 1.0], 1.0), None);
+        assert_eq!(DepthImage::new(0, 0, Vec::new()).unwrap().level_m([0.0, 0.0, 1.0, 1.0], 1.0), None);
     }
 
     #[test]
     fn the_buffer_must_fit_the_size() {
-        let error = Depth::new(2, 2, vec![1.0; 3]).unwrap_err().to_string();
+        let error = DepthImage::new(2, 2, vec![1.0; 3]).unwrap_err().to_string();
         assert_eq!(error, "the depth of 2 x 2 pixels needs 4 values, not 3");
     }
 }

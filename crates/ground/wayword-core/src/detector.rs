@@ -1,7 +1,7 @@
 //! Detectors: models that look for phrases in pictures and give boxes with scores, and an adapter that scores whole
 //! views by their best box.
 
-use crate::{Grounder, Label, ModelError, ObjectId, View};
+use crate::{ModelError, ObjectId, ObjectLabel, PhraseGrounder, View};
 use serde::{Deserialize, Serialize};
 
 /// The most boxes that a detector gives for a phrase in a view.
@@ -12,31 +12,34 @@ const LEAST_OVERLAP: f64 = 0.1;
 
 /// A place in a picture at which a phrase was found.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Found {
+pub struct DetectedBox {
     /// Left, top, right and bottom edge in the view's picture, pixels from its upper left corner, within the picture.
     pub box_px: [f32; 4],
-    /// How sure the detector is, 0 to 1, on the scale that [`Scoring`] explains.
+    /// How sure the detector is, 0 to 1, on the scale that [`DetectorScoring`] explains.
     pub score: f32,
 }
 
-impl Found {
+impl DetectedBox {
     /// The area that two boxes share, as a share of the area that they cover together, 0 to 1.
     #[must_use]
-    pub fn overlap(&self, other: &Self) -> f64 {
-        overlap(self.edges(), other.edges())
+    pub fn overlap_share(&self, other: &Self) -> f64 {
+        box_overlap_share(self.box_edges(), other.box_edges())
     }
 
-    fn edges(&self) -> [f64; 4] {
+    fn box_edges(&self) -> [f64; 4] {
         self.box_px.map(f64::from)
     }
 }
 
 /// Leaves out every detection that overlaps a better one by more than `most_overlap` (0 to 1). The rest come in their
 /// order, which must be the best first.
-pub fn apart(found: impl IntoIterator<Item = Found>, most_overlap: f64) -> impl Iterator<Item = Found> {
-    let mut kept: Vec<Found> = Vec::new();
+pub fn without_overlaps(
+    found: impl IntoIterator<Item = DetectedBox>,
+    most_overlap: f64,
+) -> impl Iterator<Item = DetectedBox> {
+    let mut kept: Vec<DetectedBox> = Vec::new();
     found.into_iter().filter(move |found| {
-        let is_apart = kept.iter().all(|better| better.overlap(found) <= most_overlap);
+        let is_apart = kept.iter().all(|better| better.overlap_share(found) <= most_overlap);
         if is_apart {
             kept.push(*found);
         }
@@ -46,7 +49,7 @@ pub fn apart(found: impl IntoIterator<Item = Found>, most_overlap: f64) -> impl 
 
 /// The meaning of a detector's scores.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Scoring {
+pub struct DetectorScoring {
     /// The definition of a score, with the prompt that it belongs to, in words for provenance.
     pub means: &'static str,
     /// The score from which its makers count a box as a find.
@@ -59,43 +62,43 @@ pub struct Scoring {
 /// Finds things in pictures by phrases.
 ///
 /// Scores of one detector and phrase can be compared between views, because every view is looked at by itself. Between
-/// phrases they can be compared under the condition of [`Scoring::phrases_meet`]; between detectors they cannot.
+/// phrases they can be compared under the condition of [`DetectorScoring::phrases_meet`]; between detectors they cannot.
 ///
 /// Blocking, object-safe and batching; threads belong to the caller.
-pub trait Detector: Send + Sync {
+pub trait ObjectDetector: Send + Sync {
     /// `provider/model`.
     fn name(&self) -> &str;
 
     /// The meaning of its scores.
-    fn scoring(&self) -> Scoring;
+    fn scoring(&self) -> DetectorScoring;
 
     /// One result per view, in their order: for each phrase, in their order, where it was found, the best first, at most
     /// [`MOST_BOXES`]. A phrase that was not found has none. A view that fails does not fail the others.
-    fn detect(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<Vec<Found>>, ModelError>>;
+    fn detect_phrases(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<Vec<DetectedBox>>, ModelError>>;
 }
 
-impl<D: Detector + ?Sized> Detector for std::sync::Arc<D> {
+impl<D: ObjectDetector + ?Sized> ObjectDetector for std::sync::Arc<D> {
     fn name(&self) -> &str {
         (**self).name()
     }
 
-    fn scoring(&self) -> Scoring {
+    fn scoring(&self) -> DetectorScoring {
         (**self).scoring()
     }
 
-    fn detect(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<Vec<Found>>, ModelError>> {
-        (**self).detect(views, phrases)
+    fn detect_phrases(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<Vec<DetectedBox>>, ModelError>> {
+        (**self).detect_phrases(views, phrases)
     }
 }
 
-/// A detector as a [`Grounder`]: a phrase scores as its best box does, or 0 where it was not found. Where phrases change
+/// A detector as a [`PhraseGrounder`]: a phrase scores as its best box does, or 0 where it was not found. Where phrases change
 /// each other's scores, each is looked for by itself.
 #[derive(Debug)]
-pub struct Grounded<D> {
+pub struct DetectorGrounder<D> {
     detector: D,
 }
 
-impl<D: Detector> Grounded<D> {
+impl<D: ObjectDetector> DetectorGrounder<D> {
     /// A grounder that asks a detector.
     #[must_use]
     pub fn new(detector: D) -> Self {
@@ -104,22 +107,22 @@ impl<D: Detector> Grounded<D> {
 
     /// The meaning of its scores.
     #[must_use]
-    pub fn scoring(&self) -> Scoring {
+    pub fn scoring(&self) -> DetectorScoring {
         self.detector.scoring()
     }
 }
 
-impl<D: Detector> Grounder for Grounded<D> {
+impl<D: ObjectDetector> PhraseGrounder for DetectorGrounder<D> {
     fn name(&self) -> &str {
         self.detector.name()
     }
 
-    fn ground(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<f32>, ModelError>> {
-        let best = |found: &Vec<Found>| found.iter().map(|found| found.score).fold(0.0, f32::max);
+    fn score_phrases(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<f32>, ModelError>> {
+        let best = |found: &Vec<DetectedBox>| found.iter().map(|found| found.score).fold(0.0, f32::max);
         let together = if self.detector.scoring().phrases_meet { 1 } else { phrases.len().max(1) };
         let mut scores: Vec<Result<Vec<f32>, ModelError>> = views.iter().map(|_| Ok(Vec::new())).collect();
         for asked in phrases.chunks(together) {
-            for (scores, found) in scores.iter_mut().zip(self.detector.detect(views, asked)) {
+            for (scores, found) in scores.iter_mut().zip(self.detector.detect_phrases(views, asked)) {
                 match (scores.as_mut(), found) {
                     (Ok(scores), Ok(found)) => scores.extend(found.iter().map(best)),
                     (Ok(_), Err(error)) => *scores = Err(error),
@@ -132,31 +135,33 @@ impl<D: Detector> Grounder for Grounded<D> {
 
     /// The object of which the outline is covered best by the best box of all views. A view without outlines has no
     /// objects.
-    fn point(&self, views: &[&View], phrase: &str) -> Result<Option<ObjectId>, ModelError> {
-        let mut best: Option<(Found, &View)> = None;
-        for (view, found) in views.iter().zip(self.detector.detect(views, &[phrase])) {
+    fn point_to_object(&self, views: &[&View], phrase: &str) -> Result<Option<ObjectId>, ModelError> {
+        let mut best: Option<(DetectedBox, &View)> = None;
+        for (view, found) in views.iter().zip(self.detector.detect_phrases(views, &[phrase])) {
             for found in found?.into_iter().flatten() {
                 if best.is_none_or(|(best, _)| found.score > best.score) {
                     best = Some((found, view));
                 }
             }
         }
-        Ok(best.and_then(|(found, view)| outlined(view, found)))
+        Ok(best.and_then(|(found, view)| best_outlined_object(view, found)))
     }
 }
 
 /// The object of a view that a box covers best, judged by the outlines.
-fn outlined(view: &View, found: Found) -> Option<ObjectId> {
-    let share = |label: &Label| {
-        label.box_px.map_or(0.0, |[x, y, width, height]| overlap(found.edges(), [x, y, x + width, y + height]))
+fn best_outlined_object(view: &View, found: DetectedBox) -> Option<ObjectId> {
+    let share = |label: &ObjectLabel| {
+        label
+            .box_px
+            .map_or(0.0, |[x, y, width, height]| box_overlap_share(found.box_edges(), [x, y, x + width, y + height]))
     };
-    let best = view.outlines().map(|label| (share(label), label)).max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let best = view.outlined_labels().map(|label| (share(label), label)).max_by(|a, b| a.0.total_cmp(&b.0))?;
     (best.0 >= LEAST_OVERLAP).then(|| best.1.object.clone())
 }
 
 /// The area that two boxes share, as a share of the area that they cover together. Each is given by its left, top, right and
 /// bottom edge.
-fn overlap(a: [f64; 4], b: [f64; 4]) -> f64 {
+fn box_overlap_share(a: [f64; 4], b: [f64; 4]) -> f64 {
     let across = (a[2].min(b[2]) - a[0].max(b[0])).max(0.0);
     let down = (a[3].min(b[3]) - a[1].max(b[1])).max(0.0);
     let area = |[left, top, right, bottom]: [f64; 4]| (right - left) * (bottom - top);
@@ -175,19 +180,22 @@ mod tests {
         meets: bool,
     }
 
-    impl Detector for Meets {
+    impl ObjectDetector for Meets {
         fn name(&self) -> &str {
             "meets"
         }
 
-        fn scoring(&self) -> Scoring {
-            Scoring { means: "made up", found_from: 0.5, phrases_meet: self.meets }
+        fn scoring(&self) -> DetectorScoring {
+            DetectorScoring { means: "made up", found_from: 0.5, phrases_meet: self.meets }
         }
 
-        fn detect(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<Vec<Found>>, ModelError>> {
+        fn detect_phrases(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<Vec<DetectedBox>>, ModelError>> {
             let score = if phrases.len() == 1 { 0.9 } else { 0.5 };
             let one = |phrase: &&str| match *phrase {
-                "sink" => vec![Found { box_px: [0.0, 0.0, 5.0, 10.0], score }, Found { box_px: [0.0; 4], score: 0.1 }],
+                "sink" => vec![
+                    DetectedBox { box_px: [0.0, 0.0, 5.0, 10.0], score },
+                    DetectedBox { box_px: [0.0; 4], score: 0.1 },
+                ],
                 _ => Vec::new(),
             };
             let of_view = |view: &&View| match view.is_blank() {
@@ -200,7 +208,7 @@ mod tests {
 
     fn view(outlines: &[(&str, [f64; 4])]) -> View {
         let heading = Heading::new(0.0).unwrap();
-        let label = |(id, outline): &(&str, [f64; 4])| Label {
+        let label = |(id, outline): &(&str, [f64; 4])| ObjectLabel {
             object: ObjectId::new(*id).unwrap(),
             name: "thing".into(),
             heading,
@@ -211,20 +219,20 @@ mod tests {
             colour: None,
         };
         let truth = GroundTruth { labels: outlines.iter().map(label).collect(), lists_objects: true, room: None };
-        View::new(Pose::level(DVec3::ZERO, heading), 1.5, None, Some(truth))
+        View::new(Pose::looking_level(DVec3::ZERO, heading), 1.5, None, Some(truth))
     }
 
     #[test]
     fn a_phrase_scores_as_its_best_box_does() {
         let shown = view(&[]);
-        let scores = Grounded::new(Meets { meets: false }).ground(&[&shown], &["sink", "bed"]);
+        let scores = DetectorGrounder::new(Meets { meets: false }).score_phrases(&[&shown], &["sink", "bed"]);
         assert_eq!(scores, [Ok(vec![0.5, 0.0])]);
     }
 
     #[test]
     fn phrases_that_change_each_other_are_looked_for_one_by_one() {
         let shown = view(&[]);
-        let scores = Grounded::new(Meets { meets: true }).ground(&[&shown], &["sink", "bed"]);
+        let scores = DetectorGrounder::new(Meets { meets: true }).score_phrases(&[&shown], &["sink", "bed"]);
         assert_eq!(scores, [Ok(vec![0.9, 0.0])]);
     }
 
@@ -232,28 +240,28 @@ mod tests {
     fn a_view_that_fails_does_not_fail_the_others() {
         let (shown, mut blank) = (view(&[]), view(&[]));
         blank = View::new(blank.pose, 1.5, None, None);
-        let scores = Grounded::new(Meets { meets: true }).ground(&[&blank, &shown], &["sink", "bed"]);
+        let scores = DetectorGrounder::new(Meets { meets: true }).score_phrases(&[&blank, &shown], &["sink", "bed"]);
         assert!(scores[0].is_err());
         assert_eq!(scores[1], Ok(vec![0.9, 0.0]));
-        assert_eq!(Grounded::new(Meets { meets: false }).ground(&[&shown], &[]), [Ok(Vec::new())]);
+        assert_eq!(DetectorGrounder::new(Meets { meets: false }).score_phrases(&[&shown], &[]), [Ok(Vec::new())]);
     }
 
     #[test]
     fn a_find_that_covers_a_better_one_is_left_out() {
-        let find = |left: f32, score: f32| Found { box_px: [left, 0.0, left + 10.0, 10.0], score };
+        let find = |left: f32, score: f32| DetectedBox { box_px: [left, 0.0, left + 10.0, 10.0], score };
         // The second shares 9 of 11 parts with the first; the third would share as much with the second, and 8 of 12 with the first.
         let all = [find(0.0, 0.9), find(1.0, 0.8), find(2.0, 0.7), find(10.0, 0.6)];
-        let left: Vec<Found> = apart(all, 0.7).collect();
+        let left: Vec<DetectedBox> = without_overlaps(all, 0.7).collect();
         assert_eq!(left, [all[0], all[2], all[3]]);
     }
 
     #[test]
     fn a_box_points_to_the_object_that_it_covers_best() {
         let near = view(&[("left", [0.0, 0.0, 4.0, 10.0]), ("all", [0.0, 0.0, 10.0, 10.0])]);
-        let grounder = Grounded::new(Meets { meets: false });
-        assert_eq!(grounder.point(&[&near], "sink").unwrap().unwrap().as_str(), "left");
-        assert_eq!(grounder.point(&[&near], "bed").unwrap(), None);
+        let grounder = DetectorGrounder::new(Meets { meets: false });
+        assert_eq!(grounder.point_to_object(&[&near], "sink").unwrap().unwrap().as_str(), "left");
+        assert_eq!(grounder.point_to_object(&[&near], "bed").unwrap(), None);
         let elsewhere = view(&[("right", [6.0, 0.0, 4.0, 10.0])]);
-        assert_eq!(grounder.point(&[&elsewhere], "sink").unwrap(), None);
+        assert_eq!(grounder.point_to_object(&[&elsewhere], "sink").unwrap(), None);
     }
 }

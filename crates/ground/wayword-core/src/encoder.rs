@@ -13,27 +13,27 @@ pub trait TextEncoder: Send + Sync {
     ///
     /// # Errors
     /// When the model fails. Then no text has a vector.
-    fn encode(&self, texts: &[&str]) -> Result<Vec<Vec<f32>>, ModelError>;
+    fn encode_texts(&self, texts: &[&str]) -> Result<Vec<Vec<f32>>, ModelError>;
 }
 
 /// Scores how well phrases fit what views show.
 ///
 /// Blocking, object-safe and batching; threads belong to the caller.
-pub trait Grounder: Send + Sync {
+pub trait PhraseGrounder: Send + Sync {
     /// `provider/model`, or `labels`.
     fn name(&self) -> &str;
 
     /// One result per view, in their order: a score for each phrase, in their order. A higher score is a better fit,
     /// and scores of the same grounder can be compared between views and phrases. A view that fails does not fail the
     /// others.
-    fn ground(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<f32>, ModelError>>;
+    fn score_phrases(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<f32>, ModelError>>;
 
     /// The object in these views that a phrase fits best; `None` where no object fits, or where the grounder cannot
     /// tell objects apart.
     ///
     /// # Errors
     /// When the model fails.
-    fn point(&self, _views: &[&View], _phrase: &str) -> Result<Option<ObjectId>, ModelError> {
+    fn point_to_object(&self, _views: &[&View], _phrase: &str) -> Result<Option<ObjectId>, ModelError> {
         Ok(None)
     }
 }

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 /// The kind of a failure, by its remedy. A text that fails a check is not a failure: the check did its work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Failure {
+pub enum FailureKind {
     /// Something that was asked for is not there: the user can supply it.
     Missing,
     /// Something is there and cannot be used. Trying again gives the same result.
@@ -14,7 +14,7 @@ pub enum Failure {
     Lost,
 }
 
-impl Failure {
+impl FailureKind {
     /// The name that files use.
     #[must_use]
     pub fn name(self) -> &'static str {

@@ -1,6 +1,6 @@
 //! The viewpoint graph that every platform offers: places where an agent can be, and straight walks between them.
 
-use crate::{Heading, Path, ViewpointId, path::Stop};
+use crate::{Heading, Path, ViewpointId, path::PathStop};
 use glam::DVec3;
 use petgraph::{
     algo::{astar, connected_components, dijkstra},
@@ -12,12 +12,12 @@ use std::collections::BTreeMap;
 /// Nodes with a position, undirected edges with a length in metres.
 #[derive(Debug, Clone, Default)]
 pub struct ViewpointGraph {
-    graph: UnGraph<Node, f64>,
+    graph: UnGraph<ViewpointNode, f64>,
     index: BTreeMap<ViewpointId, NodeIndex>,
 }
 
 #[derive(Debug, Clone)]
-struct Node {
+struct ViewpointNode {
     id: ViewpointId,
     position: DVec3,
     level: Option<u32>,
@@ -26,7 +26,7 @@ struct Node {
 
 /// A shortest path over the graph.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Route {
+pub struct ViewpointRoute {
     /// Nodes from start to goal, both included.
     pub viewpoints: Vec<ViewpointId>,
     /// Sum of its edges, metres.
@@ -55,14 +55,14 @@ impl ViewpointGraph {
     ///
     /// # Errors
     /// When the name is taken or the position not finite.
-    pub fn add(&mut self, id: ViewpointId, position: DVec3, level: Option<u32>) -> Result<(), GraphError> {
+    pub fn add_viewpoint(&mut self, id: ViewpointId, position: DVec3, level: Option<u32>) -> Result<(), GraphError> {
         if !position.is_finite() {
             return Err(GraphError::NotFinite(id));
         }
         if self.index.contains_key(&id) {
             return Err(GraphError::Twice(id));
         }
-        let node = self.graph.add_node(Node { id: id.clone(), position, level, floor_m: None });
+        let node = self.graph.add_node(ViewpointNode { id: id.clone(), position, level, floor_m: None });
         self.index.insert(id, node);
         Ok(())
     }
@@ -72,7 +72,7 @@ impl ViewpointGraph {
     /// # Errors
     /// When the node is not in the graph.
     pub fn set_floor(&mut self, id: &ViewpointId, floor_m: f64) -> Result<(), GraphError> {
-        let node = self.node(id)?;
+        let node = self.find_node(id)?;
         self.graph[node].floor_m = Some(floor_m).filter(|floor_m| floor_m.is_finite());
         Ok(())
     }
@@ -81,8 +81,8 @@ impl ViewpointGraph {
     ///
     /// # Errors
     /// When one of them is not in the graph.
-    pub fn join(&mut self, a: &ViewpointId, b: &ViewpointId) -> Result<(), GraphError> {
-        let (a, b) = (self.node(a)?, self.node(b)?);
+    pub fn join_viewpoints(&mut self, a: &ViewpointId, b: &ViewpointId) -> Result<(), GraphError> {
+        let (a, b) = (self.find_node(a)?, self.find_node(b)?);
         let length_m = self.graph[a].position.distance(self.graph[b].position);
         if a != b {
             self.graph.update_edge(a, b, length_m);
@@ -90,7 +90,7 @@ impl ViewpointGraph {
         Ok(())
     }
 
-    fn node(&self, id: &ViewpointId) -> Result<NodeIndex, GraphError> {
+    fn find_node(&self, id: &ViewpointId) -> Result<NodeIndex, GraphError> {
         self.index.get(id).copied().ok_or_else(|| GraphError::Unknown(id.clone()))
     }
 
@@ -108,7 +108,7 @@ impl ViewpointGraph {
 
     /// Number of separate parts.
     #[must_use]
-    pub fn components(&self) -> usize {
+    pub fn count_components(&self) -> usize {
         connected_components(&self.graph)
     }
 
@@ -126,13 +126,13 @@ impl ViewpointGraph {
 
     /// The eye's position at a node, metres, world frame.
     #[must_use]
-    pub fn position(&self, id: &ViewpointId) -> Option<DVec3> {
+    pub fn position_of(&self, id: &ViewpointId) -> Option<DVec3> {
         self.index.get(id).map(|node| self.graph[*node].position)
     }
 
     /// The storey of a node, the lowest being 1.
     #[must_use]
-    pub fn level(&self, id: &ViewpointId) -> Option<u32> {
+    pub fn level_of(&self, id: &ViewpointId) -> Option<u32> {
         self.index.get(id).and_then(|node| self.graph[*node].level)
     }
 
@@ -144,7 +144,7 @@ impl ViewpointGraph {
 
     /// The neighbours of a node, by name.
     #[must_use]
-    pub fn neighbours(&self, id: &ViewpointId) -> Vec<&ViewpointId> {
+    pub fn neighbours_of(&self, id: &ViewpointId) -> Vec<&ViewpointId> {
         let Some(node) = self.index.get(id) else {
             return Vec::new();
         };
@@ -158,7 +158,7 @@ impl ViewpointGraph {
     /// # Errors
     /// When the node is not in the graph.
     pub fn distances_from(&self, start: &ViewpointId) -> Result<BTreeMap<&ViewpointId, f64>, GraphError> {
-        let lengths = dijkstra(&self.graph, self.node(start)?, None, |edge| *edge.weight());
+        let lengths = dijkstra(&self.graph, self.find_node(start)?, None, |edge| *edge.weight());
         Ok(lengths.into_iter().map(|(node, length_m)| (&self.graph[node].id, length_m)).collect())
     }
 
@@ -166,12 +166,12 @@ impl ViewpointGraph {
     ///
     /// # Errors
     /// When a node is not in the graph.
-    pub fn shortest_path(&self, start: &ViewpointId, goal: &ViewpointId) -> Result<Option<Route>, GraphError> {
-        let (start, goal) = (self.node(start)?, self.node(goal)?);
+    pub fn shortest_path(&self, start: &ViewpointId, goal: &ViewpointId) -> Result<Option<ViewpointRoute>, GraphError> {
+        let (start, goal) = (self.find_node(start)?, self.find_node(goal)?);
         let goal_position = self.graph[goal].position;
         let left_m = |node: NodeIndex| self.graph[node].position.distance(goal_position);
         let found = astar(&self.graph, start, |node| node == goal, |edge| *edge.weight(), left_m);
-        Ok(found.map(|(length_m, nodes)| Route {
+        Ok(found.map(|(length_m, nodes)| ViewpointRoute {
             viewpoints: nodes.into_iter().map(|node| self.graph[node].id.clone()).collect(),
             length_m,
         }))
@@ -181,16 +181,20 @@ impl ViewpointGraph {
     ///
     /// # Errors
     /// When a node is unknown or two consecutive nodes have no edge (the same node twice is a stay).
-    pub fn walk(&self, viewpoints: &[ViewpointId], start: Option<Heading>) -> Result<Vec<crate::Frame>, GraphError> {
+    pub fn path_frames(
+        &self,
+        viewpoints: &[ViewpointId],
+        start: Option<Heading>,
+    ) -> Result<Vec<crate::Frame>, GraphError> {
         for pair in viewpoints.windows(2) {
-            let (a, b) = (self.node(&pair[0])?, self.node(&pair[1])?);
+            let (a, b) = (self.find_node(&pair[0])?, self.find_node(&pair[1])?);
             if a != b && self.graph.find_edge(a, b).is_none() {
                 return Err(GraphError::NoEdge(pair[0].clone(), pair[1].clone()));
             }
         }
         let stops = viewpoints.iter().map(|id| {
-            let node = &self.graph[self.node(id)?];
-            Ok(Stop { position: node.position, viewpoint: Some(id.clone()), level: node.level })
+            let node = &self.graph[self.find_node(id)?];
+            Ok(PathStop { position: node.position, viewpoint: Some(id.clone()), level: node.level })
         });
         Ok(Path::frames_along(stops.collect::<Result<_, _>>()?, start))
     }
@@ -208,10 +212,10 @@ mod tests {
     fn graph(points: &[(f64, f64)], edges: &[(usize, usize)]) -> ViewpointGraph {
         let mut graph = ViewpointGraph::default();
         for (n, (x, y)) in points.iter().enumerate() {
-            graph.add(id(n), DVec3::new(*x, *y, 0.0), Some(1)).unwrap();
+            graph.add_viewpoint(id(n), DVec3::new(*x, *y, 0.0), Some(1)).unwrap();
         }
         for (a, b) in edges {
-            graph.join(&id(*a), &id(*b)).unwrap();
+            graph.join_viewpoints(&id(*a), &id(*b)).unwrap();
         }
         graph
     }
@@ -227,7 +231,7 @@ mod tests {
     #[test]
     fn parts_that_do_not_touch_have_no_path() {
         let parts = graph(&[(0.0, 0.0), (1.0, 0.0), (9.0, 9.0)], &[(0, 1)]);
-        assert_eq!(parts.components(), 2);
+        assert_eq!(parts.count_components(), 2);
         assert_eq!(parts.shortest_path(&id(0), &id(2)).unwrap(), None);
         assert!(parts.shortest_path(&id(0), &id(7)).is_err());
     }
@@ -235,15 +239,15 @@ mod tests {
     #[test]
     fn a_walk_keeps_to_edges() {
         let line = graph(&[(0.0, 0.0), (0.0, 2.0), (2.0, 2.0)], &[(0, 1), (1, 2)]);
-        assert_eq!(line.walk(&[id(0), id(1), id(2)], None).unwrap().len(), 3);
-        assert_eq!(line.walk(&[id(0), id(2)], None), Err(GraphError::NoEdge(id(0), id(2))));
+        assert_eq!(line.path_frames(&[id(0), id(1), id(2)], None).unwrap().len(), 3);
+        assert_eq!(line.path_frames(&[id(0), id(2)], None), Err(GraphError::NoEdge(id(0), id(2))));
     }
 
     #[test]
     fn names_are_taken_once_and_places_are_finite() {
         let mut graph = graph(&[(0.0, 0.0)], &[]);
-        assert_eq!(graph.add(id(0), DVec3::ZERO, None), Err(GraphError::Twice(id(0))));
-        assert_eq!(graph.add(id(1), DVec3::NAN, None), Err(GraphError::NotFinite(id(1))));
+        assert_eq!(graph.add_viewpoint(id(0), DVec3::ZERO, None), Err(GraphError::Twice(id(0))));
+        assert_eq!(graph.add_viewpoint(id(1), DVec3::NAN, None), Err(GraphError::NotFinite(id(1))));
     }
 
     proptest! {
@@ -261,7 +265,7 @@ mod tests {
                 prop_assert!(length(a, c) <= length(a, b) + length(b, c) + 1e-9);
                 prop_assert!((length(a, b) - length(b, a)).abs() < 1e-9);
                 let route = graph.shortest_path(&id(a), &id(b)).unwrap().unwrap();
-                let position = |id| graph.position(id).unwrap();
+                let position = |id| graph.position_of(id).unwrap();
                 let hops: f64 = route.viewpoints.windows(2).map(|pair| position(&pair[0]).distance(position(&pair[1]))).sum();
                 prop_assert!((hops - route.length_m).abs() < 1e-9);
             }

@@ -6,7 +6,7 @@ use std::fmt;
 
 /// The shortest way on foot between two places.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Way {
+pub struct GroundRoute {
     /// Positions on the ground: the start, every bend, and the end. Between two of them the way is straight.
     pub corners: Vec<DVec3>,
     /// Its length, metres.
@@ -15,7 +15,7 @@ pub struct Way {
 
 /// A connected part of the ground. No way leads from one island to another.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Island {
+pub struct GroundIsland {
     /// Its number; 0 is the largest.
     pub number: usize,
     /// Its area, square metres.
@@ -23,7 +23,7 @@ pub struct Island {
     /// The height of most of it in the world frame, metres.
     pub height_m: f64,
     /// The cover over most of it.
-    pub cover: Cover,
+    pub cover: GroundCover,
     /// Whether random paths use it.
     pub is_walked: bool,
 }
@@ -31,7 +31,7 @@ pub struct Island {
 /// The cover over a piece of ground: ceiling, sky, or too low a ceiling.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Cover {
+pub enum GroundCover {
     /// A ceiling that is high enough to stand under.
     Ceiling,
     /// The open sky.
@@ -42,7 +42,7 @@ pub enum Cover {
     Low,
 }
 
-impl fmt::Display for Cover {
+impl fmt::Display for GroundCover {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Ceiling => "under a ceiling",
@@ -53,7 +53,7 @@ impl fmt::Display for Cover {
     }
 }
 
-impl fmt::Display for Island {
+impl fmt::Display for GroundIsland {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { number, area_m2, height_m, cover, .. } = self;
         write!(f, "island {number}: {area_m2:.1} m2 at height {height_m:.1} m, {cover}")

@@ -33,7 +33,7 @@ pub enum Side {
 /// The four directions of a panorama by the compass; north is +y.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Compass {
+pub enum CompassPoint {
     /// +y, heading 0.
     North,
     /// +x, heading π/2.
@@ -53,10 +53,10 @@ impl Heading {
     /// # Errors
     /// When `rad` is NaN or infinite.
     pub fn new(rad: f64) -> Result<Self, NotFinite> {
-        if rad.is_finite() { Ok(Self::wrapped(rad)) } else { Err(NotFinite(rad)) }
+        if rad.is_finite() { Ok(Self::wrap_angle(rad)) } else { Err(NotFinite(rad)) }
     }
 
-    fn wrapped(rad: f64) -> Self {
+    fn wrap_angle(rad: f64) -> Self {
         let rad = rad.rem_euclid(TAU);
         // rem_euclid rounds up to TAU itself for tiny negative angles.
         Self(if rad >= TAU { 0.0 } else { rad })
@@ -67,7 +67,7 @@ impl Heading {
     pub fn towards(from: DVec3, to: DVec3) -> Option<Self> {
         let (dx, dy) = (to.x - from.x, to.y - from.y);
         let far_enough = libm::hypot(dx, dy) > 1e-6;
-        far_enough.then(|| Self::wrapped(libm::atan2(dx, dy)))
+        far_enough.then(|| Self::wrap_angle(libm::atan2(dx, dy)))
     }
 
     /// Radians in [0, 2π).
@@ -84,8 +84,8 @@ impl Heading {
 
     /// This heading after a turn; positive is clockwise (right).
     #[must_use]
-    pub fn turned(self, rad: f64) -> Self {
-        Self::wrapped(self.0 + rad)
+    pub fn turned_by(self, rad: f64) -> Self {
+        Self::wrap_angle(self.0 + rad)
     }
 
     /// The smallest turn that leads from `self` to `other`: in (-π, π], positive is right.
@@ -109,15 +109,15 @@ impl Heading {
 
     /// The unit vector along this heading, horizontal.
     #[must_use]
-    pub fn direction(self) -> DVec3 {
+    pub fn unit_vector(self) -> DVec3 {
         DVec3::new(libm::sin(self.0), libm::cos(self.0), 0.0)
     }
 
     /// The unit vector along this heading, raised by an elevation, radians.
     #[must_use]
-    pub fn raised(self, elevation_rad: f64) -> DVec3 {
+    pub fn raised_vector(self, elevation_rad: f64) -> DVec3 {
         let (up, along) = libm::sincos(elevation_rad);
-        self.direction() * along + DVec3::Z * up
+        self.unit_vector() * along + DVec3::Z * up
     }
 }
 
@@ -150,13 +150,13 @@ impl Side {
     }
 }
 
-impl Compass {
+impl CompassPoint {
     /// All four, clockwise from north.
     pub const ALL: [Self; 4] = [Self::North, Self::East, Self::South, Self::West];
 
     /// The heading that looks there.
     #[must_use]
-    pub fn heading(self) -> Heading {
+    pub fn to_heading(self) -> Heading {
         Heading(FRAC_PI_2 * f64::from(self as u8))
     }
 
@@ -200,13 +200,13 @@ mod tests {
             let (a, b) = (Heading::new(a).unwrap(), Heading::new(b).unwrap());
             let turn = a.turn_to(b);
             prop_assert!(turn > -PI - 1e-12 && turn <= PI);
-            prop_assert!(a.turned(turn).turn_to(b).abs() < 1e-9);
+            prop_assert!(a.turned_by(turn).turn_to(b).abs() < 1e-9);
         }
 
         #[test]
         fn direction_and_heading_are_inverse(rad in 0.0..TAU) {
             let heading = Heading::new(rad).unwrap();
-            let back = Heading::towards(DVec3::ZERO, heading.direction()).unwrap();
+            let back = Heading::towards(DVec3::ZERO, heading.unit_vector()).unwrap();
             prop_assert!(heading.turn_to(back).abs() < 1e-9);
         }
 
@@ -214,7 +214,7 @@ mod tests {
         fn every_direction_lies_on_the_side_whose_turn_is_nearest(a in 0.0..TAU, b in 0.0..TAU) {
             let (a, b) = (Heading::new(a).unwrap(), Heading::new(b).unwrap());
             let side = a.side_of(b);
-            prop_assert!(a.turned(side.turn_rad()).turn_to(b).abs() <= PI / 4.0 + 1e-9);
+            prop_assert!(a.turned_by(side.turn_rad()).turn_to(b).abs() <= PI / 4.0 + 1e-9);
         }
     }
 }

@@ -18,7 +18,7 @@ pub struct InvalidId {
     reason: &'static str,
 }
 
-fn validated(kind: &'static str, text: String) -> Result<String, InvalidId> {
+fn validate_id(kind: &'static str, text: String) -> Result<String, InvalidId> {
     let reason = if text.is_empty() {
         "is empty"
     } else if text.len() > MAX_ID_BYTES {
@@ -47,7 +47,7 @@ macro_rules! id_type {
             /// # Errors
             /// When it is empty, longer than [`MAX_ID_BYTES`], or holds a path separator or a control character.
             pub fn new(text: impl Into<String>) -> Result<Self, InvalidId> {
-                validated($kind, text.into()).map(Self)
+                validate_id($kind, text.into()).map(Self)
             }
 
             /// The id as text.

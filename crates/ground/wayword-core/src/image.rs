@@ -44,7 +44,7 @@ impl Image {
 
     /// The pixels: rows from the top, RGB.
     #[must_use]
-    pub fn rgb(&self) -> &[u8] {
+    pub fn rgb_bytes(&self) -> &[u8] {
         &self.rgb
     }
 }

@@ -1,6 +1,6 @@
 //! An instruction, with its verdict and with links from its words to the evidence.
 
-use crate::{Ambiguity, Finding, Verdict};
+use crate::{CheckFinding, TextAmbiguity, Verdict};
 use serde::{Deserialize, Serialize};
 
 /// Longest text of an instruction, bytes, whether it comes from a dataset or from a model. An instruction is a few
@@ -15,21 +15,21 @@ pub struct Instruction {
     /// Name of the style it is written in.
     pub style: String,
     /// The parts of the text that have evidence, in the order of the text.
-    pub mentions: Vec<Mention>,
+    pub mentions: Vec<TextMention>,
     /// All checks together.
     pub verdict: Verdict,
     /// Each check's outcome.
-    pub findings: Vec<Finding>,
+    pub findings: Vec<CheckFinding>,
     /// What the text may mean; `None` where it was not examined, as in records of older versions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub ambiguity: Option<Ambiguity>,
+    pub ambiguity: Option<TextAmbiguity>,
     /// How it came about.
-    pub provenance: Provenance,
+    pub provenance: TextProvenance,
 }
 
 /// Words of an instruction that name something on the path.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Mention {
+pub struct TextMention {
     /// Byte range in the text.
     pub span: [usize; 2],
     /// The kind of thing that they name.
@@ -56,7 +56,7 @@ pub enum MentionKind {
 
 /// How an instruction came about.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Provenance {
+pub struct TextProvenance {
     /// Version of Wayword that made it.
     pub wayword: String,
     /// The asker of questions about the frames (`rules`, `provider/model`).
@@ -86,7 +86,7 @@ pub struct Provenance {
     pub finished_for: Option<String>,
     /// How it was chosen, where several texts were written.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub chosen: Option<Chosen>,
+    pub chosen: Option<TextSelection>,
     /// Whether the path has a target that was not visible from the last frame: the writer knew its name alone.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub target_undescribed: bool,
@@ -94,7 +94,7 @@ pub struct Provenance {
 
 /// How a text was chosen among several.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Chosen {
+pub struct TextSelection {
     /// How many texts were written, repairs left out.
     pub among: u32,
     /// How many of them passed their checks.

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 /// An object that is visible from a pose, as the platform's ground truth has it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Label {
+pub struct ObjectLabel {
     /// Its id in the scene.
     pub object: ObjectId,
     /// Its name in plain words ("coffee table").

@@ -38,38 +38,42 @@ pub mod survey;
 pub mod verdict;
 pub mod view;
 
-pub use action::{Action, NoAction};
-pub use ambiguity::Ambiguity;
+pub use action::{AgentAction, NoAction};
+pub use ambiguity::TextAmbiguity;
 pub use caption::{
-    Answer, AnswerForm, Answerer, Ask, Caption, Exchange, Form, Sighting, Spot, Trouble, WayOut, Where, Witness,
+    AnswerForm, AnswerText, AnswerTrouble, Caption, DetectionSpot, DialogueExchange, FormOutcome, ObjectSighting,
+    ViewAnswerer, ViewQuestion, ViewThird, WayOut, WitnessAnswer,
 };
-pub use condition::{Condition, Fit, GraphSize, Lack, RoomNames};
-pub use contain::contained;
-pub use depth::Depth;
-pub use detector::{Detector, Found, Grounded, MOST_BOXES, Scoring, apart};
-pub use doubt::{Alternative, Cause, Doubt, Grade};
-pub use encoder::{Grounder, TextEncoder};
-pub use failure::Failure;
+pub use condition::{GraphFit, GraphSize, RoomNames, SceneCondition, SceneLack};
+pub use contain::run_contained;
+pub use depth::DepthImage;
+pub use detector::{DetectedBox, DetectorGrounder, DetectorScoring, MOST_BOXES, ObjectDetector, without_overlaps};
+pub use doubt::{DoubtAlternative, DoubtCause, DoubtGrade, TextDoubt};
+pub use encoder::{PhraseGrounder, TextEncoder};
+pub use failure::FailureKind;
 pub use from_above::FromAbove;
 pub use glam::{DMat3, DVec3};
-pub use graph::{Route, ViewpointGraph};
-pub use ground::{Cover, Island, Way};
-pub use heading::{Compass, Heading, Side};
+pub use graph::{ViewpointGraph, ViewpointRoute};
+pub use ground::{GroundCover, GroundIsland, GroundRoute};
+pub use heading::{CompassPoint, Heading, Side};
 pub use id::{ObjectId, SceneId, ViewpointId};
 pub use image::Image;
-pub use instruction::{Chosen, ChosenBy, Instruction, LONGEST_TEXT_BYTES, Mention, MentionKind, Provenance};
-pub use label::Label;
-pub use model::{
-    Finish, LanguageModel, Message, ModelError, Reply, Request, Role, Sampling, Schema, Tool, Usage, tool_line,
+pub use instruction::{
+    ChosenBy, Instruction, LONGEST_TEXT_BYTES, MentionKind, TextMention, TextProvenance, TextSelection,
 };
-pub use motion::{Climb, Motion, Move, Turn};
-pub use observation::{Look, Observation};
-pub use path::{Description, Distinction, Frame, Path, Relation, Target};
+pub use label::ObjectLabel;
+pub use model::{
+    ChatMessage, FinishReason, LanguageModel, MessageRole, ModelError, ModelReply, ModelRequest, ModelTool, ModelUsage,
+    ReplySchema, SamplingOptions, tool_line,
+};
+pub use motion::{ClimbDirection, PathMotion, PathMove, TurnKind};
+pub use observation::{CaptionedView, FrameObservation};
+pub use path::{Frame, ObjectDescription, ObjectDistinction, ObjectRelation, Path, PathTarget};
 pub use platform::{PathRequest, Platform, PlatformError};
 pub use pose::Pose;
-pub use recent::Recent;
-pub use seed::rng;
-pub use style::{Choice, Constraints, Style};
-pub use survey::{Placed, Survey, Surveyed};
-pub use verdict::{Check, Finding, Verdict};
-pub use view::{Gaze, GroundTruth, View};
+pub use recent::RecentCache;
+pub use seed::seeded_rng;
+pub use style::{InstructionStyle, StyleConstraints, WordingPolicy};
+pub use survey::{PlacedObject, SurveyedViewpoint, ViewpointSurvey};
+pub use verdict::{CheckFinding, CheckKind, Verdict};
+pub use view::{GroundTruth, View, ViewGaze};

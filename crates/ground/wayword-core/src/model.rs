@@ -1,13 +1,13 @@
 //! Language models: requests, replies and failures.
 
-use crate::{Failure, Image};
+use crate::{FailureKind, Image};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// The speaker of a message.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Role {
+pub enum MessageRole {
     /// The program, with instructions on how the model is to behave.
     System,
     /// The one that asks the model.
@@ -18,9 +18,9 @@ pub enum Role {
 
 /// One message of a conversation.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Message {
+pub struct ChatMessage {
     /// The speaker.
-    pub role: Role,
+    pub role: MessageRole,
     /// Its words.
     pub text: String,
     /// The pictures that go with it, in order, for a model that sees.
@@ -29,7 +29,7 @@ pub struct Message {
 
 /// How a model samples its words.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Sampling {
+pub struct SamplingOptions {
     /// 0 gives the likeliest words.
     pub temperature: f64,
     /// Most tokens of the reply.
@@ -40,24 +40,24 @@ pub struct Sampling {
 
 /// Everything that one call sends to a model.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Request {
+pub struct ModelRequest {
     /// The conversation so far; the last message is the user's.
-    pub messages: Vec<Message>,
+    pub messages: Vec<ChatMessage>,
     /// How the reply is sampled.
-    pub sampling: Sampling,
+    pub sampling: SamplingOptions,
     /// Number of this request among equal ones that each need a new answer; 0 for the first.
     pub replicate: u32,
     /// The form of the reply, where it is to be JSON. Services that can hold a model to it do.
-    pub schema: Option<Schema>,
+    pub schema: Option<ReplySchema>,
     /// The tools that the model may call; empty for none. The prompt has to explain in words how to call them, because
     /// not
     /// every service has tool calls.
-    pub tools: &'static [Tool],
+    pub tools: &'static [ModelTool],
 }
 
 /// A tool that a model may call.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Tool {
+pub struct ModelTool {
     /// Its name: letters and underscores.
     pub name: &'static str,
     /// Its purpose, in words for the model.
@@ -68,7 +68,7 @@ pub struct Tool {
 
 /// A form of JSON, in the words of JSON Schema.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Schema {
+pub struct ReplySchema {
     /// Its name: letters and underscores.
     pub name: &'static str,
     /// The schema as text.
@@ -77,19 +77,19 @@ pub struct Schema {
 
 /// A model's reply.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Reply {
+pub struct ModelReply {
     /// Its words, without reasoning that the service marks. After them, each call of a tool is a line of its own, as
     /// [`tool_line`] makes it: a model behind a service without tool calls writes the same line itself.
     pub text: String,
     /// Why it ended.
-    pub finish: Finish,
+    pub finish: FinishReason,
     /// Tokens, price and time; `None` where the service does not count them.
-    pub usage: Option<Usage>,
+    pub usage: Option<ModelUsage>,
 }
 
 /// The usage of one call of a model.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Usage {
+pub struct ModelUsage {
     /// Tokens of the request.
     pub tokens_in: u64,
     /// Tokens of the reply.
@@ -110,7 +110,7 @@ pub fn tool_line(name: &str, arguments: &str) -> String {
 /// Why a reply ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Finish {
+pub enum FinishReason {
     /// The model was done.
     Stop,
     /// The limit of tokens cut it off.
@@ -125,7 +125,7 @@ pub trait LanguageModel: Send + Sync {
     fn name(&self) -> &str;
 
     /// One result per request, in their order. One that fails does not fail the others.
-    fn complete(&self, requests: &[Request]) -> Vec<Result<Reply, ModelError>>;
+    fn complete_requests(&self, requests: &[ModelRequest]) -> Vec<Result<ModelReply, ModelError>>;
 }
 
 /// Why a role could not do what it was asked.
@@ -170,28 +170,28 @@ pub enum ModelError {
     },
 }
 
-impl Message {
+impl ChatMessage {
     /// A user's message in words alone.
     #[must_use]
-    pub fn user(text: impl Into<String>) -> Self {
-        Self { role: Role::User, text: text.into(), images: Vec::new() }
+    pub fn from_user(text: impl Into<String>) -> Self {
+        Self { role: MessageRole::User, text: text.into(), images: Vec::new() }
     }
 
     /// A user's message about pictures.
     #[must_use]
-    pub fn about(text: impl Into<String>, images: Vec<Arc<Image>>) -> Self {
-        Self { role: Role::User, text: text.into(), images }
+    pub fn about_images(text: impl Into<String>, images: Vec<Arc<Image>>) -> Self {
+        Self { role: MessageRole::User, text: text.into(), images }
     }
 }
 
 impl ModelError {
     /// Its kind of failure, where it does not end the run.
     #[must_use]
-    pub fn failure(&self) -> Failure {
+    pub fn failure_kind(&self) -> FailureKind {
         match self {
-            Self::NothingToSee { .. } => Failure::Missing,
-            Self::Failed { .. } => Failure::Broken,
-            Self::Lost { .. } | Self::Stopped { .. } => Failure::Lost,
+            Self::NothingToSee { .. } => FailureKind::Missing,
+            Self::Failed { .. } => FailureKind::Broken,
+            Self::Lost { .. } | Self::Stopped { .. } => FailureKind::Lost,
         }
     }
 

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 /// Whether a path's frames have poses.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Motion {
+pub enum PathMotion {
     /// The frames' poses are those of the path.
     #[default]
     Known,
@@ -15,7 +15,7 @@ pub enum Motion {
     Unknown,
 }
 
-impl Motion {
+impl PathMotion {
     /// Whether the frames' poses mean something.
     #[must_use]
     pub fn is_known(&self) -> bool {
@@ -25,7 +25,7 @@ impl Motion {
     /// Whether a path with this number of frames goes anywhere. Without poses the program knows only the number of
     /// frames: one alone is both start and end.
     #[must_use]
-    pub fn goes_anywhere(self, moves: &[Move], frames: usize) -> bool {
+    pub fn goes_anywhere(self, moves: &[PathMove], frames: usize) -> bool {
         match self {
             Self::Known => moves.iter().any(|step| step.distance_m > 0.0),
             Self::Unknown => frames > 1,
@@ -37,7 +37,7 @@ impl Motion {
 ///
 /// The first move of a path holds the opening turn, from the episode's heading to the first hop.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Move {
+pub struct PathMove {
     /// Turn before walking, radians in (-π, π], positive right.
     pub turn_rad: f64,
     /// Straight-line distance walked, metres.
@@ -49,7 +49,7 @@ pub struct Move {
 /// A turn as people describe it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Turn {
+pub enum TurnKind {
     /// Under [`SLIGHT_DEG`]: too small to mention.
     Straight,
     /// Between [`SLIGHT_DEG`] and [`FULL_DEG`] to the left.
@@ -67,7 +67,7 @@ pub enum Turn {
 /// Whether a move goes up, goes down or stays level.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Climb {
+pub enum ClimbDirection {
     /// Less than [`CLIMB_M`] of rise.
     Level,
     /// Upwards.
@@ -97,10 +97,10 @@ pub const BEND_STEP_DEG: f64 = 10.0;
 /// Longest such bend, moves: a corner is rounded in two or three hops between viewpoints.
 pub const BEND_MOVES: usize = 3;
 
-impl Move {
+impl PathMove {
     /// The move between two poses.
     #[must_use]
-    pub fn between(from: &Pose, to: &Pose) -> Self {
+    pub fn between_poses(from: &Pose, to: &Pose) -> Self {
         Self {
             turn_rad: from.heading.turn_to(to.heading),
             distance_m: from.position.distance(to.position),
@@ -110,14 +110,14 @@ impl Move {
 
     /// The word for its turn.
     #[must_use]
-    pub fn turn(&self) -> Turn {
-        Turn::from_rad(self.turn_rad)
+    pub fn turn(&self) -> TurnKind {
+        TurnKind::from_rad(self.turn_rad)
     }
 
     /// Whether it climbs.
     #[must_use]
-    pub fn climb(&self) -> Climb {
-        Climb::from_rise(self.rise_m)
+    pub fn climb(&self) -> ClimbDirection {
+        ClimbDirection::from_rise(self.rise_m)
     }
 }
 
@@ -127,17 +127,17 @@ const FLAT_M: f64 = 0.05;
 /// The flight of stairs that begins with a move: its last move, and whether it goes up or down. Rises in one direction
 /// add up.
 #[must_use]
-pub fn flight(moves: &[Move], first: usize) -> Option<(usize, Climb)> {
+pub fn flight_from(moves: &[PathMove], first: usize) -> Option<(usize, ClimbDirection)> {
     let way = moves.get(first)?.rise_m.signum();
     let last = (first..moves.len()).take_while(|at| moves[*at].rise_m * way > FLAT_M).last()?;
     let total_m: f64 = moves[first..=last].iter().map(|step| step.rise_m).sum();
-    match Climb::from_rise(total_m) {
-        Climb::Level => None,
+    match ClimbDirection::from_rise(total_m) {
+        ClimbDirection::Level => None,
         climb => Some((last, climb)),
     }
 }
 
-impl Turn {
+impl TurnKind {
     /// The word for a turn of `turn_rad` radians, positive right.
     #[must_use]
     pub fn from_rad(turn_rad: f64) -> Self {
@@ -163,7 +163,7 @@ impl Turn {
     }
 }
 
-impl Climb {
+impl ClimbDirection {
     /// The word for a rise of `rise_m` metres.
     #[must_use]
     pub fn from_rise(rise_m: f64) -> Self {
@@ -185,31 +185,31 @@ mod tests {
     use proptest::prelude::*;
 
     fn pose(x: f64, y: f64, z: f64, deg: f64) -> Pose {
-        Pose::level(DVec3::new(x, y, z), Heading::new(deg.to_radians()).unwrap())
+        Pose::looking_level(DVec3::new(x, y, z), Heading::new(deg.to_radians()).unwrap())
     }
 
     #[test]
     fn a_quarter_clockwise_is_a_right_turn() {
-        let step = Move::between(&pose(0.0, 0.0, 0.0, 350.0), &pose(2.0, 0.0, 0.0, 80.0));
-        assert_eq!(step.turn(), Turn::Right);
-        assert_eq!(step.climb(), Climb::Level);
+        let step = PathMove::between_poses(&pose(0.0, 0.0, 0.0, 350.0), &pose(2.0, 0.0, 0.0, 80.0));
+        assert_eq!(step.turn(), TurnKind::Right);
+        assert_eq!(step.climb(), ClimbDirection::Level);
         assert!((step.distance_m - 2.0).abs() < 1e-12);
     }
 
     #[test]
     fn the_words_of_turns_change_at_their_limits() {
-        let word = |deg: f64| Turn::from_rad(deg.to_radians());
-        assert_eq!(word(29.9), Turn::Straight);
-        assert_eq!(word(-31.0), Turn::SlightLeft);
-        assert_eq!(word(-55.1), Turn::Left);
-        assert_eq!(word(151.0), Turn::Around);
-        assert_eq!(word(-180.0), Turn::Around);
+        let word = |deg: f64| TurnKind::from_rad(deg.to_radians());
+        assert_eq!(word(29.9), TurnKind::Straight);
+        assert_eq!(word(-31.0), TurnKind::SlightLeft);
+        assert_eq!(word(-55.1), TurnKind::Left);
+        assert_eq!(word(151.0), TurnKind::Around);
+        assert_eq!(word(-180.0), TurnKind::Around);
     }
 
     proptest! {
         #[test]
         fn mirrored_turns_have_mirrored_words(deg in 0.1..149.0f64) {
-            let (right, left) = (Turn::from_rad(deg.to_radians()), Turn::from_rad(-deg.to_radians()));
+            let (right, left) = (TurnKind::from_rad(deg.to_radians()), TurnKind::from_rad(-deg.to_radians()));
             match right.side() {
                 None => prop_assert_eq!(left, right),
                 Some(side) => {

@@ -1,22 +1,22 @@
 //! The observation of one frame: the captions of its views, and a summary of them.
 
-use crate::{Caption, Gaze, Heading, Side, Sighting};
+use crate::{Caption, Heading, ObjectSighting, Side, ViewGaze};
 use serde::{Deserialize, Serialize};
 
 /// A view in one direction from a frame, with its caption.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Look {
+pub struct CaptionedView {
     /// The direction and width of the view.
-    pub gaze: Gaze,
+    pub gaze: ViewGaze,
     /// Its caption.
     pub caption: Caption,
 }
 
 /// All captions of one frame.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct Observation {
+pub struct FrameObservation {
     /// One view where only the central one was captioned, four where the panorama was.
-    pub looks: Vec<Look>,
+    pub looks: Vec<CaptionedView>,
     /// The frame in words: the caption of the only look, or the four condensed to under 20 words.
     pub summary: String,
     /// The summariser, where the run's own failed and another one condensed them.
@@ -24,18 +24,18 @@ pub struct Observation {
     pub by: Option<String>,
 }
 
-impl Look {
+impl CaptionedView {
     /// The side of an agent that looks along `heading` on which an object of this view lies; `None` where the caption
     /// gives no place.
     #[must_use]
-    pub fn side_of(&self, sighting: &Sighting, heading: Heading) -> Option<Side> {
+    pub fn side_of(&self, sighting: &ObjectSighting, heading: Heading) -> Option<Side> {
         let place = sighting.place?;
         let off_rad = heading.turn_to(self.gaze.heading);
         if off_rad.abs() < 0.1 {
-            return Some(place.side());
+            return Some(place.to_side());
         }
         let within_rad =
             sighting.spot.map_or_else(|| place.turn_rad(self.gaze.horizontal_fov_rad), |spot| spot.off_rad);
-        Some(heading.side_of(self.gaze.heading.turned(within_rad)))
+        Some(heading.side_of(self.gaze.heading.turned_by(within_rad)))
     }
 }

@@ -1,6 +1,6 @@
 //! A path through a scene: frames in order, and the target where there is one.
 
-use crate::{Heading, Motion, Move, ObjectId, Pose, SceneId, Side, ViewpointId};
+use crate::{Heading, ObjectId, PathMotion, PathMove, Pose, SceneId, Side, ViewpointId};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -27,23 +27,23 @@ pub struct Path {
     /// At least one frame. The first looks along the episode's heading, every later one along the hop just made.
     pub frames: Vec<Frame>,
     /// Whether the frames' poses mean anything.
-    #[serde(default, skip_serializing_if = "Motion::is_known")]
-    pub motion: Motion,
+    #[serde(default, skip_serializing_if = "PathMotion::is_known")]
+    pub motion: PathMotion,
     /// The object that the task at the end is about, where there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub target: Option<Target>,
+    pub target: Option<PathTarget>,
 }
 
 /// The object that an instruction's task is about.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Target {
+pub struct PathTarget {
     /// Its id in the scene.
     pub object: ObjectId,
     /// Its name, as the labels have it.
     pub name: String,
     /// Ways to tell it from its namesakes at the last frame, best first; empty where none is visible.
     #[serde(default)]
-    pub told_by: Vec<Distinction>,
+    pub told_by: Vec<ObjectDistinction>,
     /// Whether something of the same name is visible at the last frame too.
     #[serde(default)]
     pub has_namesake: bool,
@@ -51,7 +51,7 @@ pub struct Target {
     /// object,
     /// or else those that leave fewest. Empty where the platform knows no rooms or objects of the building.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub descriptions: Vec<Description>,
+    pub descriptions: Vec<ObjectDescription>,
     /// Whether it certainly hangs on a wall.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub hangs: bool,
@@ -67,17 +67,17 @@ fn is_zero(count: &usize) -> bool {
 
 /// Facts about an object that distinguish it from others, in addition to its name and the kind of its room.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct Description {
+pub struct ObjectDescription {
     /// The facts; all are true of the object.
-    pub by: Vec<Distinction>,
+    pub by: Vec<ObjectDistinction>,
     /// How many objects of the building fit all of that, the object itself counted.
     pub leaves: usize,
 }
 
-impl Description {
+impl ObjectDescription {
     /// Whether it fits one object alone.
     #[must_use]
-    pub fn pins(&self) -> bool {
+    pub fn fits_one_object(&self) -> bool {
         self.leaves == 1
     }
 }
@@ -85,7 +85,7 @@ impl Description {
 /// One way to tell an object from its namesakes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "by", rename_all = "snake_case")]
-pub enum Distinction {
+pub enum ObjectDistinction {
     /// Its colour, which no namesake has.
     Colour {
         /// The word for it.
@@ -109,7 +109,7 @@ pub enum Distinction {
     /// Where it is from an object of this name, as seen from the last frame.
     Related {
         /// The relation between the two.
-        relation: Relation,
+        relation: ObjectRelation,
         /// Name of the other.
         to: String,
     },
@@ -154,7 +154,7 @@ pub enum Distinction {
 /// The spatial relation of an object to another that is near it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Relation {
+pub enum ObjectRelation {
     /// Next to it, or close to it.
     Near,
     /// Over it.
@@ -169,7 +169,7 @@ pub enum Relation {
     RightOf,
 }
 
-impl Relation {
+impl ObjectRelation {
     /// The preposition: "above".
     #[must_use]
     pub fn word(self) -> &'static str {
@@ -184,7 +184,7 @@ impl Relation {
     }
 }
 
-impl Distinction {
+impl ObjectDistinction {
     /// Whether it distinguishes the room, and not the object in the room.
     #[must_use]
     pub fn is_of_room(&self) -> bool {
@@ -192,7 +192,7 @@ impl Distinction {
     }
 
     /// The other rooms and things that it names, in addition to the object.
-    pub fn names(&self) -> impl Iterator<Item = &str> {
+    pub fn named_things(&self) -> impl Iterator<Item = &str> {
         let (one, other) = match self {
             Self::NextTo { neighbour: name }
             | Self::Related { to: name, .. }
@@ -206,7 +206,7 @@ impl Distinction {
 
     /// Words that follow "it is": "next to the bed".
     #[must_use]
-    pub fn predicate(&self) -> String {
+    pub fn to_predicate(&self) -> String {
         let side = |side: Side| match side {
             Side::Ahead => "ahead",
             Side::Right => "on the right",
@@ -236,7 +236,7 @@ impl Distinction {
     /// Whether it is true only for a person at the last frame who looks along the path.
     #[must_use]
     pub fn needs_pose(&self) -> bool {
-        use Relation::{LeftOf, RightOf};
+        use ObjectRelation::{LeftOf, RightOf};
         let by_side = matches!(self, Self::Related { relation: LeftOf | RightOf, .. });
         by_side || matches!(self, Self::OnSide { .. } | Self::Range { .. } | Self::InRow { .. } | Self::Level { .. })
     }
@@ -246,7 +246,7 @@ impl Frame {
     /// A key that is equal for frames at one place, which see the same. It contains the viewpoint's name as well as
     /// the position, because frames without poses differ only by name.
     #[must_use]
-    pub fn place(&self) -> ([u64; 3], Option<ViewpointId>) {
+    pub fn place_key(&self) -> ([u64; 3], Option<ViewpointId>) {
         (self.pose.position.to_array().map(f64::to_bits), self.viewpoint.clone())
     }
 }
@@ -255,7 +255,7 @@ impl Path {
     /// Frames along `stops`. The first looks along `start_heading` (along the first hop where there is none), each
     /// later one along the hop just made. A hop straight up or down keeps the heading.
     #[must_use]
-    pub fn frames_along(stops: Vec<Stop>, start_heading: Option<Heading>) -> Vec<Frame> {
+    pub fn frames_along(stops: Vec<PathStop>, start_heading: Option<Heading>) -> Vec<Frame> {
         let first_hop = stops.windows(2).find_map(|pair| Heading::towards(pair[0].position, pair[1].position));
         let mut heading = start_heading.or(first_hop).unwrap_or(Heading::NORTH);
         let mut before: Option<DVec3> = None;
@@ -266,7 +266,11 @@ impl Path {
                     heading = hop;
                 }
                 before = Some(stop.position);
-                Frame { pose: Pose::level(stop.position, heading), viewpoint: stop.viewpoint, level: stop.level }
+                Frame {
+                    pose: Pose::looking_level(stop.position, heading),
+                    viewpoint: stop.viewpoint,
+                    level: stop.level,
+                }
             })
             .collect()
     }
@@ -274,11 +278,11 @@ impl Path {
     /// The moves between its frames, one fewer than frames: move `i` turns at frame `i` and walks to frame `i + 1`.
     /// Empty where the motion is unknown.
     #[must_use]
-    pub fn moves(&self) -> Vec<Move> {
+    pub fn moves(&self) -> Vec<PathMove> {
         if !self.motion.is_known() {
             return Vec::new();
         }
-        self.frames.windows(2).map(|pair| Move::between(&pair[0].pose, &pair[1].pose)).collect()
+        self.frames.windows(2).map(|pair| PathMove::between_poses(&pair[0].pose, &pair[1].pose)).collect()
     }
 
     /// Its length, metres; `None` where the motion is unknown.
@@ -290,7 +294,7 @@ impl Path {
 
 /// A position on a path before its heading is known.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Stop {
+pub struct PathStop {
     /// The eye, metres, world frame.
     pub position: DVec3,
     /// The node of the viewpoint graph, where it is one.
@@ -303,16 +307,16 @@ pub struct Stop {
 mod tests {
     use super::*;
 
-    fn stop(x: f64, y: f64, z: f64) -> Stop {
-        Stop { position: DVec3::new(x, y, z), viewpoint: None, level: None }
+    fn stop(x: f64, y: f64, z: f64) -> PathStop {
+        PathStop { position: DVec3::new(x, y, z), viewpoint: None, level: None }
     }
 
-    fn path(stops: Vec<Stop>, start: Option<Heading>) -> Path {
+    fn path(stops: Vec<PathStop>, start: Option<Heading>) -> Path {
         Path {
             id: "p".into(),
             scene: SceneId::new("s").unwrap(),
             frames: Path::frames_along(stops, start),
-            motion: Motion::Known,
+            motion: PathMotion::Known,
             target: None,
         }
     }
@@ -342,18 +346,18 @@ mod tests {
     #[test]
     fn place_differs_by_name_where_frames_have_no_poses() {
         let frame = |name: &str| Frame {
-            pose: Pose::level(DVec3::ZERO, Heading::NORTH),
+            pose: Pose::looking_level(DVec3::ZERO, Heading::NORTH),
             viewpoint: Some(ViewpointId::new(name).unwrap()),
             level: None,
         };
-        assert_ne!(frame("a").place(), frame("b").place());
-        assert_eq!(frame("a").place(), frame("a").place());
+        assert_ne!(frame("a").place_key(), frame("b").place_key());
+        assert_eq!(frame("a").place_key(), frame("a").place_key());
     }
 
     #[test]
     fn unknown_motion_has_no_moves_and_no_length() {
         let known = path(vec![stop(0.0, 0.0, 0.0), stop(2.0, 0.0, 0.0)], None);
-        let unknown = Path { motion: Motion::Unknown, ..known.clone() };
+        let unknown = Path { motion: PathMotion::Unknown, ..known.clone() };
         assert_eq!((unknown.moves(), unknown.length_m()), (Vec::new(), None));
         assert_eq!(known.length_m(), Some(2.0));
         // Paths with poses are written as before.

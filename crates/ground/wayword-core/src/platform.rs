@@ -1,8 +1,8 @@
 //! The trait that every platform implements: scenes, their graphs, views, labels and ground.
 
 use crate::{
-    Condition, Depth, Failure, Frame, FromAbove, Gaze, Island, ObjectId, Path, Placed, SceneId, View, ViewpointGraph,
-    ViewpointId, Way, graph::GraphError,
+    DepthImage, FailureKind, Frame, FromAbove, GroundIsland, GroundRoute, ObjectId, Path, PlacedObject, SceneCondition,
+    SceneId, View, ViewGaze, ViewpointGraph, ViewpointId, graph::GraphError,
 };
 use serde::{Deserialize, Serialize};
 use std::{
@@ -24,37 +24,37 @@ pub trait Platform: Send + Sync {
     ///
     /// # Errors
     /// When its data cannot be read.
-    fn scenes(&self) -> Result<Vec<SceneId>, PlatformError>;
+    fn list_scenes(&self) -> Result<Vec<SceneId>, PlatformError>;
 
     /// Checks that scenes can be read, where the platform can find out before a run begins. It skips scenes that it
     /// does not have.
     ///
     /// # Errors
     /// When a scene cannot be read.
-    fn check(&self, _scenes: &BTreeSet<&SceneId>) -> Result<(), PlatformError> {
+    fn check_scenes(&self, _scenes: &BTreeSet<&SceneId>) -> Result<(), PlatformError> {
         Ok(())
     }
 
     /// The platform's own name for a scene that it knows by several names; else the same name.
-    fn called(&self, scene: &SceneId) -> SceneId {
+    fn canonical_scene(&self, scene: &SceneId) -> SceneId {
         scene.clone()
     }
 
-    /// The scenes of its data that [`examine`](Self::examine) knows, sorted: those that it can offer, and those that
+    /// The scenes of its data that [`examine_scene`](Self::examine_scene) knows, sorted: those that it can offer, and those that
     /// something is wrong with. Empty where it cannot know before it is asked for views.
     ///
     /// # Errors
     /// When its data cannot be read.
-    fn candidates(&self) -> Result<Vec<SceneId>, PlatformError> {
+    fn candidate_scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
         Ok(Vec::new())
     }
 
-    /// Reads the files of one of its [`candidates`](Self::candidates), and reports what they offer. A scene that
+    /// Reads the files of one of its [`candidate_scenes`](Self::candidate_scenes), and reports what they offer. A scene that
     /// cannot be used is no error here. `None` where the platform cannot find out.
     ///
     /// # Errors
     /// When the disk that holds the data has gone away.
-    fn examine(&self, _scene: &SceneId) -> Result<Option<Condition>, PlatformError> {
+    fn examine_scene(&self, _scene: &SceneId) -> Result<Option<SceneCondition>, PlatformError> {
         Ok(None)
     }
 
@@ -62,7 +62,7 @@ pub trait Platform: Send + Sync {
     ///
     /// # Errors
     /// When the scene does not exist or its data cannot be read.
-    fn graph(&self, scene: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError>;
+    fn graph_for_scene(&self, scene: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError>;
 
     /// A random path that keeps to `request`; the same seed gives the same path. Where the platform knows objects, the
     /// path's target is visible at its end.
@@ -75,22 +75,27 @@ pub trait Platform: Send + Sync {
     ///
     /// # Errors
     /// When the frame is not a place of the scene, or its data cannot be read.
-    fn look(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError>;
+    fn look_from(&self, scene: &SceneId, from: &Frame, gaze: ViewGaze) -> Result<View, PlatformError>;
 
     /// The same for a caller that needs no picture: a platform that would have to read one from a file leaves it out.
     ///
     /// # Errors
     /// When the frame is not a place of the scene, or its data cannot be read.
-    fn look_without_picture(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
-        self.look(scene, from, gaze)
+    fn look_without_picture(&self, scene: &SceneId, from: &Frame, gaze: ViewGaze) -> Result<View, PlatformError> {
+        self.look_from(scene, from, gaze)
     }
 
-    /// The distances of what [`look`](Self::look) shows from a frame, level and for the same gaze; `None` where the
+    /// The distances of what [`look_from`](Self::look_from) shows from a frame, level and for the same gaze; `None` where the
     /// platform does not know them. It is separate from the view, so that only callers that want it pay for it.
     ///
     /// # Errors
     /// When the frame is not a place of the scene, or its data cannot be read.
-    fn depth(&self, _scene: &SceneId, _from: &Frame, _gaze: Gaze) -> Result<Option<Depth>, PlatformError> {
+    fn view_depth(
+        &self,
+        _scene: &SceneId,
+        _from: &Frame,
+        _gaze: ViewGaze,
+    ) -> Result<Option<DepthImage>, PlatformError> {
         Ok(None)
     }
 
@@ -120,7 +125,7 @@ pub trait Platform: Send + Sync {
     ///
     /// # Errors
     /// When the scene does not exist or its data cannot be read.
-    fn way(&self, _scene: &SceneId, _from: &Frame, _to: &Frame) -> Result<Option<Way>, PlatformError> {
+    fn ground_route(&self, _scene: &SceneId, _from: &Frame, _to: &Frame) -> Result<Option<GroundRoute>, PlatformError> {
         Ok(None)
     }
 
@@ -128,7 +133,7 @@ pub trait Platform: Send + Sync {
     ///
     /// # Errors
     /// When the scene does not exist or its data cannot be read.
-    fn islands(&self, _scene: &SceneId) -> Result<Vec<Island>, PlatformError> {
+    fn ground_islands(&self, _scene: &SceneId) -> Result<Vec<GroundIsland>, PlatformError> {
         Ok(Vec::new())
     }
 
@@ -137,7 +142,7 @@ pub trait Platform: Send + Sync {
     ///
     /// # Errors
     /// When the scene does not exist or its data cannot be read.
-    fn listed_objects(&self, _scene: &SceneId) -> Result<Vec<Placed>, PlatformError> {
+    fn listed_objects(&self, _scene: &SceneId) -> Result<Vec<PlacedObject>, PlatformError> {
         Ok(Vec::new())
     }
 
@@ -160,7 +165,7 @@ pub trait Platform: Send + Sync {
     ///
     /// # Errors
     /// When the scene does not exist, or a folder cannot be read.
-    fn files(&self, _scene: &SceneId) -> Result<Vec<PathBuf>, PlatformError> {
+    fn source_files(&self, _scene: &SceneId) -> Result<Vec<PathBuf>, PlatformError> {
         Ok(Vec::new())
     }
 }
@@ -173,44 +178,54 @@ macro_rules! platform_behind {
                 (**self).name()
             }
 
-            fn scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
-                (**self).scenes()
+            fn list_scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
+                (**self).list_scenes()
             }
 
-            fn check(&self, scenes: &BTreeSet<&SceneId>) -> Result<(), PlatformError> {
-                (**self).check(scenes)
+            fn check_scenes(&self, scenes: &BTreeSet<&SceneId>) -> Result<(), PlatformError> {
+                (**self).check_scenes(scenes)
             }
 
-            fn called(&self, scene: &SceneId) -> SceneId {
-                (**self).called(scene)
+            fn canonical_scene(&self, scene: &SceneId) -> SceneId {
+                (**self).canonical_scene(scene)
             }
 
-            fn candidates(&self) -> Result<Vec<SceneId>, PlatformError> {
-                (**self).candidates()
+            fn candidate_scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
+                (**self).candidate_scenes()
             }
 
-            fn examine(&self, scene: &SceneId) -> Result<Option<Condition>, PlatformError> {
-                (**self).examine(scene)
+            fn examine_scene(&self, scene: &SceneId) -> Result<Option<SceneCondition>, PlatformError> {
+                (**self).examine_scene(scene)
             }
 
-            fn graph(&self, scene: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {
-                (**self).graph(scene)
+            fn graph_for_scene(&self, scene: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {
+                (**self).graph_for_scene(scene)
             }
 
             fn sample_path(&self, scene: &SceneId, request: &PathRequest, seed: u64) -> Result<Path, PlatformError> {
                 (**self).sample_path(scene, request, seed)
             }
 
-            fn look(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
-                (**self).look(scene, from, gaze)
+            fn look_from(&self, scene: &SceneId, from: &Frame, gaze: ViewGaze) -> Result<View, PlatformError> {
+                (**self).look_from(scene, from, gaze)
             }
 
-            fn look_without_picture(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
+            fn look_without_picture(
+                &self,
+                scene: &SceneId,
+                from: &Frame,
+                gaze: ViewGaze,
+            ) -> Result<View, PlatformError> {
                 (**self).look_without_picture(scene, from, gaze)
             }
 
-            fn depth(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<Option<Depth>, PlatformError> {
-                (**self).depth(scene, from, gaze)
+            fn view_depth(
+                &self,
+                scene: &SceneId,
+                from: &Frame,
+                gaze: ViewGaze,
+            ) -> Result<Option<DepthImage>, PlatformError> {
+                (**self).view_depth(scene, from, gaze)
             }
 
             fn look_down(&self, scene: &SceneId, level: u32) -> Result<Option<FromAbove>, PlatformError> {
@@ -234,15 +249,20 @@ macro_rules! platform_behind {
                 (**self).visible_from(scene, object)
             }
 
-            fn way(&self, scene: &SceneId, from: &Frame, to: &Frame) -> Result<Option<Way>, PlatformError> {
-                (**self).way(scene, from, to)
+            fn ground_route(
+                &self,
+                scene: &SceneId,
+                from: &Frame,
+                to: &Frame,
+            ) -> Result<Option<GroundRoute>, PlatformError> {
+                (**self).ground_route(scene, from, to)
             }
 
-            fn islands(&self, scene: &SceneId) -> Result<Vec<Island>, PlatformError> {
-                (**self).islands(scene)
+            fn ground_islands(&self, scene: &SceneId) -> Result<Vec<GroundIsland>, PlatformError> {
+                (**self).ground_islands(scene)
             }
 
-            fn listed_objects(&self, scene: &SceneId) -> Result<Vec<Placed>, PlatformError> {
+            fn listed_objects(&self, scene: &SceneId) -> Result<Vec<PlacedObject>, PlatformError> {
                 (**self).listed_objects(scene)
             }
 
@@ -254,8 +274,8 @@ macro_rules! platform_behind {
                 (**self).scene_file(scene)
             }
 
-            fn files(&self, scene: &SceneId) -> Result<Vec<PathBuf>, PlatformError> {
-                (**self).files(scene)
+            fn source_files(&self, scene: &SceneId) -> Result<Vec<PathBuf>, PlatformError> {
+                (**self).source_files(scene)
             }
         }
     };
@@ -375,21 +395,21 @@ pub enum PlatformError {
 impl PlatformError {
     /// Its kind of failure.
     #[must_use]
-    pub fn failure(&self) -> Failure {
+    pub fn failure_kind(&self) -> FailureKind {
         match self {
             Self::UnknownScene { .. }
             | Self::UnknownViewpoint { .. }
             | Self::NotAViewpoint { .. }
             | Self::NoSuchPath { .. }
-            | Self::NoFile { .. } => Failure::Missing,
-            Self::NotDrawn { .. } | Self::Graph { .. } | Self::File { .. } => Failure::Broken,
-            Self::Lost { .. } => Failure::Lost,
+            | Self::NoFile { .. } => FailureKind::Missing,
+            Self::NotDrawn { .. } | Self::Graph { .. } | Self::File { .. } => FailureKind::Broken,
+            Self::Lost { .. } => FailureKind::Lost,
         }
     }
 
     /// The error for a file that could not be read, with the system's reason.
     #[must_use]
-    pub fn unread(file: &FilePath, error: &io::Error, hint: &'static str) -> Self {
+    pub fn for_unread_file(file: &FilePath, error: &io::Error, hint: &'static str) -> Self {
         match error.kind() {
             io::ErrorKind::NotFound => Self::NoFile { file: file.to_owned(), hint },
             _ if is_lost_disk(error) => {
@@ -402,7 +422,7 @@ impl PlatformError {
     /// The error for a frame at a place where an agent cannot be. It names the frame's viewpoint, or its position
     /// where it has none.
     #[must_use]
-    pub fn nowhere(scene: &SceneId, frame: &Frame) -> Self {
+    pub fn for_unknown_place(scene: &SceneId, frame: &Frame) -> Self {
         let eye = frame.pose.position;
         let place = format!("{:.2} {:.2} {:.2}", eye.x, eye.y, eye.z);
         let named = frame.viewpoint.clone().map_or_else(|| ViewpointId::new(place), Ok);

@@ -19,7 +19,7 @@ pub struct Pose {
 impl Pose {
     /// A pose that looks along the horizon.
     #[must_use]
-    pub fn level(position: DVec3, heading: Heading) -> Self {
+    pub fn looking_level(position: DVec3, heading: Heading) -> Self {
         Self { position, heading, elevation_rad: 0.0 }
     }
 }

@@ -9,23 +9,23 @@ use std::{
 };
 
 /// A cache of a few values by key. The value that was not asked for longest is dropped first.
-pub struct Recent<K, V> {
-    shelf: Mutex<Shelf<K, V>>,
+pub struct RecentCache<K, V> {
+    shelf: Mutex<RecentEntries<K, V>>,
     /// The lock of the thread that makes a value, where one is made at a time.
     alone: Option<Arc<Mutex<()>>>,
 }
 
-struct Shelf<K, V> {
+struct RecentEntries<K, V> {
     kept: LruCache<K, Arc<V>>,
     /// For each value that is being made, the lock of the thread that makes it.
     making: HashMap<K, Arc<Mutex<()>>>,
 }
 
-impl<K: Clone + Eq + Hash, V> Recent<K, V> {
+impl<K: Clone + Eq + Hash, V> RecentCache<K, V> {
     /// An empty cache. Values of different keys are made at the same time.
     #[must_use]
     pub fn new(capacity: usize) -> Self {
-        let shelf = Shelf { kept: LruCache::new(capacity), making: HashMap::new() };
+        let shelf = RecentEntries { kept: LruCache::new(capacity), making: HashMap::new() };
         Self { shelf: Mutex::new(shelf), alone: None }
     }
 
@@ -37,23 +37,23 @@ impl<K: Clone + Eq + Hash, V> Recent<K, V> {
 
     /// The value of a key, if the cache has it.
     pub fn get(&self, key: &K) -> Option<Arc<V>> {
-        self.shelf().kept.get(key).map(Arc::clone)
+        self.lock_entries().kept.get(key).map(Arc::clone)
     }
 
     /// Keeps a value and returns it. Where the key has a value already, that one is kept and returned.
     pub fn put(&self, key: K, value: V) -> Arc<V> {
-        self.shelf().put(key, value)
+        self.lock_entries().put_entry(key, value)
     }
 
     /// The value of a key; it is made if the cache does not have it. A thread that asks for it meanwhile waits and gets
-    /// the same value. `make` must not ask this cache for a value that has to be made; it may [`put`](Self::put)
+    /// the same value. `make` must not ask this cache for a value that has to be made; it may [`put_entry`](Self::put_entry)
     /// others.
     ///
     /// # Errors
     /// When it cannot be made. Then the cache stays as it is, and the next caller tries again.
     pub fn get_or_make<E>(&self, key: K, make: impl FnOnce() -> Result<V, E>) -> Result<Arc<V>, E> {
         let turn = {
-            let mut shelf = self.shelf();
+            let mut shelf = self.lock_entries();
             if let Some(value) = shelf.kept.get(&key) {
                 return Ok(Arc::clone(value));
             }
@@ -68,22 +68,22 @@ impl<K: Clone + Eq + Hash, V> Recent<K, V> {
             return Ok(value);
         }
         let made = make();
-        let mut shelf = self.shelf();
+        let mut shelf = self.lock_entries();
         // Where it failed and threads wait for this lock, one of them tries next. The entry stays, so that later
         // callers queue behind them.
         if made.is_ok() || Arc::strong_count(&turn) <= 2 {
             shelf.making.remove(&key);
         }
-        Ok(shelf.put(key, made?))
+        Ok(shelf.put_entry(key, made?))
     }
 
-    fn shelf(&self) -> MutexGuard<'_, Shelf<K, V>> {
+    fn lock_entries(&self) -> MutexGuard<'_, RecentEntries<K, V>> {
         self.shelf.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-impl<K: Eq + Hash, V> Shelf<K, V> {
-    fn put(&mut self, key: K, value: V) -> Arc<V> {
+impl<K: Eq + Hash, V> RecentEntries<K, V> {
+    fn put_entry(&mut self, key: K, value: V) -> Arc<V> {
         if let Some(first) = self.kept.get(&key) {
             return Arc::clone(first);
         }
@@ -93,7 +93,7 @@ impl<K: Eq + Hash, V> Shelf<K, V> {
     }
 }
 
-impl<K, V> fmt::Debug for Recent<K, V> {
+impl<K, V> fmt::Debug for RecentCache<K, V> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Recent").finish_non_exhaustive()
     }
@@ -114,7 +114,7 @@ mod tests {
 
     #[test]
     fn get_or_make_keeps_recent_values() {
-        let recent = Recent::new(2);
+        let recent = RecentCache::new(2);
         let made = Cell::new(0);
         let get = |key: u32| {
             let value = recent.get_or_make(key, || {
@@ -131,7 +131,7 @@ mod tests {
 
     #[test]
     fn the_value_unused_for_longest_is_dropped_first() {
-        let recent = Recent::new(2);
+        let recent = RecentCache::new(2);
         recent.put("a", 1);
         recent.put("b", 2);
         assert_eq!(recent.get(&"a").as_deref(), Some(&1));
@@ -141,7 +141,7 @@ mod tests {
 
     #[test]
     fn put_keeps_the_first_of_two_values() {
-        let recent = Recent::new(2);
+        let recent = RecentCache::new(2);
         assert_eq!([1, 2, 3].map(|number| *recent.put("a", number)), [1, 1, 1]);
         recent.put("b", 4);
         assert_eq!(["a", "b"].map(|key| recent.get(&key).as_deref().copied()), [Some(1), Some(4)]);
@@ -149,16 +149,16 @@ mod tests {
 
     #[test]
     fn get_or_make_keeps_no_failure() {
-        let recent = Recent::new(2);
+        let recent = RecentCache::new(2);
         assert!(recent.get_or_make(1, || Err(())).is_err());
         assert_eq!(recent.get(&1), None);
         assert_eq!(*recent.get_or_make(1, || Ok::<_, ()>(5)).unwrap(), 5);
-        assert!(recent.shelf().making.is_empty());
+        assert!(recent.lock_entries().making.is_empty());
     }
 
     #[test]
     fn a_value_is_made_once_while_others_wait_for_it() {
-        for recent in [Recent::new(4), Recent::one_at_a_time(4)] {
+        for recent in [RecentCache::new(4), RecentCache::one_at_a_time(4)] {
             let (made, together) = (AtomicUsize::new(0), Barrier::new(8));
             let get = || {
                 together.wait();
@@ -178,7 +178,7 @@ mod tests {
 
     #[test]
     fn values_of_other_keys_are_made_side_by_side_or_one_at_a_time() {
-        let most_at_once = |recent: &Recent<usize, ()>| {
+        let most_at_once = |recent: &RecentCache<usize, ()>| {
             let (now, most) = (AtomicUsize::new(0), AtomicUsize::new(0));
             let make = || {
                 most.fetch_max(now.fetch_add(1, Ordering::SeqCst) + 1, Ordering::SeqCst);
@@ -191,13 +191,13 @@ mod tests {
             });
             most.into_inner()
         };
-        assert_eq!(most_at_once(&Recent::one_at_a_time(4)), 1);
-        assert!(most_at_once(&Recent::new(4)) > 1);
+        assert_eq!(most_at_once(&RecentCache::one_at_a_time(4)), 1);
+        assert!(most_at_once(&RecentCache::new(4)) > 1);
     }
 
     #[test]
     fn make_may_put_other_values() {
-        let recent = Recent::new(4);
+        let recent = RecentCache::new(4);
         let made = recent.get_or_make(1, || {
             recent.put(2, "read along");
             Ok::<_, ()>("asked for")

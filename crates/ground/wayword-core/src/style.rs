@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 /// A kind of instruction: reference texts that show it, and the rules for every text of this kind.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Style {
+pub struct InstructionStyle {
     /// Its name, as `--style` takes it.
     pub name: String,
     /// Texts in this style. The writer imitates their shape and may not copy them.
@@ -15,17 +15,17 @@ pub struct Style {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub words: Vec<usize>,
     /// How a writer by rules chooses among wordings, apart from how often people of the style use them.
-    #[serde(default, skip_serializing_if = "Choice::is_open")]
-    pub choice: Choice,
+    #[serde(default, skip_serializing_if = "WordingPolicy::is_open")]
+    pub choice: WordingPolicy,
     /// The rules for a text of this style.
     #[serde(default)]
-    pub constraints: Constraints,
+    pub constraints: StyleConstraints,
 }
 
 /// Choices that references cannot show. A field that is `None` is left to the program.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub struct Choice {
+pub struct WordingPolicy {
     /// In which share of texts the target is described until no other object fits, 0 to 1. The others have as many
     /// details as people give.
     pub sure: Option<f64>,
@@ -33,7 +33,7 @@ pub struct Choice {
     pub sharp: Option<f64>,
 }
 
-impl Choice {
+impl WordingPolicy {
     fn is_open(&self) -> bool {
         *self == Self::default()
     }
@@ -42,7 +42,7 @@ impl Choice {
 /// Rules that a text of a style is checked against. A field that is `None` or false sets no rule.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub struct Constraints {
+pub struct StyleConstraints {
     /// Least number of sentences.
     pub min_sentences: Option<usize>,
     /// Greatest number of sentences.

@@ -17,7 +17,7 @@ pub enum Verdict {
 /// The rules that a text is checked by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Check {
+pub enum CheckKind {
     /// Sentences and words, as the style demands.
     Form,
     /// The text ends in a task on an object of the final viewpoint.
@@ -40,9 +40,9 @@ pub enum Check {
 
 /// One check's outcome, with its reason where it did not pass.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Finding {
+pub struct CheckFinding {
     /// Which check.
-    pub check: Check,
+    pub check: CheckKind,
     /// Its outcome.
     pub verdict: Verdict,
     /// Why, in a sentence; empty where it passed.
@@ -53,7 +53,7 @@ pub struct Finding {
     pub span: Option<[usize; 2]>,
 }
 
-impl Check {
+impl CheckKind {
     /// All of them, in the order in which they are listed.
     pub const ALL: [Self; 9] = [
         Self::Form,
@@ -87,7 +87,7 @@ impl Check {
 impl Verdict {
     /// The verdict on a whole text: the worst of its checks. A text without checks is unverified.
     #[must_use]
-    pub fn of(findings: &[Finding]) -> Self {
+    pub fn from_findings(findings: &[CheckFinding]) -> Self {
         findings.iter().map(|finding| finding.verdict).max().unwrap_or(Self::Unverified)
     }
 }
@@ -98,9 +98,12 @@ mod tests {
 
     #[test]
     fn a_text_is_as_good_as_its_worst_check() {
-        let finding = |verdict| Finding { check: Check::Turns, verdict, reason: String::new(), span: None };
-        assert_eq!(Verdict::of(&[]), Verdict::Unverified);
-        assert_eq!(Verdict::of(&[finding(Verdict::Pass), finding(Verdict::Unverified)]), Verdict::Unverified);
-        assert_eq!(Verdict::of(&[finding(Verdict::Pass), finding(Verdict::Fail)]), Verdict::Fail);
+        let finding = |verdict| CheckFinding { check: CheckKind::Turns, verdict, reason: String::new(), span: None };
+        assert_eq!(Verdict::from_findings(&[]), Verdict::Unverified);
+        assert_eq!(
+            Verdict::from_findings(&[finding(Verdict::Pass), finding(Verdict::Unverified)]),
+            Verdict::Unverified
+        );
+        assert_eq!(Verdict::from_findings(&[finding(Verdict::Pass), finding(Verdict::Fail)]), Verdict::Fail);
     }
 }

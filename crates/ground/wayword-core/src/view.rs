@@ -1,12 +1,12 @@
 //! Views: what an eye sees from a pose in one direction.
 
-use crate::{Heading, Image, Label, Pose, Side, heading::Compass};
+use crate::{Heading, Image, ObjectLabel, Pose, Side, heading::CompassPoint};
 use serde::{Deserialize, Serialize};
 use std::{f64::consts::FRAC_PI_2, sync::Arc};
 
 /// Where to look, and how wide.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Gaze {
+pub struct ViewGaze {
     /// Direction of the view's centre; the elevation is 0.
     pub heading: Heading,
     /// Horizontal field of view, radians.
@@ -29,36 +29,36 @@ pub struct View {
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct GroundTruth {
     /// Objects of which the box's centre lies in the view.
-    pub labels: Vec<Label>,
+    pub labels: Vec<ObjectLabel>,
     /// Whether the platform lists the objects here. If not, missing labels are no evidence of absence.
     pub lists_objects: bool,
     /// The room in which the eye is ("living room").
     pub room: Option<String>,
 }
 
-impl Gaze {
+impl ViewGaze {
     /// One of the four views of a panorama: 90 degrees wide.
     #[must_use]
-    pub fn quarter(heading: Heading) -> Self {
+    pub fn quarter_view(heading: Heading) -> Self {
         Self { heading, horizontal_fov_rad: FRAC_PI_2 }
     }
 
     /// The four views of a panorama relative to a heading: ahead, right, behind, left.
     #[must_use]
-    pub fn around(heading: Heading) -> [Self; 4] {
-        Side::ALL.map(|side| Self::quarter(heading.turned(side.turn_rad())))
+    pub fn around_heading(heading: Heading) -> [Self; 4] {
+        Side::ALL.map(|side| Self::quarter_view(heading.turned_by(side.turn_rad())))
     }
 
     /// The four views of a panorama by the compass: north, east, south, west.
     #[must_use]
-    pub fn compass() -> [Self; 4] {
-        Compass::ALL.map(|point| Self::quarter(point.heading()))
+    pub fn compass_views() -> [Self; 4] {
+        CompassPoint::ALL.map(|point| Self::quarter_view(point.to_heading()))
     }
 
     /// Whether a direction lies within the gaze's width. Half open on the right, so that each direction belongs to
     /// exactly one view of a panorama.
     #[must_use]
-    pub fn holds(&self, heading: Heading) -> bool {
+    pub fn holds_heading(&self, heading: Heading) -> bool {
         let off = self.heading.turn_to(heading);
         let half = self.horizontal_fov_rad / 2.0;
         (-half..half).contains(&off)
@@ -87,7 +87,7 @@ impl View {
 
     /// The objects with a known outline in the picture. They serve only to find the object that a box is of: REVERIE's
     /// task gives an agent the candidates' boxes in the same way.
-    pub(crate) fn outlines(&self) -> impl Iterator<Item = &Label> {
+    pub(crate) fn outlined_labels(&self) -> impl Iterator<Item = &ObjectLabel> {
         self.truth.iter().flat_map(|truth| &truth.labels).filter(|label| label.box_px.is_some())
     }
 }
@@ -101,7 +101,7 @@ mod tests {
         #[test]
         fn each_direction_belongs_to_one_view_of_a_panorama(around in 0.0..std::f64::consts::TAU, seen in 0.0..std::f64::consts::TAU) {
             let (around, seen) = (Heading::new(around).unwrap(), Heading::new(seen).unwrap());
-            let holders = Gaze::around(around).iter().filter(|gaze| gaze.holds(seen)).count();
+            let holders = ViewGaze::around_heading(around).iter().filter(|gaze| gaze.holds_heading(seen)).count();
             // Rounding can put a direction on a seam into none or two.
             let on_seam = ((around.turn_to(seen).abs() / FRAC_PI_2).fract() - 0.5).abs() < 1e-9;
             prop_assert!(holders == 1 || on_seam);

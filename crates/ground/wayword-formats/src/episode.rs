@@ -93,7 +93,7 @@ impl Episode {
 
     /// The tag of an instruction's language, where the file gives one.
     #[must_use]
-    pub fn language(&self, instruction: usize) -> Option<&str> {
+    pub fn language_of(&self, instruction: usize) -> Option<&str> {
         self.languages.get(instruction).map(String::as_str)
     }
 
@@ -115,24 +115,29 @@ impl Episode {
     }
 
     /// The value to write for a known field: the one that was read where it still means the same, else a new one.
-    pub(crate) fn field(&self, key: &str, still_means: impl Fn(&Value) -> bool, anew: impl FnOnce() -> Value) -> Value {
+    pub(crate) fn field_value(
+        &self,
+        key: &str,
+        still_means: impl Fn(&Value) -> bool,
+        anew: impl FnOnce() -> Value,
+    ) -> Value {
         self.as_read.get(key).filter(|value| still_means(value)).cloned().unwrap_or_else(anew)
     }
 
     /// A field that holds a name.
     pub(crate) fn name_field(&self, key: &str, name: &str) -> Value {
-        self.field(key, |value| item::name_of(value).as_deref() == Some(name), || item::value_of(name))
+        self.field_value(key, |value| item::name_of(value).as_deref() == Some(name), || item::value_of(name))
     }
 
     /// The heading in radians; 0 where the item has none, because every loader needs one.
     pub(crate) fn heading_field(&self) -> Value {
         let heading = self.start_heading.unwrap_or(Heading::NORTH);
         let same = |value: &Value| value.as_f64().and_then(|rad| Heading::new(rad).ok()) == Some(heading);
-        self.field("heading", same, || heading.rad().into())
+        self.field_value("heading", same, || heading.rad().into())
     }
 
     /// Keeps a known field's spelling.
-    pub(crate) fn remember(&mut self, key: &str, value: Value) {
+    pub(crate) fn remember_spelling(&mut self, key: &str, value: Value) {
         self.as_read.insert(key.to_owned(), value);
     }
 }

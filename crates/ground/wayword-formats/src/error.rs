@@ -9,7 +9,7 @@ use std::{
 #[derive(Debug, thiserror::Error)]
 pub enum FormatError {
     /// The operating system could not open, read or write the file.
-    #[error("{}: cannot {doing} it: {source}{}", file.display(), advice(source))]
+    #[error("{}: cannot {doing} it: {source}{}", file.display(), io_advice(source))]
     Io {
         /// Which file.
         file: PathBuf,
@@ -35,7 +35,7 @@ pub enum FormatError {
 
 /// An item of a dataset file is refused.
 #[derive(Debug, thiserror::Error)]
-#[error("{}: {place}{}: field \"{field}\": {problem}; {hint}", file.display(), Named(id.as_deref()))]
+#[error("{}: {place}{}: field \"{field}\": {problem}; {hint}", file.display(), IdSuffix(id.as_deref()))]
 pub struct WrongItem {
     /// Which file.
     pub file: PathBuf,
@@ -70,24 +70,24 @@ impl fmt::Display for ItemPlace {
 }
 
 /// Advice about an error of the system, after a semicolon; empty where its message is enough.
-fn advice(error: &std::io::Error) -> &'static str {
+fn io_advice(error: &std::io::Error) -> &'static str {
     if error.kind() == std::io::ErrorKind::NotFound { "; check the spelling of the path" } else { "" }
 }
 
-struct Named<'a>(Option<&'a str>);
+struct IdSuffix<'a>(Option<&'a str>);
 
-impl fmt::Display for Named<'_> {
+impl fmt::Display for IdSuffix<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.0.map_or(Ok(()), |id| write!(f, " (id {id})"))
     }
 }
 
 impl FormatError {
-    pub(crate) fn io(file: &Path, doing: &'static str, source: std::io::Error) -> Self {
+    pub(crate) fn from_io(file: &Path, doing: &'static str, source: std::io::Error) -> Self {
         Self::Io { file: file.to_owned(), doing, source }
     }
 
-    pub(crate) fn document(file: &Path, problem: impl Into<String>, hint: &'static str) -> Self {
+    pub(crate) fn for_document(file: &Path, problem: impl Into<String>, hint: &'static str) -> Self {
         Self::Document { file: file.to_owned(), problem: problem.into(), hint }
     }
 

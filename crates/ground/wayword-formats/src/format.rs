@@ -1,13 +1,13 @@
 //! The dataset formats, and how the format of a file is recognised.
 
-use crate::{Episode, FormatError, input, jsonl, r2r, reverie, rxr, strict::Strict, vlnce};
+use crate::{Episode, FormatError, input, jsonl, r2r, reverie, rxr, strict::StrictJson, vlnce};
 use serde::de::{Deserializer, IgnoredAny, MapAccess, SeqAccess, Visitor};
 use serde_json::{Map, Value};
 use std::{cell::RefCell, fmt, path::Path, str::FromStr};
 
 /// A format that can be read and written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Format {
+pub enum DatasetFormat {
     /// Room-to-Room.
     R2r,
     /// REVERIE, either release.
@@ -25,7 +25,7 @@ pub enum Format {
 #[error("there is no format {0:?}; choose one of r2r, reverie, rxr, vlnce, wayword")]
 pub struct UnknownFormat(String);
 
-impl Format {
+impl DatasetFormat {
     /// All of them.
     pub const ALL: [Self; 5] = [Self::R2r, Self::Reverie, Self::Rxr, Self::Vlnce, Self::Wayword];
 
@@ -45,18 +45,18 @@ impl Format {
     ///
     /// # Errors
     /// The same as the format's own `read`.
-    pub fn read(self, file: &Path) -> Result<Vec<Episode>, FormatError> {
+    pub fn read_file(self, file: &Path) -> Result<Vec<Episode>, FormatError> {
         match self {
-            Self::R2r => r2r::read(file),
-            Self::Reverie => reverie::read(file),
-            Self::Rxr => rxr::read(file),
-            Self::Vlnce => vlnce::read(file).map(|dataset| dataset.episodes),
-            Self::Wayword => jsonl::read(file).map(|records| jsonl::episodes(&records)),
+            Self::R2r => r2r::read_r2r_file(file),
+            Self::Reverie => reverie::read_reverie_file(file),
+            Self::Rxr => rxr::read_rxr_file(file),
+            Self::Vlnce => vlnce::read_vlnce_file(file).map(|dataset| dataset.episodes),
+            Self::Wayword => jsonl::read_records(file).map(|records| jsonl::episodes_from_records(&records)),
         }
     }
 }
 
-impl FromStr for Format {
+impl FromStr for DatasetFormat {
     type Err = UnknownFormat;
 
     fn from_str(name: &str) -> Result<Self, UnknownFormat> {
@@ -64,7 +64,7 @@ impl FromStr for Format {
     }
 }
 
-impl fmt::Display for Format {
+impl fmt::Display for DatasetFormat {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.name())
     }
@@ -74,8 +74,8 @@ impl fmt::Display for Format {
 ///
 /// # Errors
 /// When its format is not recognised, and when the format's own `read` fails.
-pub fn read(file: &Path) -> Result<Vec<Episode>, FormatError> {
-    detect(file)?.read(file)
+pub fn read_any_format(file: &Path) -> Result<Vec<Episode>, FormatError> {
+    detect_format(file)?.read_file(file)
 }
 
 /// Recognises a file's format by its beginning:
@@ -87,11 +87,11 @@ pub fn read(file: &Path) -> Result<Vec<Episode>, FormatError> {
 ///
 /// # Errors
 /// When it cannot be read, or its beginning is none of these.
-pub fn detect(file: &Path) -> Result<Format, FormatError> {
-    let mut parser = input::parser(file)?;
+pub fn detect_format(file: &Path) -> Result<DatasetFormat, FormatError> {
+    let mut parser = input::json_parser(file)?;
     let told = RefCell::new(None);
     // Stopping early is an error as well, so only the format that was found before it counts.
-    let read = (&mut parser).deserialize_any(Beginning(&told));
+    let read = (&mut parser).deserialize_any(BeginningVisitor(&told));
     let format = told.take();
     format.ok_or_else(|| {
         let why = match read {
@@ -99,19 +99,19 @@ pub fn detect(file: &Path) -> Result<Format, FormatError> {
             Err(error) if error.is_eof() && (error.line(), error.column()) == (1, 0) => "it is empty".to_owned(),
             Err(error) if error.is_eof() => {
                 let problem = format!("the file is cut off at line {}, column {}", error.line(), error.column());
-                return FormatError::document(file, problem, "fetch it again");
+                return FormatError::for_document(file, problem, "fetch it again");
             }
             Err(error) => error.to_string(),
         };
         let problem = format!("its beginning does not fit any known format: {why}");
-        FormatError::document(file, problem, "give a file in one of the formats r2r, reverie, rxr, vlnce, wayword")
+        FormatError::for_document(file, problem, "give a file in one of the formats r2r, reverie, rxr, vlnce, wayword")
     })
 }
 
 /// Looks at the first item of a list, or at an object's keys up to the first that decides.
-struct Beginning<'a>(&'a RefCell<Option<Format>>);
+struct BeginningVisitor<'a>(&'a RefCell<Option<DatasetFormat>>);
 
-impl<'de> Visitor<'de> for Beginning<'_> {
+impl<'de> Visitor<'de> for BeginningVisitor<'_> {
     type Value = ();
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -119,8 +119,8 @@ impl<'de> Visitor<'de> for Beginning<'_> {
     }
 
     fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<(), A::Error> {
-        if let Some(Value::Object(item)) = list.next_element_seed(Strict(&RefCell::default()))? {
-            *self.0.borrow_mut() = Some(if is_reverie(&item) { Format::Reverie } else { Format::R2r });
+        if let Some(Value::Object(item)) = list.next_element_seed(StrictJson(&RefCell::default()))? {
+            *self.0.borrow_mut() = Some(if is_reverie(&item) { DatasetFormat::Reverie } else { DatasetFormat::R2r });
         }
         Ok(())
     }
@@ -128,9 +128,9 @@ impl<'de> Visitor<'de> for Beginning<'_> {
     fn visit_map<A: MapAccess<'de>>(self, mut entries: A) -> Result<(), A::Error> {
         while let Some(key) = entries.next_key::<String>()? {
             let format = match key.as_str() {
-                "instruction_id" => Format::Rxr,
-                "episodes" | "instruction_vocab" => Format::Vlnce,
-                "format" => Format::Wayword,
+                "instruction_id" => DatasetFormat::Rxr,
+                "episodes" | "instruction_vocab" => DatasetFormat::Vlnce,
+                "format" => DatasetFormat::Wayword,
                 _ => {
                     entries.next_value::<IgnoredAny>()?;
                     continue;

@@ -1,7 +1,7 @@
 //! Opens dataset files and reads them item by item. The files are untrusted: sizes and counts are bounded, and gzip is
 //! unpacked under the same bounds.
 
-use crate::{FormatError, Item, ItemPlace, WrongItem, limits, strict::Strict, tokens::Tokens};
+use crate::{DatasetItem, FormatError, ItemPlace, WrongItem, limits, strict::StrictJson, tokens::BoundedTokenReader};
 use flate2::bufread::MultiGzDecoder;
 use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use serde_json::{Map, Value, de::IoRead};
@@ -16,7 +16,7 @@ use std::{
 
 const TOO_LARGE: &str = "it is larger than 1 GiB";
 pub(crate) const NOT_JSON: &str = "fetch the file again, or correct it at that place";
-const SPLIT: &str = "split it into parts";
+const SPLIT_HINT: &str = "split it into parts";
 
 /// Most bytes of a file that are read at a time.
 const BUFFER_BYTES: usize = 1 << 16;
@@ -25,54 +25,55 @@ const FIELDS_AROUND: usize = 20;
 
 /// Opens a file. It recognises gzip by the first bytes, not by the name, and skips the byte order mark that Windows
 /// editors put before UTF-8.
-pub(crate) fn open(file: &Path) -> Result<Box<dyn BufRead>, FormatError> {
-    let failed = |source| FormatError::io(file, "open", source);
+pub(crate) fn open_input(file: &Path) -> Result<Box<dyn BufRead>, FormatError> {
+    let failed = |source| FormatError::from_io(file, "open", source);
     // Opening a pipe waits until something writes into it, so this is checked first.
     let meta = fs::metadata(file).map_err(failed)?;
     if !meta.is_file() {
         let what = if meta.is_dir() { "a folder" } else { "a pipe or a device" };
-        return Err(FormatError::document(file, format!("it is not a file but {what}"), "give a dataset file"));
+        return Err(FormatError::for_document(file, format!("it is not a file but {what}"), "give a dataset file"));
     }
     let opened = File::open(file).map_err(failed)?;
     if meta.len() > limits::FILE_BYTES {
-        return Err(FormatError::document(file, TOO_LARGE, SPLIT));
+        return Err(FormatError::for_document(file, TOO_LARGE, SPLIT_HINT));
     }
     let mut plain = BufReader::with_capacity(BUFFER_BYTES, opened);
-    let is_gzip = plain.fill_buf().map_err(|source| FormatError::io(file, "read", source))?.starts_with(&[0x1f, 0x8b]);
+    let is_gzip =
+        plain.fill_buf().map_err(|source| FormatError::from_io(file, "read", source))?.starts_with(&[0x1f, 0x8b]);
     // The file may grow while it is read, and gzip may expand to a thousand times its size.
     let input: Box<dyn Read> = if is_gzip { Box::new(MultiGzDecoder::new(plain)) } else { Box::new(plain) };
-    let input = BufReader::with_capacity(BUFFER_BYTES, Bounded { inner: input, left: limits::FILE_BYTES });
+    let input = BufReader::with_capacity(BUFFER_BYTES, BoundedReader { inner: input, left: limits::FILE_BYTES });
     without_mark(file, input)
 }
 
 /// The text without its byte order mark.
 fn without_mark(file: &Path, mut input: impl BufRead + 'static) -> Result<Box<dyn BufRead>, FormatError> {
     let mut start = Vec::new();
-    input.by_ref().take(3).read_to_end(&mut start).map_err(|source| FormatError::io(file, "read", source))?;
+    input.by_ref().take(3).read_to_end(&mut start).map_err(|source| FormatError::from_io(file, "read", source))?;
     match start.as_slice() {
         [0xef, 0xbb, 0xbf] => Ok(Box::new(input)),
         [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => {
-            Err(FormatError::document(file, "it is text in UTF-16", "save it as UTF-8"))
+            Err(FormatError::for_document(file, "it is text in UTF-16", "save it as UTF-8"))
         }
         _ => Ok(Box::new(Cursor::new(start).chain(input))),
     }
 }
 
-type Parser = serde_json::Deserializer<IoRead<BufReader<Tokens<Box<dyn BufRead>>>>>;
+type BoundedJsonParser = serde_json::Deserializer<IoRead<BufReader<BoundedTokenReader<Box<dyn BufRead>>>>>;
 
 /// A parser for a file that is one JSON value.
-pub(crate) fn parser(file: &Path) -> Result<Parser, FormatError> {
-    let tokens = Tokens::new(open(file)?);
+pub(crate) fn json_parser(file: &Path) -> Result<BoundedJsonParser, FormatError> {
+    let tokens = BoundedTokenReader::new(open_input(file)?);
     Ok(serde_json::Deserializer::from_reader(BufReader::with_capacity(BUFFER_BYTES, tokens)))
 }
 
 /// A reader that fails, rather than ends, after `left` bytes.
-struct Bounded<R> {
+struct BoundedReader<R> {
     inner: R,
     left: u64,
 }
 
-impl<R: Read> Read for Bounded<R> {
+impl<R: Read> Read for BoundedReader<R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let count = self.inner.read(buffer)?;
         self.left = self.left.checked_sub(count as u64).ok_or_else(|| io::Error::other(TOO_LARGE))?;
@@ -83,9 +84,9 @@ impl<R: Read> Read for Bounded<R> {
 /// Reads a file that is one JSON list of objects, and passes each to `take`.
 pub(crate) fn each_item(
     file: &Path,
-    mut take: impl FnMut(Item<'_>) -> Result<(), FormatError>,
+    mut take: impl FnMut(DatasetItem<'_>) -> Result<(), FormatError>,
 ) -> Result<(), FormatError> {
-    each_value(file, |place, value| take(Item::new(file, place, value)?))
+    each_value(file, |place, value| take(DatasetItem::new(file, place, value)?))
 }
 
 /// Reads a file that is one JSON list of any values, and passes each to `take` with its place.
@@ -93,10 +94,10 @@ pub(crate) fn each_value(
     file: &Path,
     mut take: impl FnMut(ItemPlace, Value) -> Result<(), FormatError>,
 ) -> Result<(), FormatError> {
-    let mut parser = parser(file)?;
-    let items = Items::new(file, &mut take);
+    let mut parser = json_parser(file)?;
+    let items = ItemList::new(file, &mut take);
     let read = (&items).deserialize(&mut parser).and_then(|()| parser.end());
-    read.map_err(|error| items.explain(&error))
+    read.map_err(|error| items.explain_failure(&error))
 }
 
 /// Reads a file that is a JSON object with the list of items in one field. Passes each item to `take` and returns the
@@ -104,55 +105,55 @@ pub(crate) fn each_value(
 pub(crate) fn each_item_in(
     file: &Path,
     field: &'static str,
-    mut take: impl FnMut(Item<'_>) -> Result<(), FormatError>,
+    mut take: impl FnMut(DatasetItem<'_>) -> Result<(), FormatError>,
 ) -> Result<Map<String, Value>, FormatError> {
-    let mut parser = parser(file)?;
-    let mut take = |place, value| take(Item::new(file, place, value)?);
-    let items = Items::new(file, &mut take);
-    let read = Within { items: &items, field }.deserialize(&mut parser);
+    let mut parser = json_parser(file)?;
+    let mut take = |place, value| take(DatasetItem::new(file, place, value)?);
+    let items = ItemList::new(file, &mut take);
+    let read = ListInObject { items: &items, field }.deserialize(&mut parser);
     let read = read.and_then(|rest| parser.end().map(|()| rest));
-    read.map_err(|error| items.explain(&error))
+    read.map_err(|error| items.explain_failure(&error))
 }
 
 /// Reads a file that is a JSON object with an item for each name, and passes each item to `take`, named.
 pub(crate) fn each_entry(
     file: &Path,
-    mut take: impl FnMut(&str, Item<'_>) -> Result<(), FormatError>,
+    mut take: impl FnMut(&str, DatasetItem<'_>) -> Result<(), FormatError>,
 ) -> Result<(), FormatError> {
-    let mut parser = parser(file)?;
+    let mut parser = json_parser(file)?;
     let name = RefCell::new(String::new());
     let mut take = |place, value| {
         let name = name.borrow();
-        let mut item = Item::new(file, place, value)?;
-        item.call(&name);
+        let mut item = DatasetItem::new(file, place, value)?;
+        item.set_id(&name);
         take(&name, item)
     };
-    let items = Items::new(file, &mut take);
-    let read = Entries { items: &items, name: &name }.deserialize(&mut parser).and_then(|()| parser.end());
-    read.map_err(|error| items.explain(&error))
+    let items = ItemList::new(file, &mut take);
+    let read = NamedItems { items: &items, name: &name }.deserialize(&mut parser).and_then(|()| parser.end());
+    read.map_err(|error| items.explain_failure(&error))
 }
 
 /// Reads a file with one JSON object per line, and passes each to `take`. Empty lines are skipped.
 pub(crate) fn each_line(
     file: &Path,
-    mut take: impl FnMut(Item<'_>) -> Result<(), FormatError>,
+    mut take: impl FnMut(DatasetItem<'_>) -> Result<(), FormatError>,
 ) -> Result<(), FormatError> {
-    let mut input = open(file)?;
+    let mut input = open_input(file)?;
     let mut line = Vec::new();
     for number in 1.. {
         line.clear();
         let longest = limits::LINE_BYTES as u64 + 1;
         let read = input.by_ref().take(longest).read_until(b'\n', &mut line);
-        if read.map_err(|source| FormatError::io(file, "read", source))? == 0 {
+        if read.map_err(|source| FormatError::from_io(file, "read", source))? == 0 {
             break;
         }
-        if number > limits::ITEMS {
-            let problem = format!("it has more than {} lines", limits::grouped(limits::ITEMS));
-            return Err(FormatError::document(file, problem, SPLIT));
+        if number > limits::MAX_ITEMS {
+            let problem = format!("it has more than {} lines", limits::group_digits(limits::MAX_ITEMS));
+            return Err(FormatError::for_document(file, problem, SPLIT_HINT));
         }
         if line.len() > limits::LINE_BYTES {
             let problem = format!("line {number} is longer than {} MiB", limits::LINE_BYTES >> 20);
-            return Err(FormatError::document(file, problem, "write one JSON object per line"));
+            return Err(FormatError::for_document(file, problem, "write one JSON object per line"));
         }
         if !line.trim_ascii().is_empty() {
             take(line_item(file, number, &line)?)?;
@@ -161,34 +162,34 @@ pub(crate) fn each_line(
     Ok(())
 }
 
-fn line_item<'a>(file: &'a Path, number: usize, line: &[u8]) -> Result<Item<'a>, FormatError> {
+fn line_item<'a>(file: &'a Path, number: usize, line: &[u8]) -> Result<DatasetItem<'a>, FormatError> {
     let field = RefCell::default();
     let mut parser = serde_json::Deserializer::from_slice(line);
-    let value = Strict(&field).deserialize(&mut parser).and_then(|value| parser.end().map(|()| value));
+    let value = StrictJson(&field).deserialize(&mut parser).and_then(|value| parser.end().map(|()| value));
     let value = value.map_err(|error| {
-        let problem = format!("{} (column {})", bare(&error), error.column());
-        broken(file, ItemPlace::Line(number), field.take(), problem)
+        let problem = format!("{} (column {})", bare_message(&error), error.column());
+        broken_json(file, ItemPlace::Line(number), field.take(), problem)
     })?;
-    Item::new(file, ItemPlace::Line(number), value)
+    DatasetItem::new(file, ItemPlace::Line(number), value)
 }
 
 /// `serde_json`'s message without the line and column at its end.
-pub(crate) fn bare(error: &serde_json::Error) -> String {
+pub(crate) fn bare_message(error: &serde_json::Error) -> String {
     let text = error.to_string();
     text.rfind(" at line ").map_or(text.clone(), |end| text[..end].to_owned())
 }
 
-fn broken(file: &Path, place: ItemPlace, field: String, problem: String) -> FormatError {
+fn broken_json(file: &Path, place: ItemPlace, field: String, problem: String) -> FormatError {
     if field.is_empty() {
-        return FormatError::document(file, format!("{place}: {problem}"), NOT_JSON);
+        return FormatError::for_document(file, format!("{place}: {problem}"), NOT_JSON);
     }
     Box::new(WrongItem { file: file.to_owned(), place, id: None, field, problem, hint: NOT_JSON }).into()
 }
 
-type Take<'a> = &'a mut dyn FnMut(ItemPlace, Value) -> Result<(), FormatError>;
+type ItemCallback<'a> = &'a mut dyn FnMut(ItemPlace, Value) -> Result<(), FormatError>;
 
 /// Reads a JSON list with at most one of its items in memory as JSON.
-pub(crate) struct Items<'a> {
+pub(crate) struct ItemList<'a> {
     file: &'a Path,
     /// The field within an item at which reading failed (`path[3]`).
     field: RefCell<String>,
@@ -196,39 +197,39 @@ pub(crate) struct Items<'a> {
 }
 
 struct ListProgress<'a> {
-    take: Take<'a>,
+    take: ItemCallback<'a>,
     index: usize,
     inside: bool,
     refused: Option<FormatError>,
 }
 
-impl<'a> Items<'a> {
-    pub(crate) fn new(file: &'a Path, take: Take<'a>) -> Self {
+impl<'a> ItemList<'a> {
+    pub(crate) fn new(file: &'a Path, take: ItemCallback<'a>) -> Self {
         let progress = ListProgress { take, index: 0, inside: false, refused: None };
         Self { file, field: RefCell::default(), progress: progress.into() }
     }
 
     /// The error behind a failure of the parser: an item was refused, or the JSON is wrong.
-    pub(crate) fn explain(&self, error: &serde_json::Error) -> FormatError {
+    pub(crate) fn explain_failure(&self, error: &serde_json::Error) -> FormatError {
         let mut progress = self.progress.borrow_mut();
         if let Some(refused) = progress.refused.take() {
             return refused;
         }
         // `serde_json` does not know the place where the file system or a bound ended the reading.
         let place = || format!(" (line {}, column {})", error.line(), error.column());
-        let problem = bare(error) + &if error.is_io() { String::new() } else { place() };
+        let problem = bare_message(error) + &if error.is_io() { String::new() } else { place() };
         if progress.inside {
-            broken(self.file, ItemPlace::Item(progress.index), self.field.take(), problem)
+            broken_json(self.file, ItemPlace::Item(progress.index), self.field.take(), problem)
         } else {
-            FormatError::document(self.file, problem, NOT_JSON)
+            FormatError::for_document(self.file, problem, NOT_JSON)
         }
     }
 
     fn hand_on(&self, value: Value) -> Result<(), FormatError> {
         let progress = &mut *self.progress.borrow_mut();
-        if progress.index >= limits::ITEMS {
-            let problem = format!("it has more than {} items", limits::grouped(limits::ITEMS));
-            return Err(FormatError::document(self.file, problem, SPLIT));
+        if progress.index >= limits::MAX_ITEMS {
+            let problem = format!("it has more than {} items", limits::group_digits(limits::MAX_ITEMS));
+            return Err(FormatError::for_document(self.file, problem, SPLIT_HINT));
         }
         (progress.take)(ItemPlace::Item(progress.index), value)?;
         progress.index += 1;
@@ -236,8 +237,8 @@ impl<'a> Items<'a> {
     }
 }
 
-impl Items<'_> {
-    /// Passes an item on. If it is refused, the reason is kept for [`Self::explain`].
+impl ItemList<'_> {
+    /// Passes an item on. If it is refused, the reason is kept for [`Self::explain_failure`].
     fn hand_on_or_refuse<E: Error>(&self, value: Value) -> Result<(), E> {
         self.hand_on(value).map_err(|refused| {
             self.progress.borrow_mut().refused = Some(refused);
@@ -246,7 +247,7 @@ impl Items<'_> {
     }
 }
 
-impl<'de> DeserializeSeed<'de> for &Items<'_> {
+impl<'de> DeserializeSeed<'de> for &ItemList<'_> {
     type Value = ();
 
     fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<(), D::Error> {
@@ -254,7 +255,7 @@ impl<'de> DeserializeSeed<'de> for &Items<'_> {
     }
 }
 
-impl<'de> Visitor<'de> for &Items<'_> {
+impl<'de> Visitor<'de> for &ItemList<'_> {
     type Value = ();
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -263,7 +264,7 @@ impl<'de> Visitor<'de> for &Items<'_> {
 
     fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<(), A::Error> {
         self.progress.borrow_mut().inside = true;
-        while let Some(value) = list.next_element_seed(Strict(&self.field))? {
+        while let Some(value) = list.next_element_seed(StrictJson(&self.field))? {
             self.hand_on_or_refuse(value)?;
         }
         self.progress.borrow_mut().inside = false;
@@ -272,13 +273,13 @@ impl<'de> Visitor<'de> for &Items<'_> {
 }
 
 /// A JSON object with an item as the value of each name.
-struct Entries<'i, 'a> {
-    items: &'i Items<'a>,
+struct NamedItems<'i, 'a> {
+    items: &'i ItemList<'a>,
     /// The name of the item that is being read.
     name: &'i RefCell<String>,
 }
 
-impl<'de> DeserializeSeed<'de> for Entries<'_, '_> {
+impl<'de> DeserializeSeed<'de> for NamedItems<'_, '_> {
     type Value = ();
 
     fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<(), D::Error> {
@@ -286,7 +287,7 @@ impl<'de> DeserializeSeed<'de> for Entries<'_, '_> {
     }
 }
 
-impl<'de> Visitor<'de> for Entries<'_, '_> {
+impl<'de> Visitor<'de> for NamedItems<'_, '_> {
     type Value = ();
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -301,7 +302,7 @@ impl<'de> Visitor<'de> for Entries<'_, '_> {
             }
             self.name.replace(name);
             self.items.progress.borrow_mut().inside = true;
-            let value = entries.next_value_seed(Strict(&self.items.field))?;
+            let value = entries.next_value_seed(StrictJson(&self.items.field))?;
             self.items.progress.borrow_mut().inside = false;
             self.items.hand_on_or_refuse(value)?;
         }
@@ -310,12 +311,12 @@ impl<'de> Visitor<'de> for Entries<'_, '_> {
 }
 
 /// A JSON object around a list of items.
-struct Within<'i, 'a> {
-    items: &'i Items<'a>,
+struct ListInObject<'i, 'a> {
+    items: &'i ItemList<'a>,
     field: &'static str,
 }
 
-impl<'de> DeserializeSeed<'de> for Within<'_, '_> {
+impl<'de> DeserializeSeed<'de> for ListInObject<'_, '_> {
     type Value = Map<String, Value>;
 
     fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Self::Value, D::Error> {
@@ -323,7 +324,7 @@ impl<'de> DeserializeSeed<'de> for Within<'_, '_> {
     }
 }
 
-impl<'de> Visitor<'de> for Within<'_, '_> {
+impl<'de> Visitor<'de> for ListInObject<'_, '_> {
     type Value = Map<String, Value>;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -344,7 +345,7 @@ impl<'de> Visitor<'de> for Within<'_, '_> {
                 found = true;
                 entries.next_value_seed(self.items)?;
             } else {
-                rest.insert(key, entries.next_value_seed(Strict(&RefCell::default()))?);
+                rest.insert(key, entries.next_value_seed(StrictJson(&RefCell::default()))?);
             }
         }
         if found { Ok(rest) } else { Err(A::Error::custom(format_args!("field {:?} is missing", self.field))) }

@@ -7,24 +7,24 @@ use std::path::Path;
 use wayword_core::{DVec3, Heading, ObjectId, SceneId, ViewpointId};
 
 /// An object of a dataset file. A reader takes the fields that it knows; the others are kept as unknown fields.
-pub(crate) struct Item<'a> {
+pub(crate) struct DatasetItem<'a> {
     file: &'a Path,
     place: ItemPlace,
     id: Option<String>,
     fields: Map<String, Value>,
 }
 
-impl<'a> Item<'a> {
+impl<'a> DatasetItem<'a> {
     pub(crate) fn new(file: &'a Path, place: ItemPlace, value: Value) -> Result<Self, FormatError> {
         let Value::Object(fields) = value else {
-            let problem = format!("{place}: expected an object, found {}", told(&value));
-            return Err(FormatError::document(file, problem, "each item of a dataset is a JSON object"));
+            let problem = format!("{place}: expected an object, found {}", describe_value(&value));
+            return Err(FormatError::for_document(file, problem, "each item of a dataset is a JSON object"));
         };
         Ok(Self { file, place, id: None, fields })
     }
 
     /// Sets the id that errors name from here on.
-    pub(crate) fn call(&mut self, id: &str) {
+    pub(crate) fn set_id(&mut self, id: &str) {
         self.id = Some(id.to_owned());
     }
 
@@ -33,18 +33,18 @@ impl<'a> Item<'a> {
     }
 
     /// The fields that were not taken, in the order of the file.
-    pub(crate) fn rest(self) -> Map<String, Value> {
+    pub(crate) fn into_rest(self) -> Map<String, Value> {
         self.fields
     }
 
     /// Takes a field that must be there.
-    pub(crate) fn take(&mut self, field: &str) -> Result<Value, FormatError> {
+    pub(crate) fn take_field(&mut self, field: &str) -> Result<Value, FormatError> {
         let value = self.take_optional(field);
-        value.ok_or_else(|| self.wrong(field, "it is missing", "add it, because the format requires it"))
+        value.ok_or_else(|| self.wrong_field(field, "it is missing", "add it, because the format requires it"))
     }
 
     /// A field, without taking it.
-    pub(crate) fn look(&self, field: &str) -> Option<&Value> {
+    pub(crate) fn peek_field(&self, field: &str) -> Option<&Value> {
         self.fields.get(field)
     }
 
@@ -52,7 +52,7 @@ impl<'a> Item<'a> {
         self.fields.shift_remove(field)
     }
 
-    pub(crate) fn wrong(&self, field: &str, problem: impl Into<String>, hint: &'static str) -> FormatError {
+    pub(crate) fn wrong_field(&self, field: &str, problem: impl Into<String>, hint: &'static str) -> FormatError {
         Box::new(WrongItem {
             file: self.file.to_owned(),
             place: self.place,
@@ -64,99 +64,109 @@ impl<'a> Item<'a> {
         .into()
     }
 
-    pub(crate) fn expected(&self, field: &str, what: &str, found: &Value, hint: &'static str) -> FormatError {
-        self.wrong(field, format!("expected {what}, found {}", told(found)), hint)
+    pub(crate) fn expected_kind(&self, field: &str, what: &str, found: &Value, hint: &'static str) -> FormatError {
+        self.wrong_field(field, format!("expected {what}, found {}", describe_value(found)), hint)
     }
 
-    pub(crate) fn text<'v>(&self, field: &str, value: &'v Value) -> Result<&'v str, FormatError> {
-        value.as_str().ok_or_else(|| self.expected(field, "a text", value, "put it in quotes"))
+    pub(crate) fn checked_text<'v>(&self, field: &str, value: &'v Value) -> Result<&'v str, FormatError> {
+        value.as_str().ok_or_else(|| self.expected_kind(field, "a text", value, "put it in quotes"))
     }
 
     /// The name of a path or an item: a whole number, or a text that is safe as a file name.
-    pub(crate) fn name(&self, field: &str, value: &Value) -> Result<String, FormatError> {
+    pub(crate) fn checked_name(&self, field: &str, value: &Value) -> Result<String, FormatError> {
         const WHAT: &str =
             "a whole number, or a text without path separators and control characters of at most 128 bytes";
         let name =
             name_of(value).filter(|name| SceneId::new(name.as_str()).is_ok() && name.len() <= limits::NAME_BYTES);
-        name.ok_or_else(|| self.expected(field, WHAT, value, "change it, because names become file names later"))
+        name.ok_or_else(|| self.expected_kind(field, WHAT, value, "change it, because names become file names later"))
     }
 
-    pub(crate) fn scene(&self, field: &str, value: &Value) -> Result<SceneId, FormatError> {
-        let text = self.text(field, value)?;
-        SceneId::new(text).map_err(|error| self.wrong(field, error.to_string(), "give the scan's bare name"))
+    pub(crate) fn checked_scene(&self, field: &str, value: &Value) -> Result<SceneId, FormatError> {
+        let text = self.checked_text(field, value)?;
+        SceneId::new(text).map_err(|error| self.wrong_field(field, error.to_string(), "give the scan's bare name"))
     }
 
-    pub(crate) fn object(&self, field: &str, value: &Value) -> Result<ObjectId, FormatError> {
-        let name = self.name(field, value)?;
-        ObjectId::new(name).map_err(|error| self.wrong(field, error.to_string(), "give the object's bare id"))
+    pub(crate) fn checked_object(&self, field: &str, value: &Value) -> Result<ObjectId, FormatError> {
+        let name = self.checked_name(field, value)?;
+        ObjectId::new(name).map_err(|error| self.wrong_field(field, error.to_string(), "give the object's bare id"))
     }
 
-    pub(crate) fn finite(&self, field: &str, value: &Value) -> Result<f64, FormatError> {
+    pub(crate) fn checked_number(&self, field: &str, value: &Value) -> Result<f64, FormatError> {
         let number = value.as_f64().filter(|number| number.is_finite());
-        number.ok_or_else(|| self.expected(field, "a finite number", value, "write it as a JSON number"))
+        number.ok_or_else(|| self.expected_kind(field, "a finite number", value, "write it as a JSON number"))
     }
 
-    pub(crate) fn heading(&self, field: &str, value: &Value) -> Result<Heading, FormatError> {
-        let rad = self.finite(field, value)?;
-        Heading::new(rad).map_err(|error| self.wrong(field, error.to_string(), "write it in radians"))
+    pub(crate) fn checked_heading(&self, field: &str, value: &Value) -> Result<Heading, FormatError> {
+        let rad = self.checked_number(field, value)?;
+        Heading::new(rad).map_err(|error| self.wrong_field(field, error.to_string(), "write it in radians"))
     }
 
     /// Three numbers.
-    pub(crate) fn position(&self, field: &str, value: &Value) -> Result<DVec3, FormatError> {
-        let [x, y, z] = self.numbers(field, value)?;
+    pub(crate) fn checked_position(&self, field: &str, value: &Value) -> Result<DVec3, FormatError> {
+        let [x, y, z] = self.checked_numbers(field, value)?;
         Ok(DVec3::new(x, y, z))
     }
 
     /// `N` finite numbers.
-    pub(crate) fn numbers<const N: usize>(&self, field: &str, value: &Value) -> Result<[f64; N], FormatError> {
-        let list = self.list(field, value, N)?;
-        let numbers = list.iter().enumerate().map(|(index, value)| self.finite(&format!("{field}[{index}]"), value));
+    pub(crate) fn checked_numbers<const N: usize>(&self, field: &str, value: &Value) -> Result<[f64; N], FormatError> {
+        let list = self.checked_list(field, value, N)?;
+        let numbers =
+            list.iter().enumerate().map(|(index, value)| self.checked_number(&format!("{field}[{index}]"), value));
         let numbers = numbers.collect::<Result<Vec<_>, _>>()?;
-        <[f64; N]>::try_from(numbers)
-            .map_err(|_| self.wrong(field, format!("expected {N} numbers, found {}", list.len()), "write all of them"))
+        <[f64; N]>::try_from(numbers).map_err(|_| {
+            self.wrong_field(field, format!("expected {N} numbers, found {}", list.len()), "write all of them")
+        })
     }
 
     /// Any type that serde can read.
-    pub(crate) fn parsed<T: DeserializeOwned>(&self, field: &str, value: Value) -> Result<T, FormatError> {
+    pub(crate) fn parse_value<T: DeserializeOwned>(&self, field: &str, value: Value) -> Result<T, FormatError> {
         serde_json::from_value(value)
-            .map_err(|error| self.wrong(field, error.to_string(), "docs/FORMATS.md says what it should be"))
+            .map_err(|error| self.wrong_field(field, error.to_string(), "docs/FORMATS.md says what it should be"))
     }
 
-    pub(crate) fn list<'v>(&self, field: &str, value: &'v Value, most: usize) -> Result<&'v [Value], FormatError> {
-        let list = value.as_array().ok_or_else(|| self.expected(field, "a list", value, "put it in brackets"))?;
+    pub(crate) fn checked_list<'v>(
+        &self,
+        field: &str,
+        value: &'v Value,
+        most: usize,
+    ) -> Result<&'v [Value], FormatError> {
+        let list = value.as_array().ok_or_else(|| self.expected_kind(field, "a list", value, "put it in brackets"))?;
         if list.len() > most {
             let problem = format!("it has {} entries, more than {most}", list.len());
-            return Err(self.wrong(field, problem, "split it: no known dataset has that many"));
+            return Err(self.wrong_field(field, problem, "split it: no known dataset has that many"));
         }
         Ok(list)
     }
 
     /// The nodes of a path: at least one.
-    pub(crate) fn viewpoints(&self, field: &str, value: &Value) -> Result<Vec<ViewpointId>, FormatError> {
-        let list = self.list(field, value, limits::PATH_NODES)?;
+    pub(crate) fn checked_viewpoints(&self, field: &str, value: &Value) -> Result<Vec<ViewpointId>, FormatError> {
+        let list = self.checked_list(field, value, limits::PATH_NODES)?;
         if list.is_empty() {
-            return Err(self.wrong(field, "it is empty", "add at least one viewpoint"));
+            return Err(self.wrong_field(field, "it is empty", "add at least one viewpoint"));
         }
         let viewpoint = |(index, value)| {
             let field = format!("{field}[{index}]");
-            ViewpointId::new(self.text(&field, value)?)
-                .map_err(|error| self.wrong(&field, error.to_string(), "give the viewpoint's bare name"))
+            ViewpointId::new(self.checked_text(&field, value)?)
+                .map_err(|error| self.wrong_field(&field, error.to_string(), "give the viewpoint's bare name"))
         };
         list.iter().enumerate().map(viewpoint).collect()
     }
 
-    pub(crate) fn instruction(&self, field: &str, value: &Value) -> Result<String, FormatError> {
-        let text = self.text(field, value)?;
+    pub(crate) fn checked_instruction(&self, field: &str, value: &Value) -> Result<String, FormatError> {
+        let text = self.checked_text(field, value)?;
         if text.len() > limits::INSTRUCTION_BYTES {
             let problem = format!("it has {} bytes, more than {}", text.len(), limits::INSTRUCTION_BYTES);
-            return Err(self.wrong(field, problem, "shorten it: an instruction is a few sentences"));
+            return Err(self.wrong_field(field, problem, "shorten it: an instruction is a few sentences"));
         }
         Ok(text.to_owned())
     }
 
-    pub(crate) fn instructions(&self, field: &str, value: &Value) -> Result<Vec<String>, FormatError> {
-        let list = self.list(field, value, limits::INSTRUCTIONS)?;
-        list.iter().enumerate().map(|(index, value)| self.instruction(&format!("{field}[{index}]"), value)).collect()
+    pub(crate) fn checked_instructions(&self, field: &str, value: &Value) -> Result<Vec<String>, FormatError> {
+        let list = self.checked_list(field, value, limits::MAX_INSTRUCTIONS)?;
+        list.iter()
+            .enumerate()
+            .map(|(index, value)| self.checked_instruction(&format!("{field}[{index}]"), value))
+            .collect()
     }
 }
 
@@ -178,7 +188,7 @@ pub(crate) fn value_of(name: &str) -> Value {
 }
 
 /// A value in short, for an error.
-fn told(value: &Value) -> String {
+fn describe_value(value: &Value) -> String {
     match value {
         Value::Array(list) => format!("a list of {}", list.len()),
         Value::Object(_) => "an object".to_owned(),

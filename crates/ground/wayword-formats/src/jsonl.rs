@@ -4,7 +4,7 @@
 //! core instruction: `text`, `style`, `mentions`, `verdict`, `findings`, `provenance`, and `ambiguity` where it is
 //! known. `path_id` names the path in its dataset, where several items may share it. Unknown fields are kept.
 
-use crate::{Episode, FormatError, Item, input, item, limits, output, tally::Tally};
+use crate::{DatasetItem, Episode, FormatError, input, item, limits, output, tally::ReadTally};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use serde_json::{Map, Value};
 use std::{
@@ -14,19 +14,19 @@ use std::{
 use wayword_core::{Instruction, Path, SceneId};
 
 /// The value of `format`.
-const FORMAT: &str = "wayword/1";
+const RECORD_FORMAT: &str = "wayword/1";
 /// The field with the name of the dataset's path that an item lies on.
 const PATH_ID: &str = "path_id";
 
 /// One instruction for one path.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Record {
+pub struct InstructionRecord {
     format: &'static str,
     /// Name of the platform that the path lies on.
     pub platform: String,
     /// The part of the dataset that it belongs to, where that is decided.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub split: Option<Split>,
+    pub split: Option<DatasetSplit>,
     /// The path that the instruction is about.
     pub path: Path,
     /// The instruction with its evidence.
@@ -40,14 +40,14 @@ pub struct Record {
 /// A part of a dataset. No scene is in both.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Split {
+pub enum DatasetSplit {
     /// For training.
     Train,
     /// For evaluation.
     Val,
 }
 
-impl Split {
+impl DatasetSplit {
     /// The name that files use.
     #[must_use]
     pub fn name(self) -> &'static str {
@@ -58,11 +58,11 @@ impl Split {
     }
 }
 
-impl Record {
+impl InstructionRecord {
     /// A record that belongs to no split yet.
     #[must_use]
     pub fn new(platform: impl Into<String>, path: Path, instruction: Instruction) -> Self {
-        Self { format: FORMAT, platform: platform.into(), split: None, path, instruction, extra: Map::new() }
+        Self { format: RECORD_FORMAT, platform: platform.into(), split: None, path, instruction, extra: Map::new() }
     }
 
     /// The name of its path in the dataset that it was made over, where several items may share a path: its field
@@ -78,26 +78,27 @@ impl Record {
 /// # Errors
 /// When the file cannot be read or is not JSON, a field of a line is missing or wrong, an instruction is given twice,
 /// two paths of a platform have the same id, or a scene is in both splits.
-pub fn read(file: &FilePath) -> Result<Vec<Record>, FormatError> {
-    merge(&[file])
+pub fn read_records(file: &FilePath) -> Result<Vec<InstructionRecord>, FormatError> {
+    merge_records(&[file])
 }
 
 /// Reads several files, of several platforms, as one; each record keeps its split.
 ///
 /// # Errors
-/// The same as for [`read`], for all files together.
-pub fn merge<F: AsRef<FilePath>>(files: &[F]) -> Result<Vec<Record>, FormatError> {
-    let mut records: Vec<Record> = Vec::new();
-    let mut seen = Seen::default();
-    let mut tally = Tally::default();
+/// The same as for [`read_records`], for all files together.
+pub fn merge_records<F: AsRef<FilePath>>(files: &[F]) -> Result<Vec<InstructionRecord>, FormatError> {
+    let mut records: Vec<InstructionRecord> = Vec::new();
+    let mut seen = DatasetMembers::default();
+    let mut tally = ReadTally::default();
     for file in files {
         input::each_line(file.as_ref(), |mut item| {
             let record = take_record(&mut item)?;
-            seen.check(&records, &record).map_err(|clash| item.wrong(clash.field, clash.problem, clash.hint))?;
-            seen.note(&record, records.len());
+            seen.check_record(&records, &record)
+                .map_err(|clash| item.wrong_field(clash.field, clash.problem, clash.hint))?;
+            seen.note_record(&record, records.len());
             let instruction = &record.instruction;
             let kept = record.path.frames.len() + instruction.mentions.len() + instruction.findings.len();
-            records.push(Record { extra: tally.rest(item, kept)?, ..record });
+            records.push(InstructionRecord { extra: tally.take_rest(item, kept)?, ..record });
             Ok(())
         })?;
     }
@@ -109,18 +110,19 @@ pub fn merge<F: AsRef<FilePath>>(files: &[F]) -> Result<Vec<Record>, FormatError
 /// # Errors
 /// When an instruction is given twice, two paths of a platform have the same id, a scene is in both splits, or the file
 /// cannot be written.
-pub fn write(file: &FilePath, records: &[Record]) -> Result<(), FormatError> {
-    let mut seen = Seen::default();
+pub fn write_records(file: &FilePath, records: &[InstructionRecord]) -> Result<(), FormatError> {
+    let mut seen = DatasetMembers::default();
     for (index, record) in records.iter().enumerate() {
-        seen.check(records, record).map_err(|clash| FormatError::document(file, clash.problem, clash.hint))?;
-        seen.note(record, index);
+        seen.check_record(records, record)
+            .map_err(|clash| FormatError::for_document(file, clash.problem, clash.hint))?;
+        seen.note_record(record, index);
     }
     output::write_file(file, |out| output::write_lines(out, records))
 }
 
 /// The items of records: one per path, in their order, each with all its instructions.
 #[must_use]
-pub fn episodes(records: &[Record]) -> Vec<Episode> {
+pub fn episodes_from_records(records: &[InstructionRecord]) -> Vec<Episode> {
     let mut episodes: Vec<Episode> = Vec::new();
     let mut places = BTreeMap::new();
     for record in records {
@@ -135,51 +137,51 @@ pub fn episodes(records: &[Record]) -> Vec<Episode> {
     episodes
 }
 
-fn take_record(item: &mut Item<'_>) -> Result<Record, FormatError> {
-    let format = item.take("format")?;
-    if item.text("format", &format)? != FORMAT {
-        let by = item.look("provenance").and_then(|provenance| provenance.get("wayword")).and_then(Value::as_str);
+fn take_record(item: &mut DatasetItem<'_>) -> Result<InstructionRecord, FormatError> {
+    let format = item.take_field("format")?;
+    if item.checked_text("format", &format)? != RECORD_FORMAT {
+        let by = item.peek_field("provenance").and_then(|provenance| provenance.get("wayword")).and_then(Value::as_str);
         let by = by.map_or_else(String::new, |by| format!(" by version {by:.20?} of Wayword"));
-        let problem = format!("expected {FORMAT:?}, found {format}{by}");
-        return Err(item.wrong("format", problem, "read it with the version of Wayword that wrote it"));
+        let problem = format!("expected {RECORD_FORMAT:?}, found {format}{by}");
+        return Err(item.wrong_field("format", problem, "read it with the version of Wayword that wrote it"));
     }
     let path = take_path(item)?;
-    let platform = item.take("platform")?;
-    let platform = item.name("platform", &platform)?;
-    if let Some(path_id) = item.look(PATH_ID) {
-        item.name(PATH_ID, path_id)?;
+    let platform = item.take_field("platform")?;
+    let platform = item.checked_name("platform", &platform)?;
+    if let Some(path_id) = item.peek_field(PATH_ID) {
+        item.checked_name(PATH_ID, path_id)?;
     }
-    let split = item.take_optional("split").map(|split| item.parsed("split", split)).transpose()?;
+    let split = item.take_optional("split").map(|split| item.parse_value("split", split)).transpose()?;
     let instruction = take_instruction(item, path.frames.len())?;
-    Ok(Record { split, ..Record::new(platform, path, instruction) })
+    Ok(InstructionRecord { split, ..InstructionRecord::new(platform, path, instruction) })
 }
 
-fn take_path(item: &mut Item<'_>) -> Result<Path, FormatError> {
-    let path = item.take("path")?;
-    let id = item.name("path.id", path.get("id").unwrap_or(&Value::Null))?;
-    item.call(&id);
-    let frames = item.list("path.frames", path.get("frames").unwrap_or(&Value::Null), limits::PATH_NODES)?;
+fn take_path(item: &mut DatasetItem<'_>) -> Result<Path, FormatError> {
+    let path = item.take_field("path")?;
+    let id = item.checked_name("path.id", path.get("id").unwrap_or(&Value::Null))?;
+    item.set_id(&id);
+    let frames = item.checked_list("path.frames", path.get("frames").unwrap_or(&Value::Null), limits::PATH_NODES)?;
     if frames.is_empty() {
-        return Err(item.wrong("path.frames", "it is empty", "add at least one frame"));
+        return Err(item.wrong_field("path.frames", "it is empty", "add at least one frame"));
     }
     // One by one, so that an error can name the frame.
     for (index, frame) in frames.iter().enumerate() {
-        item.parsed::<wayword_core::Frame>(&format!("path.frames[{index}]"), frame.clone())?;
+        item.parse_value::<wayword_core::Frame>(&format!("path.frames[{index}]"), frame.clone())?;
     }
-    item.parsed("path", path)
+    item.parse_value("path", path)
 }
 
 /// Takes the instruction. It checks byte ranges and frame numbers against the text and the path, because they are used
 /// as indices later.
-fn take_instruction(item: &mut Item<'_>, frames: usize) -> Result<Instruction, FormatError> {
-    let text = item.take("text")?;
+fn take_instruction(item: &mut DatasetItem<'_>, frames: usize) -> Result<Instruction, FormatError> {
+    let text = item.take_field("text")?;
     let instruction = Instruction {
-        text: item.instruction("text", &text)?,
+        text: item.checked_instruction("text", &text)?,
         style: take_parsed(item, "style")?,
         mentions: take_parsed(item, "mentions")?,
         verdict: take_parsed(item, "verdict")?,
         findings: take_parsed(item, "findings")?,
-        ambiguity: item.take_optional("ambiguity").map(|value| item.parsed("ambiguity", value)).transpose()?,
+        ambiguity: item.take_optional("ambiguity").map(|value| item.parse_value("ambiguity", value)).transpose()?,
         provenance: take_parsed(item, "provenance")?,
     };
     let fits = |span: [usize; 2]| instruction.text.get(span[0]..span[1]).is_some();
@@ -187,54 +189,58 @@ fn take_instruction(item: &mut Item<'_>, frames: usize) -> Result<Instruction, F
     if let Some(index) = mentions.iter().position(|mention| !fits(mention.span) || mention.frame >= frames) {
         let field = format!("mentions[{index}]");
         let hint = "give a byte range within the text, and the number of a frame of the path";
-        return Err(item.wrong(&field, "it points outside the text or the path", hint));
+        return Err(item.wrong_field(&field, "it points outside the text or the path", hint));
     }
     if let Some(index) = findings.iter().position(|finding| finding.span.is_some_and(|span| !fits(span))) {
         let field = format!("findings[{index}].span");
-        return Err(item.wrong(&field, "it points outside the text", "give a byte range within the text"));
+        return Err(item.wrong_field(&field, "it points outside the text", "give a byte range within the text"));
     }
     Ok(instruction)
 }
 
-fn take_parsed<T: DeserializeOwned>(item: &mut Item<'_>, field: &str) -> Result<T, FormatError> {
-    let value = item.take(field)?;
-    item.parsed(field, value)
+fn take_parsed<T: DeserializeOwned>(item: &mut DatasetItem<'_>, field: &str) -> Result<T, FormatError> {
+    let value = item.take_field(field)?;
+    item.parse_value(field, value)
 }
 
 /// The dataset's records so far, to find those that cannot be in it together.
 #[derive(Default)]
-struct Seen {
+struct DatasetMembers {
     paths: BTreeMap<(String, String), usize>,
     texts: BTreeSet<(String, String, String, String)>,
-    splits: BTreeMap<(String, SceneId), Split>,
+    splits: BTreeMap<(String, SceneId), DatasetSplit>,
 }
 
-struct Clash {
+struct RecordClash {
     field: &'static str,
     problem: String,
     hint: &'static str,
 }
 
-impl Seen {
-    fn check(&self, earlier: &[Record], record: &Record) -> Result<(), Clash> {
+impl DatasetMembers {
+    fn check_record(&self, earlier: &[InstructionRecord], record: &InstructionRecord) -> Result<(), RecordClash> {
         let same_name = self.paths.get(&path_key(record)).and_then(|index| earlier.get(*index));
         if same_name.is_some_and(|other| other.path != record.path) {
             let problem = format!("an earlier record has a different path with the name {:?}", record.path.id);
-            return Err(Clash { field: "path", problem, hint: "merge only runs whose paths have different names" });
+            return Err(RecordClash {
+                field: "path",
+                problem,
+                hint: "merge only runs whose paths have different names",
+            });
         }
         if self.texts.contains(&text_key(record)) {
             let problem = format!("path {:?} already has the same instruction", record.path.id);
-            return Err(Clash { field: "text", problem, hint: "leave one of the two out" });
+            return Err(RecordClash { field: "text", problem, hint: "leave one of the two out" });
         }
         let other = self.splits.get(&scene_key(record));
         if record.split.is_some() && other.is_some() && other != record.split.as_ref() {
             let problem = format!("scene {} is in train and in val", record.path.scene);
-            return Err(Clash { field: "split", problem, hint: "split the records again, by scene" });
+            return Err(RecordClash { field: "split", problem, hint: "split the records again, by scene" });
         }
         Ok(())
     }
 
-    fn note(&mut self, record: &Record, index: usize) {
+    fn note_record(&mut self, record: &InstructionRecord, index: usize) {
         self.paths.entry(path_key(record)).or_insert(index);
         self.texts.insert(text_key(record));
         if let Some(split) = record.split {
@@ -243,15 +249,15 @@ impl Seen {
     }
 }
 
-fn path_key(record: &Record) -> (String, String) {
+fn path_key(record: &InstructionRecord) -> (String, String) {
     (record.platform.clone(), record.path.id.clone())
 }
 
-fn text_key(record: &Record) -> (String, String, String, String) {
+fn text_key(record: &InstructionRecord) -> (String, String, String, String) {
     let (platform, path) = path_key(record);
     (platform, path, record.instruction.style.clone(), record.instruction.text.clone())
 }
 
-fn scene_key(record: &Record) -> (String, SceneId) {
+fn scene_key(record: &InstructionRecord) -> (String, SceneId) {
     (record.platform.clone(), record.path.scene.clone())
 }

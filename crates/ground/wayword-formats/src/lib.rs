@@ -35,9 +35,9 @@ mod vocabulary;
 
 pub use episode::{Episode, InHabitat};
 pub use error::{FormatError, ItemPlace, WrongItem};
-pub use format::{Format, UnknownFormat, detect, read};
-pub(crate) use item::Item;
+pub use format::{DatasetFormat, UnknownFormat, detect_format, read_any_format};
+pub(crate) use item::DatasetItem;
 pub use official::OfficialSplit;
 pub use output::write_sidecar;
-pub use splits::split;
-pub use vocabulary::Vocabulary;
+pub use splits::split_by_scene;
+pub use vocabulary::TokenVocabulary;

@@ -3,7 +3,7 @@
 /// Largest file, in bytes, both on the disk and after gunzip.
 pub(crate) const FILE_BYTES: u64 = 1 << 30;
 /// Most items in a file.
-pub(crate) const ITEMS: usize = 1_000_000;
+pub(crate) const MAX_ITEMS: usize = 1_000_000;
 /// Most JSON values within one item. Without this limit, a small file of zeros takes forty times its size in memory.
 pub(crate) const VALUES_PER_ITEM: usize = 200_000;
 /// Most JSON values of a whole file (or of files that are merged) that are kept in memory.
@@ -17,7 +17,7 @@ pub(crate) const PATH_NODES: usize = 1_000;
 /// Longest instruction, bytes. Writers keep to it as well, so that Wayword can read what a run writes.
 pub(crate) const INSTRUCTION_BYTES: usize = wayword_core::LONGEST_TEXT_BYTES;
 /// Most instructions of one item.
-pub(crate) const INSTRUCTIONS: usize = 1_000;
+pub(crate) const MAX_INSTRUCTIONS: usize = 1_000;
 /// Longest name (of a path, an item, a split), bytes.
 pub(crate) const NAME_BYTES: usize = 128;
 /// Most entries of one submitted trajectory. Agents that look around submit one entry per look.
@@ -25,10 +25,10 @@ pub(crate) const TRAJECTORY_POSES: usize = 10_000;
 /// Most entries of a submission's trajectories together.
 pub(crate) const POSES_KEPT: usize = 4_000_000;
 /// Most problems of a submission that are listed one by one.
-pub(crate) const PROBLEMS: usize = 1_000;
+pub(crate) const MAX_LISTED_PROBLEMS: usize = 1_000;
 
 /// A limit as errors write it, with commas between groups of three digits.
-pub(crate) fn grouped(limit: usize) -> String {
+pub(crate) fn group_digits(limit: usize) -> String {
     let digits = limit.to_string();
     let groups: Vec<_> = digits.as_bytes().rchunks(3).rev().map(String::from_utf8_lossy).collect();
     groups.join(",")

@@ -1,6 +1,6 @@
 //! The fields that R2R, REVERIE and RxR share: paths over Matterport3D's viewpoint graphs.
 
-use crate::{Episode, FormatError, Item, item};
+use crate::{DatasetItem, Episode, FormatError, item};
 use serde_json::{Map, Value};
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -8,21 +8,21 @@ use std::{
 };
 
 /// Takes `path_id`, `scan`, `path` and `heading`. `id` is the field that names the item.
-pub(crate) fn take_path(item: &mut Item<'_>, id: &str) -> Result<Episode, FormatError> {
-    let id_as_read = item.take(id)?;
-    let id_text = item.name(id, &id_as_read)?;
-    item.call(&id_text);
-    let path_as_read = if id == "path_id" { id_as_read.clone() } else { item.take("path_id")? };
-    let path_id = item.name("path_id", &path_as_read)?;
-    let scan = item.take("scan")?;
-    let mut episode = Episode::new(id_text, path_id, item.scene("scan", &scan)?);
-    let path = item.take("path")?;
-    episode.viewpoints = item.viewpoints("path", &path)?;
-    let heading = item.take("heading")?;
-    episode.start_heading = Some(item.heading("heading", &heading)?);
-    episode.remember(id, id_as_read);
-    episode.remember("path_id", path_as_read);
-    episode.remember("heading", heading);
+pub(crate) fn take_path(item: &mut DatasetItem<'_>, id: &str) -> Result<Episode, FormatError> {
+    let id_as_read = item.take_field(id)?;
+    let id_text = item.checked_name(id, &id_as_read)?;
+    item.set_id(&id_text);
+    let path_as_read = if id == "path_id" { id_as_read.clone() } else { item.take_field("path_id")? };
+    let path_id = item.checked_name("path_id", &path_as_read)?;
+    let scan = item.take_field("scan")?;
+    let mut episode = Episode::new(id_text, path_id, item.checked_scene("scan", &scan)?);
+    let path = item.take_field("path")?;
+    episode.viewpoints = item.checked_viewpoints("path", &path)?;
+    let heading = item.take_field("heading")?;
+    episode.start_heading = Some(item.checked_heading("heading", &heading)?);
+    episode.remember_spelling(id, id_as_read);
+    episode.remember_spelling("path_id", path_as_read);
+    episode.remember_spelling("heading", heading);
     Ok(episode)
 }
 
@@ -30,18 +30,18 @@ pub(crate) fn take_path(item: &mut Item<'_>, id: &str) -> Result<Episode, Format
 pub(crate) fn path_field(file: &Path, episode: &Episode) -> Result<Value, FormatError> {
     if episode.viewpoints.is_empty() {
         let problem = format!("the path of item {:?} names no viewpoints, and this format requires them", episode.id);
-        return Err(FormatError::document(file, problem, "write it as vlnce or wayword"));
+        return Err(FormatError::for_document(file, problem, "write it as vlnce or wayword"));
     }
     Ok(episode.viewpoints.iter().map(wayword_core::ViewpointId::as_str).collect())
 }
 
 /// The field with the ids of each instruction's tokens.
-pub(crate) const ENCODINGS: &str = "instr_encodings";
+pub(crate) const ENCODINGS_FIELD: &str = "instr_encodings";
 
 /// Adds the ids of the tokens, if there are any.
 pub(crate) fn add_encodings(fields: &mut Map<String, Value>, episode: &Episode) {
     if !episode.encodings.is_empty() {
-        fields.insert(ENCODINGS.to_owned(), episode.encodings.clone().into());
+        fields.insert(ENCODINGS_FIELD.to_owned(), episode.encodings.clone().into());
     }
 }
 
@@ -60,23 +60,23 @@ pub(crate) const PATH_NAME: &str = "path_name";
 /// The numbers of a file's paths. The field's evaluators read a path's name back with `int()`. So a path with another
 /// name (`house2-3-17`) gets a number that no other path of the file has, and keeps its name in `path_name`.
 pub(crate) struct PathNumbers {
-    numbers: Numbers,
+    numbers: FreeNumbers,
     given: BTreeMap<String, u64>,
 }
 
 impl PathNumbers {
     pub(crate) fn new(episodes: &[Episode]) -> Self {
         let names = episodes.iter().map(|episode| episode.path_id.as_str());
-        Self { numbers: Numbers::not_in(names), given: BTreeMap::new() }
+        Self { numbers: FreeNumbers::not_in(names), given: BTreeMap::new() }
     }
 
     /// A number that no path has.
-    pub(crate) fn fresh(&mut self) -> u64 {
-        self.numbers.fresh()
+    pub(crate) fn next_number(&mut self) -> u64 {
+        self.numbers.next_free()
     }
 
     /// Writes `path_id`.
-    pub(crate) fn put(&mut self, fields: &mut Map<String, Value>, episode: &Episode) {
+    pub(crate) fn put_path_id(&mut self, fields: &mut Map<String, Value>, episode: &Episode) {
         let name = &episode.path_id;
         let as_read = episode.as_read.get("path_id").and_then(item::name_of);
         if number_of(name).is_some() || as_read.as_ref() == Some(name) {
@@ -85,7 +85,7 @@ impl PathNumbers {
         }
         let number = match self.given.get(name) {
             Some(number) => *number,
-            None => self.numbers.fresh(),
+            None => self.numbers.next_free(),
         };
         self.given.insert(name.clone(), number);
         fields.insert("path_id".to_owned(), number.into());
@@ -94,17 +94,17 @@ impl PathNumbers {
 }
 
 /// Numbers that are still free in a file.
-pub(crate) struct Numbers {
+pub(crate) struct FreeNumbers {
     taken: BTreeSet<u64>,
     next: u64,
 }
 
-impl Numbers {
+impl FreeNumbers {
     pub(crate) fn not_in<'n>(names: impl Iterator<Item = &'n str>) -> Self {
         Self { taken: names.filter_map(number_of).collect(), next: 0 }
     }
 
-    pub(crate) fn fresh(&mut self) -> u64 {
+    pub(crate) fn next_free(&mut self) -> u64 {
         while !self.taken.insert(self.next) {
             self.next += 1;
         }

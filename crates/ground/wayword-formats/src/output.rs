@@ -13,19 +13,19 @@ use std::{
 /// Writes a temporary file next to the final one and then renames it, so that a reader never sees half of it. The file
 /// is gzip where its name ends in `.gz`.
 pub(crate) fn write_file(file: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), FormatError> {
-    let beside = beside(file)?;
+    let beside = temporary_name(file)?;
     let written = write_to(&beside, file.extension().is_some_and(|ending| ending == "gz"), fill)
         .and_then(|()| fs::rename(&beside, file));
     written.map_err(|source| {
         // The first failure is the one to report. If the file cannot be removed either, it is left.
         let _ = fs::remove_file(&beside);
-        FormatError::io(file, "write", source)
+        FormatError::from_io(file, "write", source)
     })
 }
 
-fn beside(file: &Path) -> Result<PathBuf, FormatError> {
+fn temporary_name(file: &Path) -> Result<PathBuf, FormatError> {
     let Some(name) = file.file_name() else {
-        return Err(FormatError::document(file, "it is not the name of a file", "give a file to write"));
+        return Err(FormatError::for_document(file, "it is not the name of a file", "give a file to write"));
     };
     let mut hidden = OsString::from(".");
     hidden.push(name);

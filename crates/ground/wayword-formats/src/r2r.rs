@@ -2,7 +2,7 @@
 //!
 //! Fields: `distance`, `scan`, `path_id`, `path`, `heading`, `instructions`. `distance` is kept as unknown fields are.
 
-use crate::{Episode, FormatError, input, matterport, output, tally::Tally};
+use crate::{Episode, FormatError, input, matterport, output, tally::ReadTally};
 use matterport::PathNumbers;
 use serde_json::{Map, Value};
 use std::{collections::BTreeMap, path::Path};
@@ -11,15 +11,15 @@ use std::{collections::BTreeMap, path::Path};
 ///
 /// # Errors
 /// When the file cannot be read or is not JSON, a field of an item is missing or wrong, or a `path_id` is given twice.
-pub fn read(file: &Path) -> Result<Vec<Episode>, FormatError> {
+pub fn read_r2r_file(file: &Path) -> Result<Vec<Episode>, FormatError> {
     let mut episodes = Vec::new();
-    let mut tally = Tally::default();
+    let mut tally = ReadTally::default();
     input::each_item(file, |mut item| {
         let mut episode = matterport::take_path(&mut item, "path_id")?;
-        tally.claim(&item, "path_id", &episode)?;
-        let instructions = item.take("instructions")?;
-        episode.instructions = item.instructions("instructions", &instructions)?;
-        episodes.push(tally.finish(episode, item)?);
+        tally.claim_name(&item, "path_id", &episode)?;
+        let instructions = item.take_field("instructions")?;
+        episode.instructions = item.checked_instructions("instructions", &instructions)?;
+        episodes.push(tally.finish_episode(episode, item)?);
         Ok(())
     })?;
     Ok(episodes)
@@ -34,19 +34,19 @@ pub fn read(file: &Path) -> Result<Vec<Episode>, FormatError> {
 ///
 /// # Errors
 /// When a path names no viewpoints, or the file cannot be written.
-pub fn write(file: &Path, episodes: &[Episode]) -> Result<(), FormatError> {
+pub fn write_r2r_file(file: &Path, episodes: &[Episode]) -> Result<(), FormatError> {
     let mut numbers = PathNumbers::new(episodes);
     let mut items = Vec::with_capacity(episodes.len());
     let mut walks: BTreeMap<String, Vec<usize>> = BTreeMap::new();
     for episode in episodes {
-        let mut item = fields(file, episode, &mut numbers)?;
+        let mut item = item_fields(file, episode, &mut numbers)?;
         let known = walks.entry(item["path_id"].to_string()).or_default();
         if let Some(index) = known.iter().find(|index| same_walk(&items[**index], &item)) {
             append_instructions(&mut items[*index], &mut item);
             continue;
         }
         if !known.is_empty() {
-            item.insert("path_id".to_owned(), numbers.fresh().into());
+            item.insert("path_id".to_owned(), numbers.next_number().into());
             item.insert(matterport::PATH_NAME.to_owned(), episode.path_id.as_str().into());
         }
         known.push(items.len());
@@ -55,14 +55,14 @@ pub fn write(file: &Path, episodes: &[Episode]) -> Result<(), FormatError> {
     output::write_file(file, |out| output::write_list(out, &items))
 }
 
-fn fields(file: &Path, episode: &Episode, numbers: &mut PathNumbers) -> Result<Map<String, Value>, FormatError> {
+fn item_fields(file: &Path, episode: &Episode, numbers: &mut PathNumbers) -> Result<Map<String, Value>, FormatError> {
     let mut fields = Map::new();
     if let Some(length_m) = episode.floor_length_m().filter(|_| !episode.extra.contains_key("distance")) {
         // To the centimetre, as in R2R.
         fields.insert("distance".to_owned(), ((length_m * 100.0).round() / 100.0).into());
     }
     fields.insert("scan".to_owned(), episode.scene.as_str().into());
-    numbers.put(&mut fields, episode);
+    numbers.put_path_id(&mut fields, episode);
     fields.insert("path".to_owned(), matterport::path_field(file, episode)?);
     fields.insert("heading".to_owned(), episode.heading_field());
     fields.insert("instructions".to_owned(), episode.instructions.clone().into());
@@ -76,7 +76,7 @@ fn same_walk(a: &Map<String, Value>, b: &Map<String, Value>) -> bool {
 }
 
 fn append_instructions(to: &mut Map<String, Value>, from: &mut Map<String, Value>) {
-    for field in ["instructions", matterport::ENCODINGS] {
+    for field in ["instructions", matterport::ENCODINGS_FIELD] {
         if let (Some(Value::Array(to)), Some(Value::Array(from))) = (to.get_mut(field), from.get_mut(field)) {
             to.append(from);
         }

@@ -3,7 +3,7 @@
 //! Fields: `id` ("path_objId"), `scan`, `path_id`, `path`, `objId`, `heading`, `instructions`. The first release adds
 //! `distance`, `ix` and `instructions_l` (R2R's text); they are kept as unknown fields are.
 
-use crate::{Episode, FormatError, input, item, matterport, output, tally::Tally};
+use crate::{Episode, FormatError, input, item, matterport, output, tally::ReadTally};
 use matterport::PathNumbers;
 use serde_json::{Map, Value};
 use std::path::Path;
@@ -12,20 +12,20 @@ use std::path::Path;
 ///
 /// # Errors
 /// When the file cannot be read or is not JSON, a field of an item is missing or wrong, or an id is given twice.
-pub fn read(file: &Path) -> Result<Vec<Episode>, FormatError> {
+pub fn read_reverie_file(file: &Path) -> Result<Vec<Episode>, FormatError> {
     let mut episodes = Vec::new();
-    let mut tally = Tally::default();
+    let mut tally = ReadTally::default();
     input::each_item(file, |mut item| {
         let mut episode = matterport::take_path(&mut item, "id")?;
-        tally.claim(&item, "id", &episode)?;
+        tally.claim_name(&item, "id", &episode)?;
         // Items of test splits, and those with a free target, have no object.
         if let Some(object) = item.take_optional("objId") {
-            episode.target_object = Some(item.object("objId", &object)?);
-            episode.remember("objId", object);
+            episode.target_object = Some(item.checked_object("objId", &object)?);
+            episode.remember_spelling("objId", object);
         }
-        let instructions = item.take("instructions")?;
-        episode.instructions = item.instructions("instructions", &instructions)?;
-        episodes.push(tally.finish(episode, item)?);
+        let instructions = item.take_field("instructions")?;
+        episode.instructions = item.checked_instructions("instructions", &instructions)?;
+        episodes.push(tally.finish_episode(episode, item)?);
         Ok(())
     })?;
     Ok(episodes)
@@ -38,27 +38,31 @@ pub fn read(file: &Path) -> Result<Vec<Episode>, FormatError> {
 ///
 /// # Errors
 /// When a path names no viewpoints, two items would have the same id, or the file cannot be written.
-pub fn write(file: &Path, episodes: &[Episode]) -> Result<(), FormatError> {
+pub fn write_reverie_file(file: &Path, episodes: &[Episode]) -> Result<(), FormatError> {
     let mut numbers = PathNumbers::new(episodes);
     let mut ids = std::collections::BTreeSet::new();
     let mut items = Vec::with_capacity(episodes.len());
     for episode in episodes {
-        let item = fields(file, episode, &mut numbers)?;
+        let item = item_fields(file, episode, &mut numbers)?;
         if !ids.insert(item.get("id").map(Value::to_string)) {
             let problem =
                 format!("item {:?} has the same path and object as another, so both get the same id", episode.id);
-            return Err(FormatError::document(file, problem, "put instructions for one path and object into one item"));
+            return Err(FormatError::for_document(
+                file,
+                problem,
+                "put instructions for one path and object into one item",
+            ));
         }
         items.push(item);
     }
     output::write_file(file, |out| output::write_list(out, &items))
 }
 
-fn fields(file: &Path, episode: &Episode, numbers: &mut PathNumbers) -> Result<Map<String, Value>, FormatError> {
+fn item_fields(file: &Path, episode: &Episode, numbers: &mut PathNumbers) -> Result<Map<String, Value>, FormatError> {
     let mut fields = Map::new();
     fields.insert("id".to_owned(), Value::Null);
     fields.insert("scan".to_owned(), episode.scene.as_str().into());
-    numbers.put(&mut fields, episode);
+    numbers.put_path_id(&mut fields, episode);
     fields.insert("path".to_owned(), matterport::path_field(file, episode)?);
     if let Some(object) = &episode.target_object {
         fields.insert("objId".to_owned(), episode.name_field("objId", object.as_str()));
@@ -79,7 +83,7 @@ fn composed_id(episode: &Episode, path_id: Option<&Value>) -> Value {
         item::name_of(value).as_ref() == Some(&episode.id)
             && object.as_deref() == episode.target_object.as_ref().map(wayword_core::ObjectId::as_str)
     };
-    episode.field("id", unchanged, || match &episode.target_object {
+    episode.field_value("id", unchanged, || match &episode.target_object {
         Some(object) => format!("{path}_{object}").into(),
         None => path.into(),
     })

@@ -3,8 +3,8 @@
 //! Fields: `split`, `instruction_id`, `annotator_id`, `language`, `path_id`, `scan`, `path`, `heading`, `instruction`,
 //! `timed_instruction` (`word`, and where known `start_time`, `end_time`), `edit_distance`.
 
-use crate::{Episode, FormatError, Item, input, limits, matterport, output, tally::Tally};
-use matterport::{Numbers, PathNumbers, number_of};
+use crate::{DatasetItem, Episode, FormatError, input, limits, matterport, output, tally::ReadTally};
+use matterport::{FreeNumbers, PathNumbers, number_of};
 use serde_json::{Map, Value, json};
 use std::{collections::BTreeSet, path::Path};
 
@@ -12,56 +12,56 @@ use std::{collections::BTreeSet, path::Path};
 const OF_THE_TEXT: [&str; 4] = ["annotator_id", "language", "timed_instruction", "edit_distance"];
 
 /// The field with the ids of the instruction's tokens, for agents that load them.
-const ENCODING: &str = "instr_encoding";
+const ENCODING_FIELD: &str = "instr_encoding";
 
 /// Reads a file of guide annotations.
 ///
 /// # Errors
 /// When the file cannot be read or is not JSON, a field of a line is missing or wrong, or an `instruction_id` is given
 /// twice.
-pub fn read(file: &Path) -> Result<Vec<Episode>, FormatError> {
+pub fn read_rxr_file(file: &Path) -> Result<Vec<Episode>, FormatError> {
     let mut episodes = Vec::new();
-    let mut tally = Tally::default();
+    let mut tally = ReadTally::default();
     input::each_line(file, |mut item| {
         let mut episode = matterport::take_path(&mut item, "instruction_id")?;
-        tally.claim(&item, "instruction_id", &episode)?;
-        let instruction = item.take("instruction")?;
-        episode.instructions = vec![item.instruction("instruction", &instruction)?];
-        episode.remember("instruction", instruction);
+        tally.claim_name(&item, "instruction_id", &episode)?;
+        let instruction = item.take_field("instruction")?;
+        episode.instructions = vec![item.checked_instruction("instruction", &instruction)?];
+        episode.remember_spelling("instruction", instruction);
         if let Some(split) = item.take_optional("split") {
-            episode.split = Some(item.name("split", &split)?);
+            episode.split = Some(item.checked_name("split", &split)?);
         }
         take_text_fields(&mut item, &mut episode)?;
-        episodes.push(tally.finish(episode, item)?);
+        episodes.push(tally.finish_episode(episode, item)?);
         Ok(())
     })?;
     Ok(episodes)
 }
 
 /// Takes the fields that annotations by a model may lack.
-fn take_text_fields(item: &mut Item<'_>, episode: &mut Episode) -> Result<(), FormatError> {
+fn take_text_fields(item: &mut DatasetItem<'_>, episode: &mut Episode) -> Result<(), FormatError> {
     for field in OF_THE_TEXT {
         let Some(value) = item.take_optional(field) else { continue };
         match field {
-            "annotator_id" => drop(item.name(field, &value)?),
-            "edit_distance" => drop(item.finite(field, &value)?),
-            "language" => episode.languages = vec![item.text(field, &value)?.to_owned()],
+            "annotator_id" => drop(item.checked_name(field, &value)?),
+            "edit_distance" => drop(item.checked_number(field, &value)?),
+            "language" => episode.languages = vec![item.checked_text(field, &value)?.to_owned()],
             _ => timed_words(item, field, &value)?,
         }
         // Timed words take ten times as much memory as JSON values as they do as text.
         let value = if field == "timed_instruction" { value.to_string().into() } else { value };
-        episode.remember(field, value);
+        episode.remember_spelling(field, value);
     }
     Ok(())
 }
 
-fn timed_words(item: &Item<'_>, field: &str, value: &Value) -> Result<(), FormatError> {
-    for (index, timed) in item.list(field, value, limits::INSTRUCTION_BYTES)?.iter().enumerate() {
+fn timed_words(item: &DatasetItem<'_>, field: &str, value: &Value) -> Result<(), FormatError> {
+    for (index, timed) in item.checked_list(field, value, limits::INSTRUCTION_BYTES)?.iter().enumerate() {
         let at = format!("{field}[{index}].word");
         let Some(word) = timed.get("word") else {
-            return Err(item.wrong(&at, "it is missing", "each entry is an object with a word"));
+            return Err(item.wrong_field(&at, "it is missing", "each entry is an object with a word"));
         };
-        item.text(&at, word)?;
+        item.checked_text(&at, word)?;
     }
     Ok(())
 }
@@ -75,19 +75,20 @@ fn timed_words(item: &Item<'_>, field: &str, value: &Value) -> Result<(), Format
 ///
 /// # Errors
 /// When a path names no viewpoints, or the file cannot be written.
-pub fn write(file: &Path, episodes: &[Episode]) -> Result<(), FormatError> {
+pub fn write_rxr_file(file: &Path, episodes: &[Episode]) -> Result<(), FormatError> {
     let mut paths = PathNumbers::new(episodes);
-    let mut fresh = Numbers::not_in(episodes.iter().map(|episode| episode.id.as_str()));
+    let mut fresh = FreeNumbers::not_in(episodes.iter().map(|episode| episode.id.as_str()));
     let mut used = BTreeSet::new();
     let mut lines = Vec::with_capacity(episodes.len());
     for episode in episodes {
         let alone = episode.instructions.len() == 1;
         for (number, text) in episode.instructions.iter().enumerate() {
             let keeps_id = alone && keeps_its_id(episode) && used.insert(&episode.id);
-            let id = if keeps_id { episode.name_field("instruction_id", &episode.id) } else { fresh.fresh().into() };
-            let mut line = fields(file, episode, text, id, &mut paths)?;
+            let id =
+                if keeps_id { episode.name_field("instruction_id", &episode.id) } else { fresh.next_free().into() };
+            let mut line = line_fields(file, episode, text, id, &mut paths)?;
             if let Some(ids) = episode.encodings.get(number) {
-                line.insert(ENCODING.to_owned(), ids.clone().into());
+                line.insert(ENCODING_FIELD.to_owned(), ids.clone().into());
             }
             lines.push(line);
         }
@@ -99,7 +100,7 @@ fn keeps_its_id(episode: &Episode) -> bool {
     number_of(&episode.id).is_some() || episode.as_read.contains_key("instruction_id")
 }
 
-fn fields(
+fn line_fields(
     file: &Path,
     episode: &Episode,
     text: &str,
@@ -107,7 +108,7 @@ fn fields(
     paths: &mut PathNumbers,
 ) -> Result<Map<String, Value>, FormatError> {
     let same_text = episode.as_read.get("instruction").and_then(Value::as_str) == Some(text);
-    let of_text = |field: &str, anew: Value| episode.field(field, |_| same_text, || anew);
+    let of_text = |field: &str, anew: Value| episode.field_value(field, |_| same_text, || anew);
     let words = || text.split_whitespace().map(|word| json!({ "word": word })).collect();
     let timed = episode.as_read.get("timed_instruction").and_then(Value::as_str).filter(|_| same_text);
     let timed = timed.and_then(|timed| serde_json::from_str(timed).ok()).unwrap_or_else(words);
@@ -116,7 +117,7 @@ fn fields(
     fields.insert("instruction_id".to_owned(), id);
     fields.insert("annotator_id".to_owned(), of_text("annotator_id", 0.into()));
     fields.insert("language".to_owned(), of_text("language", "en-US".into()));
-    paths.put(&mut fields, episode);
+    paths.put_path_id(&mut fields, episode);
     fields.insert("scan".to_owned(), episode.scene.as_str().into());
     fields.insert("path".to_owned(), matterport::path_field(file, episode)?);
     fields.insert("heading".to_owned(), episode.heading_field());

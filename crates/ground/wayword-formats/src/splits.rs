@@ -3,7 +3,7 @@
 
 use crate::{
     OfficialSplit,
-    jsonl::{Record, Split},
+    jsonl::{DatasetSplit, InstructionRecord},
 };
 use rand::RngCore;
 use std::collections::{BTreeMap, BTreeSet};
@@ -17,20 +17,20 @@ use wayword_core::SceneId;
 ///
 /// Scenes that are officially held out for validation or test ([`OfficialSplit`]) come first, and are for `val` whatever the
 /// share, so that none of them is trained on.
-pub fn split(records: &mut [Record], val_share: f64, seed: u64) {
+pub fn split_by_scene(records: &mut [InstructionRecord], val_share: f64, seed: u64) {
     let val = val_scenes(records, val_share, seed);
     for record in records {
         let in_val = val.get(&record.platform).is_some_and(|scenes| scenes.contains(&record.path.scene));
-        record.split = Some(if in_val { Split::Val } else { Split::Train });
+        record.split = Some(if in_val { DatasetSplit::Val } else { DatasetSplit::Train });
     }
 }
 
-fn val_scenes(records: &[Record], val_share: f64, seed: u64) -> BTreeMap<String, BTreeSet<SceneId>> {
+fn val_scenes(records: &[InstructionRecord], val_share: f64, seed: u64) -> BTreeMap<String, BTreeSet<SceneId>> {
     let mut drawn: BTreeMap<String, BTreeSet<(bool, u64, SceneId)>> = BTreeMap::new();
     for record in records {
         let (platform, scene) = (&record.platform, &record.path.scene);
         // A generator draws the number, because the derived seeds themselves are too similar where the names are.
-        let lot = wayword_core::rng(seed, &["split", platform, scene.as_str()]).next_u64();
+        let lot = wayword_core::seeded_rng(seed, &["split", platform, scene.as_str()]).next_u64();
         drawn.entry(platform.clone()).or_default().insert((!is_held_out(scene), lot, scene.clone()));
     }
     let first = |(platform, scenes): (String, BTreeSet<(bool, u64, SceneId)>)| {
@@ -42,7 +42,7 @@ fn val_scenes(records: &[Record], val_share: f64, seed: u64) -> BTreeMap<String,
 }
 
 fn is_held_out(scene: &SceneId) -> bool {
-    OfficialSplit::of(scene).is_some_and(OfficialSplit::is_held_out)
+    OfficialSplit::for_scene(scene).is_some_and(OfficialSplit::is_held_out)
 }
 
 fn val_count(scenes: usize, share: f64) -> usize {

@@ -13,21 +13,21 @@ use std::{
 /// Reads one value. If that fails, the text becomes the field at which it failed, for example `path[3]`; it stays
 /// empty at the root.
 #[derive(Clone, Copy)]
-pub(crate) struct Strict<'f>(pub(crate) &'f RefCell<String>);
+pub(crate) struct StrictJson<'f>(pub(crate) &'f RefCell<String>);
 
-impl<'de> DeserializeSeed<'de> for Strict<'_> {
+impl<'de> DeserializeSeed<'de> for StrictJson<'_> {
     type Value = Value;
 
     fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Value, D::Error> {
         let (mut track, left) = (Track::new(), Cell::new(limits::VALUES_PER_ITEM));
         let bytes = Cell::new(limits::LINE_BYTES);
-        let part = Part { left: &left, bytes: &bytes, is_twice: false };
+        let part = StrictPart { left: &left, bytes: &bytes, is_twice: false };
         let read = part.deserialize(serde_path_to_error::Deserializer::new(deserializer, &mut track));
-        read.inspect_err(|_| *self.0.borrow_mut() = field(&track.path()))
+        read.inspect_err(|_| *self.0.borrow_mut() = field_path(&track.path()))
     }
 }
 
-fn field(path: &Path) -> String {
+fn field_path(path: &Path) -> String {
     let mut field = String::new();
     for segment in path {
         let dot = if field.is_empty() { "" } else { "." };
@@ -44,7 +44,7 @@ fn field(path: &Path) -> String {
 
 /// Reads a part of a value.
 #[derive(Clone, Copy)]
-struct Part<'l> {
+struct StrictPart<'l> {
     /// How many more JSON values the whole value may have.
     left: &'l Cell<usize>,
     /// How many more bytes of text it may have.
@@ -52,15 +52,15 @@ struct Part<'l> {
     is_twice: bool,
 }
 
-impl Part<'_> {
-    fn count<E: Error>(self, text: &str) -> Result<(), E> {
+impl StrictPart<'_> {
+    fn count_bytes<E: Error>(self, text: &str) -> Result<(), E> {
         let left = self.bytes.get().checked_sub(text.len());
         self.bytes.set(left.ok_or_else(|| E::custom("it has more than 16 MiB of text"))?);
         Ok(())
     }
 }
 
-impl<'de> DeserializeSeed<'de> for Part<'_> {
+impl<'de> DeserializeSeed<'de> for StrictPart<'_> {
     type Value = Value;
 
     fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Value, D::Error> {
@@ -73,7 +73,7 @@ impl<'de> DeserializeSeed<'de> for Part<'_> {
     }
 }
 
-impl<'de> Visitor<'de> for Part<'_> {
+impl<'de> Visitor<'de> for StrictPart<'_> {
     type Value = Value;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -101,7 +101,7 @@ impl<'de> Visitor<'de> for Part<'_> {
     }
 
     fn visit_str<E: Error>(self, value: &str) -> Result<Value, E> {
-        self.count(value)?;
+        self.count_bytes(value)?;
         Ok(value.into())
     }
 
@@ -116,8 +116,8 @@ impl<'de> Visitor<'de> for Part<'_> {
     fn visit_map<A: MapAccess<'de>>(self, mut entries: A) -> Result<Value, A::Error> {
         let mut map = Map::new();
         while let Some(key) = entries.next_key::<String>()? {
-            self.count(&key)?;
-            let value = entries.next_value_seed(Part { is_twice: map.contains_key(&key), ..self })?;
+            self.count_bytes(&key)?;
+            let value = entries.next_value_seed(StrictPart { is_twice: map.contains_key(&key), ..self })?;
             map.insert(key, value);
         }
         Ok(Value::Object(map))

@@ -1,56 +1,65 @@
 //! Watches over a file while it is read: names that may be given only once, and the number of values that are kept in
 //! memory.
 
-use crate::{Episode, FormatError, Item, limits};
+use crate::{DatasetItem, Episode, FormatError, limits};
 use serde_json::{Map, Value};
 use std::collections::BTreeSet;
 
 /// The names and the number of values of a file so far.
 #[derive(Default)]
-pub(crate) struct Tally {
+pub(crate) struct ReadTally {
     names: BTreeSet<String>,
     values: usize,
 }
 
-impl Tally {
+impl ReadTally {
     /// Refuses a name that was given before, because the field's loaders would silently drop one of the two items.
-    pub(crate) fn claim(&mut self, item: &Item<'_>, field: &str, episode: &Episode) -> Result<(), FormatError> {
+    pub(crate) fn claim_name(
+        &mut self,
+        item: &DatasetItem<'_>,
+        field: &str,
+        episode: &Episode,
+    ) -> Result<(), FormatError> {
         if self.names.insert(episode.id.clone()) {
             return Ok(());
         }
         let problem = format!("{:?} was given to an earlier item", episode.id);
-        Err(item.wrong(field, problem, "give each item its own name"))
+        Err(item.wrong_field(field, problem, "give each item its own name"))
     }
 
     /// An episode with the fields that were not taken.
-    pub(crate) fn finish(&mut self, mut episode: Episode, item: Item<'_>) -> Result<Episode, FormatError> {
+    pub(crate) fn finish_episode(
+        &mut self,
+        mut episode: Episode,
+        item: DatasetItem<'_>,
+    ) -> Result<Episode, FormatError> {
         let lists = episode.viewpoints.len() + episode.floor_positions.len() + episode.instructions.len();
-        episode.extra = self.rest(item, lists + values_in(&episode.as_read))?;
+        episode.extra = self.take_rest(item, lists + values_in(&episode.as_read))?;
         Ok(episode)
     }
 
     /// The fields that were not taken; `kept` is the number of values that were taken and are kept in memory. A short
     /// value takes up to thirty times its length in the file.
-    pub(crate) fn rest(&mut self, item: Item<'_>, kept: usize) -> Result<Map<String, Value>, FormatError> {
+    pub(crate) fn take_rest(&mut self, item: DatasetItem<'_>, kept: usize) -> Result<Map<String, Value>, FormatError> {
         let file = item.file();
-        let rest = item.rest();
+        let rest = item.into_rest();
         self.values += kept + values_in(&rest);
         if self.values > limits::VALUES_KEPT {
             let problem = "it holds more than 20,000,000 values, more than is kept in memory";
-            return Err(FormatError::document(file, problem, "split it into parts"));
+            return Err(FormatError::for_document(file, problem, "split it into parts"));
         }
         Ok(rest)
     }
 }
 
 fn values_in(map: &Map<String, Value>) -> usize {
-    map.values().map(values).sum()
+    map.values().map(count_values).sum()
 }
 
 /// An object counts as eight values, because even a short one takes as much memory as eight numbers.
-fn values(value: &Value) -> usize {
+fn count_values(value: &Value) -> usize {
     match value {
-        Value::Array(list) => 1 + list.iter().map(values).sum::<usize>(),
+        Value::Array(list) => 1 + list.iter().map(count_values).sum::<usize>(),
         Value::Object(map) => 8 + values_in(map),
         _ => 1,
     }
@@ -65,15 +74,15 @@ mod tests {
 
     #[test]
     fn values_are_counted_at_every_depth() {
-        assert_eq!(values(&json!({"a": [1, 2, {"b": null}], "c": "text"})), 8 + 3 + (8 + 1) + 1);
+        assert_eq!(count_values(&json!({"a": [1, 2, {"b": null}], "c": "text"})), 8 + 3 + (8 + 1) + 1);
     }
 
     #[test]
     fn take_rest_limits_the_values_in_memory() {
-        let mut tally = Tally::default();
-        let item = || Item::new(Path::new("big.json"), ItemPlace::Item(0), json!({"a": [0, 0]})).unwrap();
-        assert_eq!(tally.rest(item(), limits::VALUES_KEPT - 3).unwrap().len(), 1);
-        let error = tally.rest(item(), 0).unwrap_err().to_string();
+        let mut tally = ReadTally::default();
+        let item = || DatasetItem::new(Path::new("big.json"), ItemPlace::Item(0), json!({"a": [0, 0]})).unwrap();
+        assert_eq!(tally.take_rest(item(), limits::VALUES_KEPT - 3).unwrap().len(), 1);
+        let error = tally.take_rest(item(), 0).unwrap_err().to_string();
         assert!(error.starts_with("big.json: it holds more than 20,000,000 values"), "{error}");
     }
 }

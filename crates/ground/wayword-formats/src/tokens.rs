@@ -5,7 +5,7 @@ use crate::limits;
 use std::io::{self, Read};
 
 /// Reads JSON, and fails where a text or number in it is longer than any dataset's.
-pub(crate) struct Tokens<R> {
+pub(crate) struct BoundedTokenReader<R> {
     inner: R,
     /// Bytes of the text or number that is being read.
     length: usize,
@@ -14,13 +14,13 @@ pub(crate) struct Tokens<R> {
     is_over: bool,
 }
 
-impl<R> Tokens<R> {
+impl<R> BoundedTokenReader<R> {
     pub(crate) fn new(inner: R) -> Self {
         Self { inner, length: 0, in_text: false, is_escaped: false, is_over: false }
     }
 
     /// Takes in a byte. Returns whether the text or number that it belongs to is still short enough.
-    fn take(&mut self, byte: u8) -> bool {
+    fn accept_byte(&mut self, byte: u8) -> bool {
         self.length += 1;
         match byte {
             _ if self.is_escaped => self.is_escaped = false,
@@ -33,14 +33,14 @@ impl<R> Tokens<R> {
     }
 }
 
-impl<R: Read> Read for Tokens<R> {
+impl<R: Read> Read for BoundedTokenReader<R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         if self.is_over {
             return Err(io::Error::other("a text or number in it is longer than 1 MiB"));
         }
         let count = self.inner.read(buffer)?;
         for (at, byte) in buffer[..count].iter().enumerate() {
-            if !self.take(*byte) {
+            if !self.accept_byte(*byte) {
                 self.is_over = true;
                 // The bytes before are passed on, so that the error can name the item.
                 return if at == 0 { self.read(buffer) } else { Ok(at) };
@@ -57,7 +57,7 @@ mod tests {
     /// How many bytes come through.
     fn read(text: &str) -> Result<usize, String> {
         let mut read = Vec::new();
-        let all = io::BufReader::with_capacity(1000, Tokens::new(text.as_bytes())).read_to_end(&mut read);
+        let all = io::BufReader::with_capacity(1000, BoundedTokenReader::new(text.as_bytes())).read_to_end(&mut read);
         all.map_err(|error| format!("{error} after {}", read.len()))
     }
 

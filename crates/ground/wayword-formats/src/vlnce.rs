@@ -11,11 +11,11 @@
 //! ([`Episode::floor_positions`]).
 
 use crate::{
-    Episode, FormatError, Item,
+    DatasetItem, Episode, FormatError,
     habitat::{habitat_from_heading, habitat_from_wayword, heading_from_habitat, wayword_from_habitat},
     input, limits, output,
-    tally::Tally,
-    vocabulary::Vocabulary,
+    tally::ReadTally,
+    vocabulary::TokenVocabulary,
 };
 use serde_json::{Map, Value, json};
 use std::{
@@ -29,19 +29,19 @@ const GOAL_RADIUS_M: f64 = 3.0;
 
 /// The contents of a VLN-CE file.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Dataset {
+pub struct VlnceDataset {
     /// Its episodes. After reading, each has one instruction.
     pub episodes: Vec<Episode>,
     /// The words of their tokens. Keep it, because a trained agent knows the numbers of one vocabulary only.
-    pub vocabulary: Vocabulary,
+    pub vocabulary: TokenVocabulary,
 }
 
-impl Dataset {
+impl VlnceDataset {
     /// Episodes, with a vocabulary made from their words.
     #[must_use]
-    pub fn of(episodes: Vec<Episode>) -> Self {
+    pub fn from_episodes(episodes: Vec<Episode>) -> Self {
         let texts = episodes.iter().flat_map(|episode| &episode.instructions);
-        Self { vocabulary: Vocabulary::of(texts.map(String::as_str)), episodes }
+        Self { vocabulary: TokenVocabulary::from_texts(texts.map(String::as_str)), episodes }
     }
 }
 
@@ -50,21 +50,21 @@ impl Dataset {
 /// # Errors
 /// When the file cannot be read or is not JSON, a field of an episode is missing or wrong, or an `episode_id` is given
 /// twice.
-pub fn read(file: &Path) -> Result<Dataset, FormatError> {
+pub fn read_vlnce_file(file: &Path) -> Result<VlnceDataset, FormatError> {
     let mut episodes = Vec::new();
     let mut tokens = BTreeMap::new();
-    let mut tally = Tally::default();
+    let mut tally = ReadTally::default();
     let mut rest = input::each_item_in(file, "episodes", |mut item| {
         let episode = take_episode(&mut item, &mut tokens)?;
-        tally.claim(&item, "episode_id", &episode)?;
+        tally.claim_name(&item, "episode_id", &episode)?;
         // Unknown fields cannot be written back, so they are not kept.
-        let episode = tally.finish(episode, item)?;
+        let episode = tally.finish_episode(episode, item)?;
         episodes.push(Episode { extra: Map::new(), ..episode });
         Ok(())
     })?;
-    let mut vocabulary = Vocabulary::new(word_list(file, rest.remove("instruction_vocab"))?);
-    vocabulary.remember(tokens);
-    Ok(Dataset { episodes, vocabulary })
+    let mut vocabulary = TokenVocabulary::new(word_list(file, rest.remove("instruction_vocab"))?);
+    vocabulary.remember_tokens(tokens);
+    Ok(VlnceDataset { episodes, vocabulary })
 }
 
 fn word_list(file: &Path, vocabulary: Option<Value>) -> Result<Vec<String>, FormatError> {
@@ -72,40 +72,41 @@ fn word_list(file: &Path, vocabulary: Option<Value>) -> Result<Vec<String>, Form
     let words = words.and_then(|words| serde_json::from_value::<Vec<String>>(words).ok());
     words.ok_or_else(|| {
         let problem = "field \"instruction_vocab.word_list\": expected a list of words";
-        FormatError::document(file, problem, "give a VLN-CE file of R2R; VLN-CE files of RxR cannot be read")
+        FormatError::for_document(file, problem, "give a VLN-CE file of R2R; VLN-CE files of RxR cannot be read")
     })
 }
 
-fn take_episode(item: &mut Item<'_>, tokens: &mut BTreeMap<String, Vec<u64>>) -> Result<Episode, FormatError> {
-    let id = item.take("episode_id")?;
-    let id_text = item.name("episode_id", &id)?;
-    item.call(&id_text);
-    let trajectory = item.take("trajectory_id")?;
-    let scene_file = item.take("scene_id")?;
-    let mut episode = Episode::new(id_text, item.name("trajectory_id", &trajectory)?, scene_of(item, &scene_file)?);
-    episode.remember("episode_id", id);
-    episode.remember("trajectory_id", trajectory);
-    episode.remember("scene_id", scene_file);
+fn take_episode(item: &mut DatasetItem<'_>, tokens: &mut BTreeMap<String, Vec<u64>>) -> Result<Episode, FormatError> {
+    let id = item.take_field("episode_id")?;
+    let id_text = item.checked_name("episode_id", &id)?;
+    item.set_id(&id_text);
+    let trajectory = item.take_field("trajectory_id")?;
+    let scene_file = item.take_field("scene_id")?;
+    let mut episode =
+        Episode::new(id_text, item.checked_name("trajectory_id", &trajectory)?, scene_of(item, &scene_file)?);
+    episode.remember_spelling("episode_id", id);
+    episode.remember_spelling("trajectory_id", trajectory);
+    episode.remember_spelling("scene_id", scene_file);
     take_positions(item, &mut episode)?;
     take_instruction(item, &mut episode, tokens)?;
     if let Some(info) = item.take_optional("info") {
         if !info.is_object() && !info.is_null() {
-            return Err(item.wrong("info", "expected an object", "leave it out where there is nothing to say"));
+            return Err(item.wrong_field("info", "expected an object", "leave it out where there is nothing to say"));
         }
-        episode.remember("info", info);
+        episode.remember_spelling("info", info);
     }
     Ok(episode)
 }
 
 /// The scene of a mesh file: the file's name without its ending.
-fn scene_of(item: &Item<'_>, value: &Value) -> Result<SceneId, FormatError> {
+fn scene_of(item: &DatasetItem<'_>, value: &Value) -> Result<SceneId, FormatError> {
     const HINT: &str = "write it as mp3d/SCAN/SCAN.glb";
-    let text = item.text("scene_id", value)?;
+    let text = item.checked_text("scene_id", value)?;
     let outside = text.starts_with('/') || text.split('/').any(|part| part == "..");
     if outside || text.contains('\\') {
-        return Err(item.wrong("scene_id", "it points outside the folder of scenes", HINT));
+        return Err(item.wrong_field("scene_id", "it points outside the folder of scenes", HINT));
     }
-    SceneId::new(bare_scene(text)).map_err(|error| item.wrong("scene_id", error.to_string(), HINT))
+    SceneId::new(bare_scene(text)).map_err(|error| item.wrong_field("scene_id", error.to_string(), HINT))
 }
 
 fn bare_scene(mesh: &str) -> &str {
@@ -115,72 +116,74 @@ fn bare_scene(mesh: &str) -> &str {
     [".basis", ".stage_config"].iter().find_map(|ending| bare.strip_suffix(ending)).unwrap_or(bare)
 }
 
-fn take_positions(item: &mut Item<'_>, episode: &mut Episode) -> Result<(), FormatError> {
-    let start = item.take("start_position")?;
-    let start_floor = item.position("start_position", &start)?;
-    let rotation = item.take("start_rotation")?;
-    let heading = heading_from_habitat(item.numbers("start_rotation", &rotation)?);
+fn take_positions(item: &mut DatasetItem<'_>, episode: &mut Episode) -> Result<(), FormatError> {
+    let start = item.take_field("start_position")?;
+    let start_floor = item.checked_position("start_position", &start)?;
+    let rotation = item.take_field("start_rotation")?;
+    let heading = heading_from_habitat(item.checked_numbers("start_rotation", &rotation)?);
     episode.start_heading = Some(heading.ok_or_else(|| {
-        item.wrong("start_rotation", "it gives no heading", "write a quaternion of length 1 as x, y, z, w")
+        item.wrong_field("start_rotation", "it gives no heading", "write a quaternion of length 1 as x, y, z, w")
     })?);
-    let goals = item.take("goals")?;
+    let goals = item.take_field("goals")?;
     let goal_floors = goal_positions(item, &goals)?;
     let path = item.take_optional("reference_path").unwrap_or_default();
     let floors = if path.is_null() {
         std::iter::once(start_floor).chain(goal_floors.into_iter().take(1)).collect()
     } else {
-        positions(item, "reference_path", &path)?
+        checked_positions(item, "reference_path", &path)?
     };
     episode.floor_positions = floors.into_iter().map(wayword_from_habitat).collect();
     for (field, value) in
         [("start_position", start), ("start_rotation", rotation), ("goals", goals), ("reference_path", path)]
     {
-        episode.remember(field, value);
+        episode.remember_spelling(field, value);
     }
     Ok(())
 }
 
-fn positions(item: &Item<'_>, field: &str, value: &Value) -> Result<Vec<DVec3>, FormatError> {
-    let list = item.list(field, value, limits::PATH_NODES)?;
+fn checked_positions(item: &DatasetItem<'_>, field: &str, value: &Value) -> Result<Vec<DVec3>, FormatError> {
+    let list = item.checked_list(field, value, limits::PATH_NODES)?;
     if list.is_empty() {
-        return Err(item.wrong(field, "it is empty", "add at least one position"));
+        return Err(item.wrong_field(field, "it is empty", "add at least one position"));
     }
-    list.iter().enumerate().map(|(index, value)| item.position(&format!("{field}[{index}]"), value)).collect()
+    list.iter().enumerate().map(|(index, value)| item.checked_position(&format!("{field}[{index}]"), value)).collect()
 }
 
 /// The positions of the goals; none in test splits.
-fn goal_positions(item: &Item<'_>, value: &Value) -> Result<Vec<DVec3>, FormatError> {
+fn goal_positions(item: &DatasetItem<'_>, value: &Value) -> Result<Vec<DVec3>, FormatError> {
     if value.is_null() {
         return Ok(Vec::new());
     }
     let goal = |(index, goal): (usize, &Value)| {
         let field = format!("goals[{index}].position");
-        let position = goal.get("position").ok_or_else(|| item.wrong(&field, "it is missing", "each goal has one"))?;
-        item.position(&field, position)
+        let position =
+            goal.get("position").ok_or_else(|| item.wrong_field(&field, "it is missing", "each goal has one"))?;
+        item.checked_position(&field, position)
     };
-    item.list("goals", value, limits::PATH_NODES)?.iter().enumerate().map(goal).collect()
+    item.checked_list("goals", value, limits::PATH_NODES)?.iter().enumerate().map(goal).collect()
 }
 
 fn take_instruction(
-    item: &mut Item<'_>,
+    item: &mut DatasetItem<'_>,
     episode: &mut Episode,
     tokens: &mut BTreeMap<String, Vec<u64>>,
 ) -> Result<(), FormatError> {
-    let instruction = item.take("instruction")?;
+    let instruction = item.take_field("instruction")?;
     let text = instruction.get("instruction_text").unwrap_or(&Value::Null);
-    let text = item.instruction("instruction.instruction_text", text)?;
+    let text = item.checked_instruction("instruction.instruction_text", text)?;
     match instruction.get("instruction_tokens") {
         None | Some(Value::Null) => {}
         Some(numbers) => {
             let field = "instruction.instruction_tokens";
-            let numbers = item.list(field, numbers, limits::INSTRUCTION_BYTES)?.iter().map(Value::as_u64);
+            let numbers = item.checked_list(field, numbers, limits::INSTRUCTION_BYTES)?.iter().map(Value::as_u64);
             let numbers = numbers.collect::<Option<Vec<_>>>();
-            let wrong = || item.wrong(field, "expected whole numbers", "leave them out, and Wayword makes new ones");
+            let wrong =
+                || item.wrong_field(field, "expected whole numbers", "leave them out, and Wayword makes new ones");
             tokens.insert(text.clone(), numbers.ok_or_else(wrong)?);
         }
     }
     if let Some(tag) = instruction.get("language").filter(|tag| !tag.is_null()) {
-        episode.languages = vec![item.text("instruction.language", tag)?.to_owned()];
+        episode.languages = vec![item.checked_text("instruction.language", tag)?.to_owned()];
     }
     episode.instructions = vec![text];
     Ok(())
@@ -195,7 +198,7 @@ fn take_instruction(
 ///
 /// # Errors
 /// When an item has no floor positions, two episodes would have the same id, or the file cannot be written.
-pub fn write(file: &Path, dataset: &Dataset) -> Result<(), FormatError> {
+pub fn write_vlnce_file(file: &Path, dataset: &VlnceDataset) -> Result<(), FormatError> {
     let mut ids = BTreeSet::new();
     let mut episodes = Vec::new();
     for episode in &dataset.episodes {
@@ -206,12 +209,12 @@ pub fn write(file: &Path, dataset: &Dataset) -> Result<(), FormatError> {
             };
             if !ids.insert(id.to_string()) {
                 let problem = format!("two episodes would have the same id {id}");
-                return Err(FormatError::document(file, problem, "put instructions for one path into one item"));
+                return Err(FormatError::for_document(file, problem, "put instructions for one path into one item"));
             }
             let mut fields = Map::new();
             fields.insert("episode_id".to_owned(), id);
             add_place(file, &mut fields, episode)?;
-            let tokens = dataset.vocabulary.tokens(text);
+            let tokens = dataset.vocabulary.tokens_of(text);
             let instruction = json!({ "instruction_text": text, "instruction_tokens": tokens });
             fields.insert("instruction".to_owned(), instruction);
             episodes.push(fields);
@@ -228,7 +231,7 @@ pub fn write(file: &Path, dataset: &Dataset) -> Result<(), FormatError> {
 fn add_place(file: &Path, fields: &mut Map<String, Value>, episode: &Episode) -> Result<(), FormatError> {
     let (Some(start), Some(goal)) = (episode.floor_positions.first(), episode.floor_positions.last()) else {
         let problem = format!("item {:?} has no floor positions, and this format requires them", episode.id);
-        return Err(FormatError::document(file, problem, "write it as r2r, reverie, rxr or wayword"));
+        return Err(FormatError::for_document(file, problem, "write it as r2r, reverie, rxr or wayword"));
     };
     let path: Value = episode.floor_positions.iter().map(|position| habitat_value(*position)).collect();
     let read_path = episode.as_read.get("reference_path");
@@ -244,18 +247,18 @@ fn add_place(file: &Path, fields: &mut Map<String, Value>, episode: &Episode) ->
     let mut put = |key: &str, value: Value| drop(fields.insert(key.to_owned(), value));
     put("trajectory_id", episode.name_field("trajectory_id", &episode.path_id));
     let scene_id = || episode.in_habitat.scene_id.clone().unwrap_or_else(|| format!("mp3d/{scene}/{scene}.glb"));
-    put("scene_id", episode.field("scene_id", same_scene, || scene_id().into()));
-    put("start_position", episode.field("start_position", |_| same_path, || habitat_value(*start)));
-    put("start_rotation", episode.field("start_rotation", same_heading, || json!(habitat_from_heading(heading))));
+    put("scene_id", episode.field_value("scene_id", same_scene, || scene_id().into()));
+    put("start_position", episode.field_value("start_position", |_| same_path, || habitat_value(*start)));
+    put("start_rotation", episode.field_value("start_rotation", same_heading, || json!(habitat_from_heading(heading))));
     let goals = || json!([{ "position": habitat_value(*goal), "radius": GOAL_RADIUS_M }]);
-    put("goals", episode.field("goals", |_| same_path, goals));
+    put("goals", episode.field_value("goals", |_| same_path, goals));
     put("reference_path", read_path.filter(|_| same_path).cloned().unwrap_or(path));
-    put("info", episode.field("info", |_| same_path, || info(episode)));
+    put("info", episode.field_value("info", |_| same_path, || info_field(episode)));
     Ok(())
 }
 
 /// The field `info`, in which loaders accept any key.
-fn info(episode: &Episode) -> Value {
+fn info_field(episode: &Episode) -> Value {
     let (length_m, over) = match episode.in_habitat.geodesic_m {
         Some(geodesic_m) => (Some(geodesic_m), "navmesh"),
         None if episode.viewpoints.is_empty() => (episode.floor_length_m(), "frames"),

@@ -2,35 +2,36 @@
 //! `actions`, `forward_steps`, and the `locations` of the agent at the start and after each step forward.
 
 use crate::{
-    FormatError, Item,
+    DatasetItem, FormatError,
     habitat::{habitat_from_wayword, wayword_from_habitat},
     input, output,
 };
 use serde_json::{Value, json};
 use std::{collections::BTreeMap, path::Path};
-use wayword_core::{Action, DVec3};
+use wayword_core::{AgentAction, DVec3};
 
 /// Most actions of one episode.
-const ACTIONS: usize = 25_000;
+const MAX_ACTIONS: usize = 25_000;
 
 /// Most actions of all episodes together that are kept in memory.
 const ACTIONS_KEPT: usize = 20_000_000;
 
 /// The actions of an agent in an episode, and the places that they lead to.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Acted {
-    /// Its actions; the last is [`Action::Stop`].
-    pub actions: Vec<Action>,
+pub struct EpisodeActions {
+    /// Its actions; the last is [`AgentAction::Stop`].
+    pub actions: Vec<AgentAction>,
     /// Where it is at the start and after each step forward, on the floor, world frame, metres.
     pub locations: Vec<DVec3>,
 }
 
-impl Acted {
+impl EpisodeActions {
     /// The actions of an episode, from the agent's position before each of them.
     #[must_use]
-    pub fn of(actions: &[Action], positions: &[DVec3]) -> Self {
+    pub fn from_positions(actions: &[AgentAction], positions: &[DVec3]) -> Self {
         let after_steps = actions.iter().zip(positions.iter().skip(1));
-        let after_steps = after_steps.filter(|(action, _)| **action == Action::Forward).map(|(_, position)| *position);
+        let after_steps =
+            after_steps.filter(|(action, _)| **action == AgentAction::Forward).map(|(_, position)| *position);
         let locations = positions.iter().take(1).copied().chain(after_steps).collect();
         Self { actions: actions.to_vec(), locations }
     }
@@ -40,10 +41,10 @@ impl Acted {
 ///
 /// # Errors
 /// When the file cannot be written.
-pub fn write(file: &Path, acted: &BTreeMap<String, Acted>) -> Result<(), FormatError> {
-    let of = |acted: &Acted| {
+pub fn write_actions(file: &Path, acted: &BTreeMap<String, EpisodeActions>) -> Result<(), FormatError> {
+    let of = |acted: &EpisodeActions| {
         let locations: Vec<_> = acted.locations.iter().map(|place| habitat_from_wayword(*place).to_array()).collect();
-        let forward_steps = acted.actions.iter().filter(|action| **action == Action::Forward).count();
+        let forward_steps = acted.actions.iter().filter(|action| **action == AgentAction::Forward).count();
         json!({ "locations": locations, "forward_steps": forward_steps, "actions": acted.actions })
     };
     output::write_file(file, |out| {
@@ -60,15 +61,15 @@ pub fn write(file: &Path, acted: &BTreeMap<String, Acted>) -> Result<(), FormatE
 ///
 /// # Errors
 /// When the file cannot be read, or an episode breaks a rule; the error names it and the field.
-pub fn read(file: &Path) -> Result<BTreeMap<String, Acted>, FormatError> {
+pub fn read_actions(file: &Path) -> Result<BTreeMap<String, EpisodeActions>, FormatError> {
     let mut all = BTreeMap::new();
     let mut kept = 0;
     input::each_entry(file, |episode, mut item| {
-        let acted = take(&mut item)?;
+        let acted = take_actions(&mut item)?;
         kept += acted.actions.len();
         if kept > ACTIONS_KEPT {
             let problem = "its episodes have more than 20,000,000 actions";
-            return Err(FormatError::document(file, problem, "split it into parts"));
+            return Err(FormatError::for_document(file, problem, "split it into parts"));
         }
         all.insert(episode.to_owned(), acted);
         Ok(())
@@ -76,38 +77,54 @@ pub fn read(file: &Path) -> Result<BTreeMap<String, Acted>, FormatError> {
     Ok(all)
 }
 
-fn take(item: &mut Item<'_>) -> Result<Acted, FormatError> {
-    let (actions, locations) = (item.take("actions")?, item.take("locations")?);
-    let action = |(at, value): (usize, &Value)| item.parsed::<Action>(&format!("actions[{at}]"), value.clone());
-    let actions: Vec<Action> =
-        item.list("actions", &actions, ACTIONS)?.iter().enumerate().map(action).collect::<Result<_, _>>()?;
-    let place = |(at, value): (usize, &Value)| item.position(&format!("locations[{at}]"), value);
-    let locations = item.list("locations", &locations, ACTIONS)?.iter().enumerate().map(place);
+fn take_actions(item: &mut DatasetItem<'_>) -> Result<EpisodeActions, FormatError> {
+    let (actions, locations) = (item.take_field("actions")?, item.take_field("locations")?);
+    let action =
+        |(at, value): (usize, &Value)| item.parse_value::<AgentAction>(&format!("actions[{at}]"), value.clone());
+    let actions: Vec<AgentAction> = item
+        .checked_list("actions", &actions, MAX_ACTIONS)?
+        .iter()
+        .enumerate()
+        .map(action)
+        .collect::<Result<_, _>>()?;
+    let place = |(at, value): (usize, &Value)| item.checked_position(&format!("locations[{at}]"), value);
+    let locations = item.checked_list("locations", &locations, MAX_ACTIONS)?.iter().enumerate().map(place);
     let locations: Vec<DVec3> = locations.map(|place| place.map(wayword_from_habitat)).collect::<Result<_, _>>()?;
-    let forward = actions.iter().filter(|action| **action == Action::Forward).count();
-    let steps = item.take("forward_steps")?;
+    let forward = actions.iter().filter(|action| **action == AgentAction::Forward).count();
+    let steps = item.take_field("forward_steps")?;
     if steps.as_u64() != Some(forward as u64) {
         let problem = format!("expected {forward}, the number of steps forward among the actions, found {steps}");
-        return Err(item.wrong("forward_steps", problem, "count the actions that are 1"));
+        return Err(item.wrong_field("forward_steps", problem, "count the actions that are 1"));
     }
-    if actions.iter().position(|action| *action == Action::Stop) != actions.len().checked_sub(1) {
-        return Err(item.wrong("actions", "it does not end with its only stop", "the last action is 0, and no other"));
+    if actions.iter().position(|action| *action == AgentAction::Stop) != actions.len().checked_sub(1) {
+        return Err(item.wrong_field(
+            "actions",
+            "it does not end with its only stop",
+            "the last action is 0, and no other",
+        ));
     }
     if locations.len() != forward + 1 {
         let problem =
             format!("expected {}, the start and one for each step forward, found {}", forward + 1, locations.len());
-        return Err(item.wrong("locations", problem, "write where the agent is at the start and after each action 1"));
+        return Err(item.wrong_field(
+            "locations",
+            problem,
+            "write where the agent is at the start and after each action 1",
+        ));
     }
-    Ok(Acted { actions, locations })
+    Ok(EpisodeActions { actions, locations })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn acted() -> BTreeMap<String, Acted> {
+    fn acted() -> BTreeMap<String, EpisodeActions> {
         let positions = [0.0, 0.0, 0.25, 0.5].map(|y| DVec3::new(1.0, y, 3.0));
-        let acted = Acted::of(&[Action::Left, Action::Forward, Action::Forward, Action::Stop], &positions);
+        let acted = EpisodeActions::from_positions(
+            &[AgentAction::Left, AgentAction::Forward, AgentAction::Forward, AgentAction::Stop],
+            &positions,
+        );
         BTreeMap::from([("house2-1-0".to_owned(), acted)])
     }
 
@@ -116,8 +133,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         for name in ["train_gt.json", "train_gt.json.gz"] {
             let file = folder.path().join(name);
-            write(&file, &acted()).unwrap();
-            assert_eq!(read(&file).unwrap(), acted());
+            write_actions(&file, &acted()).unwrap();
+            assert_eq!(read_actions(&file).unwrap(), acted());
         }
         let text = std::fs::read_to_string(folder.path().join("train_gt.json")).unwrap();
         let read: Value = serde_json::from_str(&text).unwrap();
@@ -149,7 +166,7 @@ mod tests {
             ("[]", "expected"),
         ] {
             std::fs::write(&file, text).unwrap();
-            let error = read(&file).unwrap_err().to_string();
+            let error = read_actions(&file).unwrap_err().to_string();
             assert!(error.contains("gt.json") && error.contains(told), "{error}");
         }
     }

@@ -7,36 +7,37 @@
 use std::sync::LazyLock;
 
 /// A closed list of words.
-pub type Words = LazyLock<Vec<&'static str>>;
+pub type WordList = LazyLock<Vec<&'static str>>;
 /// A closed list of phrases.
-pub type Phrases = LazyLock<Vec<Vec<&'static str>>>;
+pub type PhraseList = LazyLock<Vec<Vec<&'static str>>>;
 
 /// The lines of a file that are not comments or empty.
-pub(crate) fn lines(file: &'static str) -> impl Iterator<Item = &'static str> {
+pub(crate) fn content_lines(file: &'static str) -> impl Iterator<Item = &'static str> {
     file.lines().filter(|line| !line.starts_with('#') && !line.trim().is_empty())
 }
 
 /// The columns of a table's row. Columns that the row lacks are empty.
-pub(crate) fn columns<const N: usize>(row: &'static str) -> [&'static str; N] {
+pub(crate) fn row_columns<const N: usize>(row: &'static str) -> [&'static str; N] {
     let mut columns = row.split('|').map(str::trim);
     std::array::from_fn(|_| columns.next().unwrap_or_default())
 }
 
 /// The names in a column.
-pub(crate) fn names(column: &'static str) -> impl Iterator<Item = &'static str> {
+pub(crate) fn split_names(column: &'static str) -> impl Iterator<Item = &'static str> {
     column.split(',').map(str::trim).filter(|name| !name.is_empty())
 }
 
 /// The words of a closed list; none where the file has no list of this name. The case of the name does not matter.
-pub(crate) fn words(file: &'static str, name: &str) -> Vec<&'static str> {
-    let body =
-        lines(file).skip_while(|line| !list_name(line).is_some_and(|list| list.eq_ignore_ascii_case(name))).skip(1);
+pub(crate) fn list_words(file: &'static str, name: &str) -> Vec<&'static str> {
+    let body = content_lines(file)
+        .skip_while(|line| !list_name(line).is_some_and(|list| list.eq_ignore_ascii_case(name)))
+        .skip(1);
     body.take_while(|line| list_name(line).is_none()).flat_map(str::split_whitespace).collect()
 }
 
 /// The phrases of a closed list. A phrase may continue in the next line.
-pub(crate) fn phrases(file: &'static str, name: &str) -> Vec<Vec<&'static str>> {
-    let words = words(file, name);
+pub(crate) fn list_phrases(file: &'static str, name: &str) -> Vec<Vec<&'static str>> {
+    let words = list_words(file, name);
     let runs = words.split_inclusive(|word| word.ends_with(','));
     runs.map(|run| run.iter().map(|word| word.trim_end_matches(',')).collect()).collect()
 }
@@ -52,23 +53,23 @@ macro_rules! lists {
         const LISTS: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/src/", $file));
 
         $(#[doc = concat!("The list `", stringify!($words), "` of `", $file, "`, which says what it is.")]
-        pub static $words: $crate::data::Words =
-            std::sync::LazyLock::new(|| $crate::data::words(LISTS, stringify!($words)));)*
+        pub static $words: $crate::data::WordList =
+            std::sync::LazyLock::new(|| $crate::data::list_words(LISTS, stringify!($words)));)*
         $(#[doc = concat!("The list `", stringify!($phrases), "` of `", $file, "`, which says what it is.")]
-        pub static $phrases: $crate::data::Phrases =
-            std::sync::LazyLock::new(|| $crate::data::phrases(LISTS, stringify!($phrases)));)*
+        pub static $phrases: $crate::data::PhraseList =
+            std::sync::LazyLock::new(|| $crate::data::list_phrases(LISTS, stringify!($phrases)));)*
 
         #[cfg(test)]
         #[test]
         fn the_lists_of_the_file_are_those_that_the_code_names() {
             let named = [$(stringify!($words),)* $(stringify!($phrases),)*];
             let mut named: Vec<String> = named.iter().map(|name| name.to_lowercase()).collect();
-            let mut held: Vec<&str> = $crate::data::lines(LISTS).filter_map($crate::data::list_name).collect();
+            let mut held: Vec<&str> = $crate::data::content_lines(LISTS).filter_map($crate::data::list_name).collect();
             named.sort_unstable();
             held.sort_unstable();
             assert_eq!(named, held);
             for name in held {
-                assert!(!$crate::data::words(LISTS, name).is_empty(), "{name} is empty");
+                assert!(!$crate::data::list_words(LISTS, name).is_empty(), "{name} is empty");
             }
         }
     };
@@ -83,18 +84,18 @@ mod tests {
 
     #[test]
     fn a_closed_list_ends_where_the_next_begins() {
-        assert_eq!(words(FILE, "ONE"), ["a", "b", "c"]);
-        assert_eq!(words(FILE, "three"), Vec::<&str>::new());
+        assert_eq!(list_words(FILE, "ONE"), ["a", "b", "c"]);
+        assert_eq!(list_words(FILE, "three"), Vec::<&str>::new());
     }
 
     #[test]
     fn phrases_may_continue_in_the_next_line() {
-        assert_eq!(phrases(FILE, "two"), [vec!["not", "at", "all"], vec!["never"]]);
+        assert_eq!(list_phrases(FILE, "two"), [vec!["not", "at", "all"], vec!["never"]]);
     }
 
     #[test]
     fn a_row_has_its_columns_and_names() {
-        let [first, second, third] = columns("sofa, couch | seat");
-        assert_eq!((names(first).collect::<Vec<_>>(), second, third), (vec!["sofa", "couch"], "seat", ""));
+        let [first, second, third] = row_columns("sofa, couch | seat");
+        assert_eq!((split_names(first).collect::<Vec<_>>(), second, third), (vec!["sofa", "couch"], "seat", ""));
     }
 }

@@ -7,12 +7,12 @@
 
 use crate::{
     data,
-    reading::Word,
-    text::{Token, tokens},
+    reading::ReadWord,
+    text::{TextToken, split_tokens},
 };
 use std::{collections::BTreeMap, fmt, sync::LazyLock};
 
-const LIST: &str = include_str!("words/languages.txt");
+const LANGUAGE_LISTS: &str = include_str!("words/languages.txt");
 
 /// The language of a text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,13 +26,13 @@ pub enum Language {
 }
 
 /// The name of a language that the program does not know.
-const UNNAMED: &str = "another language";
+const UNNAMED_LANGUAGE: &str = "another language";
 
 /// For each small word, the languages that have it.
 static SMALL_WORDS: LazyLock<BTreeMap<&'static str, Vec<&'static str>>> = LazyLock::new(|| {
     let mut languages: BTreeMap<&'static str, Vec<&'static str>> = BTreeMap::new();
-    for language in data::lines(LIST).filter_map(data::list_name) {
-        for word in data::words(LIST, language) {
+    for language in data::content_lines(LANGUAGE_LISTS).filter_map(data::list_name) {
+        for word in data::list_words(LANGUAGE_LISTS, language) {
             let known = languages.entry(word).or_default();
             if !known.contains(&language) {
                 known.push(language);
@@ -43,7 +43,7 @@ static SMALL_WORDS: LazyLock<BTreeMap<&'static str, Vec<&'static str>>> = LazyLo
 });
 
 /// Languages by the code that tags begin with, and by their lists in `words/languages.txt`.
-const NAMES: [(&str, &str, &str); 20] = [
+const LANGUAGE_NAMES: [(&str, &str, &str); 20] = [
     ("hi", "hindi", "Hindi"),
     ("te", "telugu", "Telugu"),
     ("de", "german", "German"),
@@ -67,7 +67,7 @@ const NAMES: [(&str, &str, &str); 20] = [
 ];
 
 /// Scripts outside Latin: first and last letter, and the language that our datasets write in it.
-const SCRIPTS: [(char, char, &str); 19] = [
+const SCRIPT_RANGES: [(char, char, &str); 19] = [
     ('\u{900}', '\u{97F}', "Hindi"),
     ('\u{C00}', '\u{C7F}', "Telugu"),
     ('\u{980}', '\u{9FF}', "Bengali"),
@@ -92,11 +92,13 @@ const SCRIPTS: [(char, char, &str); 19] = [
 impl Language {
     /// The language that a dataset's tag names: "en-IN" is English, "hi-IN" is Hindi.
     #[must_use]
-    pub fn tagged(tag: &str) -> Self {
+    pub fn from_tag(tag: &str) -> Self {
         let code = tag.split(['-', '_']).next().unwrap_or_default().trim().to_lowercase();
         match code.as_str() {
             "en" => Self::English,
-            code => Self::Other(NAMES.iter().find(|(known, ..)| *known == code).map_or(UNNAMED, |(.., name)| name)),
+            code => Self::Other(
+                LANGUAGE_NAMES.iter().find(|(known, ..)| *known == code).map_or(UNNAMED_LANGUAGE, |(.., name)| name),
+            ),
         }
     }
 
@@ -104,7 +106,7 @@ impl Language {
     /// believed against the text itself, because people mix languages.
     #[must_use]
     pub fn or_tagged(self, tag: Option<&str>) -> Self {
-        match tag.map(Self::tagged) {
+        match tag.map(Self::from_tag) {
             Some(tagged @ Self::Other(_)) => tagged,
             _ => self,
         }
@@ -118,7 +120,7 @@ impl Language {
 
     /// The name of the language that is not English, where there is one.
     #[must_use]
-    pub fn foreign(self) -> Option<&'static str> {
+    pub fn foreign_name(self) -> Option<&'static str> {
         match self {
             Self::English => None,
             Self::Partly(name) | Self::Other(name) => Some(name),
@@ -138,23 +140,23 @@ impl fmt::Display for Language {
 
 /// Decides the language of a text from its letters, and then from its words as the reader took them.
 #[must_use]
-pub(crate) fn language(text: &str, words: &[Word]) -> Language {
+pub(crate) fn language_of(text: &str, words: &[ReadWord]) -> Language {
     let by_script = by_script(text);
     if by_script != Language::English {
         return by_script;
     }
-    let tokens = tokens(text);
-    let mut whole = Seen::default();
+    let tokens = split_tokens(text);
+    let mut whole = LanguageVotes::default();
     let (mut foreign, mut english) = (None, false);
-    for sentence in tokens.split(Token::ends_sentence) {
-        let seen = Seen::of(sentence, words);
-        match seen.language() {
+    for sentence in tokens.split(TextToken::ends_sentence) {
+        let seen = LanguageVotes::from_sentence(sentence, words);
+        match seen.foreign_language() {
             Some(name) => foreign = foreign.or(Some(name)),
             None => english |= seen.known > seen.words / 2 && seen.known > 1,
         }
-        whole.add(seen);
+        whole.add_votes(seen);
     }
-    match (whole.language(), foreign) {
+    match (whole.foreign_language(), foreign) {
         (Some(name), _) if !english => Language::Other(name),
         (Some(name), _) | (None, Some(name)) => Language::Partly(name),
         (None, None) => Language::English,
@@ -166,7 +168,7 @@ fn by_script(text: &str) -> Language {
     let mut latin = 0;
     let mut others: BTreeMap<&'static str, usize> = BTreeMap::new();
     for letter in text.chars().filter(|letter| letter.is_alphabetic()) {
-        match SCRIPTS.iter().find(|(first, last, _)| (*first..=*last).contains(&letter)) {
+        match SCRIPT_RANGES.iter().find(|(first, last, _)| (*first..=*last).contains(&letter)) {
             Some((.., name)) => *others.entry(name).or_default() += 1,
             None => latin += 1,
         }
@@ -186,7 +188,7 @@ fn by_script(text: &str) -> Language {
 
 /// Counts over a sentence or a text in Latin letters, which decide its language.
 #[derive(Debug, Default)]
-struct Seen {
+struct LanguageVotes {
     words: usize,
     /// Words that the reader of English knows.
     known: usize,
@@ -194,13 +196,13 @@ struct Seen {
     small: BTreeMap<&'static str, usize>,
 }
 
-impl Seen {
-    fn of(sentence: &[Token], words: &[Word]) -> Self {
+impl LanguageVotes {
+    fn from_sentence(sentence: &[TextToken], words: &[ReadWord]) -> Self {
         let mut seen = Self::default();
         for token in sentence.iter().filter(|token| token.word.starts_with(char::is_alphabetic)) {
             let at = words.partition_point(|word| word.span[0] < token.span[0]);
             seen.words += 1;
-            if words.get(at).is_some_and(Word::is_understood) {
+            if words.get(at).is_some_and(ReadWord::is_understood) {
                 seen.known += 1;
                 continue;
             }
@@ -211,7 +213,7 @@ impl Seen {
         seen
     }
 
-    fn add(&mut self, other: Self) {
+    fn add_votes(&mut self, other: Self) {
         self.words += other.words;
         self.known += other.known;
         for (language, count) in other.small {
@@ -220,15 +222,17 @@ impl Seen {
     }
 
     /// The name of the language, where it is not English.
-    fn language(&self) -> Option<&'static str> {
+    fn foreign_language(&self) -> Option<&'static str> {
         let best = self.small.iter().max_by_key(|(_, count)| **count);
         let votes = best.map_or(0, |(_, count)| *count);
         let share = |of: usize| self.words >= 3 && self.known * of <= self.words;
         let is_foreign = (votes >= 2 && votes >= self.known && share(2))
             || (votes >= 1 && share(3))
             || (self.words >= 4 && share(5));
-        let name = |list: &str| NAMES.iter().find(|(_, known, _)| *known == list).map_or(UNNAMED, |(.., name)| name);
-        is_foreign.then(|| best.map_or(UNNAMED, |(list, _)| name(list)))
+        let name = |list: &str| {
+            LANGUAGE_NAMES.iter().find(|(_, known, _)| *known == list).map_or(UNNAMED_LANGUAGE, |(.., name)| name)
+        };
+        is_foreign.then(|| best.map_or(UNNAMED_LANGUAGE, |(list, _)| name(list)))
     }
 }
 
@@ -242,11 +246,11 @@ fn small_words(word: &str) -> impl Iterator<Item = &'static str> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::reading::read;
+    use crate::reading::read_instruction;
     use std::collections::BTreeSet;
 
     fn language(text: &str) -> Language {
-        read(text, &BTreeSet::new()).language
+        read_instruction(text, &BTreeSet::new()).language
     }
 
     #[test]
@@ -318,8 +322,8 @@ mod tests {
         };
         for line in fixture.lines() {
             let (tag, text) = (value(line, "language"), value(line, "instruction"));
-            let reading = read(text, &BTreeSet::new());
-            assert_eq!(reading.language, Language::tagged(tag), "{text}");
+            let reading = read_instruction(text, &BTreeSet::new());
+            assert_eq!(reading.language, Language::from_tag(tag), "{text}");
             let understood = reading.clauses.iter().filter(|clause| clause.span[1] > 0).all(|clause| clause.understood);
             assert_eq!(understood, reading.language.is_english(), "{text}");
         }
@@ -327,10 +331,10 @@ mod tests {
 
     #[test]
     fn or_tagged_believes_tags_of_other_languages() {
-        assert_eq!(Language::tagged("en-IN"), Language::English);
-        assert_eq!(Language::tagged("te-IN"), Language::Other("Telugu"));
-        assert_eq!(Language::tagged("hi_IN"), Language::Other("Hindi"));
-        assert_eq!(Language::tagged("xx"), Language::Other("another language"));
+        assert_eq!(Language::from_tag("en-IN"), Language::English);
+        assert_eq!(Language::from_tag("te-IN"), Language::Other("Telugu"));
+        assert_eq!(Language::from_tag("hi_IN"), Language::Other("Hindi"));
+        assert_eq!(Language::from_tag("xx"), Language::Other("another language"));
         let text = language("Stop at the sofa.");
         assert_eq!(text.or_tagged(Some("hi-IN")), Language::Other("Hindi"));
         assert_eq!(text.or_tagged(Some("en-US")), Language::English);
@@ -340,8 +344,8 @@ mod tests {
 
     #[test]
     fn every_list_has_a_name() {
-        for list in data::lines(LIST).filter_map(data::list_name) {
-            assert!(NAMES.iter().any(|(_, known, _)| *known == list), "{list}");
+        for list in data::content_lines(LANGUAGE_LISTS).filter_map(data::list_name) {
+            assert!(LANGUAGE_NAMES.iter().any(|(_, known, _)| *known == list), "{list}");
         }
     }
 }

@@ -18,5 +18,5 @@ pub mod reading;
 pub mod rewording;
 pub mod text;
 
-pub use data::{Phrases, Words};
+pub use data::{PhraseList, WordList};
 pub use language::Language;

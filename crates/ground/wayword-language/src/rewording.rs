@@ -1,7 +1,7 @@
 //! Finds the words of a text for a turn, a side, a climb or a way by a place, and gives their opposites. Repairs and
 //! alternatives replace just these words.
 
-use crate::text::{Token, tokens};
+use crate::text::{TextToken, split_tokens};
 
 crate::data::lists! {
     "words/rewording.txt";
@@ -16,35 +16,35 @@ const WAY_REACH: usize = 5;
 
 /// A text with its tokens. Byte ranges that do not fit it have no words.
 #[derive(Debug)]
-pub struct Spelt<'a> {
+pub struct TokenisedText<'a> {
     text: &'a str,
-    tokens: Vec<Token>,
+    tokens: Vec<TextToken>,
 }
 
 /// Words for the way by which a walk goes by a place.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Way {
+pub struct WayWords {
     /// Their byte range: "walk past".
     pub span: [usize; 2],
     /// The verb that stays before another preposition, with a blank behind it; empty where there is none.
     pub verb: String,
 }
 
-impl<'a> Spelt<'a> {
+impl<'a> TokenisedText<'a> {
     /// A text.
     #[must_use]
-    pub fn of(text: &'a str) -> Self {
-        Self { text, tokens: tokens(text) }
+    pub fn from_text(text: &'a str) -> Self {
+        Self { text, tokens: split_tokens(text) }
     }
 
     /// The words of a byte range, as they are written.
     #[must_use]
-    pub fn words(&self, [from, to]: [usize; 2]) -> &'a str {
+    pub fn words_of(&self, [from, to]: [usize; 2]) -> &'a str {
         self.text.get(from..to).unwrap_or_default()
     }
 
     /// The tokens within a byte range.
-    fn within(&self, [from, to]: [usize; 2]) -> &[Token] {
+    fn tokens_within(&self, [from, to]: [usize; 2]) -> &[TextToken] {
         let first = self.tokens.partition_point(|token| token.span[0] < from);
         let end = self.tokens.partition_point(|token| token.span[1] <= to);
         self.tokens.get(first..end.max(first)).unwrap_or_default()
@@ -53,61 +53,61 @@ impl<'a> Spelt<'a> {
     /// The words of a turn, from its verb on: "turn slightly left". `side` is the byte range of the word "left" or
     /// "right".
     #[must_use]
-    pub fn turn(&self, step: [usize; 2], side: [usize; 2]) -> [usize; 2] {
-        let before = self.within([step[0], side[0]]);
+    pub fn turn_words(&self, step: [usize; 2], side: [usize; 2]) -> [usize; 2] {
+        let before = self.tokens_within([step[0], side[0]]);
         let between = before.iter().rev().take_while(|token| BEFORE_TURN.contains(&&*token.word)).take(TURN_REACH);
         let at = before.len() - between.count();
         let verb = before[..at].last().filter(|token| TURNING.contains(&&*token.word));
-        let from = verb.map_or_else(|| beginning(&before[at..], side[0]), |verb| verb.span[0]);
+        let from = verb.map_or_else(|| side_beginning(&before[at..], side[0]), |verb| verb.span[0]);
         let next = self.tokens.iter().find(|token| token.span[0] >= side[1]).filter(|next| next.word == "turn");
         [from, next.map_or(side[1], |next| next.span[1])]
     }
 
     /// The first words of a step that locate something on a side: "on your left".
     #[must_use]
-    pub fn side(&self, step: [usize; 2]) -> Option<[usize; 2]> {
-        let tokens = self.within(step);
-        let at = tokens.iter().position(|token| opposite(&token.word, &SIDES).is_some())?;
-        Some([beginning(&tokens[..at], tokens[at].span[0]), tokens[at].span[1]])
+    pub fn side_words(&self, step: [usize; 2]) -> Option<[usize; 2]> {
+        let tokens = self.tokens_within(step);
+        let at = tokens.iter().position(|token| opposite_word(&token.word, &SIDES).is_some())?;
+        Some([side_beginning(&tokens[..at], tokens[at].span[0]), tokens[at].span[1]])
     }
 
     /// Words with left and right exchanged; `None` where they name no side.
     #[must_use]
     pub fn other_side(&self, span: [usize; 2]) -> Option<String> {
-        self.exchanged(span, &SIDES)
+        self.exchange_opposites(span, &SIDES)
     }
 
     /// The last word of a step for up or down, and its opposite. In "walk down the hall and up the stairs" it is "up".
     #[must_use]
-    pub fn climb(&self, step: [usize; 2], is_up: bool) -> Option<([usize; 2], String)> {
-        let says = |token: &&Token| CLIMBS.chunks_exact(2).any(|pair| pair[usize::from(!is_up)] == token.word);
-        let span = self.within(step).iter().rev().find(says)?.span;
-        Some((span, self.exchanged(span, &CLIMBS)?))
+    pub fn climb_word(&self, step: [usize; 2], is_up: bool) -> Option<([usize; 2], String)> {
+        let says = |token: &&TextToken| CLIMBS.chunks_exact(2).any(|pair| pair[usize::from(!is_up)] == token.word);
+        let span = self.tokens_within(step).iter().rev().find(says)?.span;
+        Some((span, self.exchange_opposites(span, &CLIMBS)?))
     }
 
     /// A step without the marks and words that join it to others; `None` where no other words are left.
     #[must_use]
-    pub fn step(&self, step: [usize; 2]) -> Option<[usize; 2]> {
-        let tells = |token: &&Token| token.is_word() && !LINKING.contains(&&*token.word);
-        let tokens = self.within(step);
+    pub fn step_words(&self, step: [usize; 2]) -> Option<[usize; 2]> {
+        let tells = |token: &&TextToken| token.is_word() && !LINKING.contains(&&*token.word);
+        let tokens = self.tokens_within(step);
         Some([tokens.iter().find(tells)?.span[0], tokens.iter().rev().find(tells)?.span[1]])
     }
 
     /// The words before a place for the way by it: "walk past", "exit". `None` where there are none.
     #[must_use]
-    pub fn way(&self, step: [usize; 2], place: [usize; 2]) -> Option<Way> {
-        let before = self.within([step[0], place[0]]);
+    pub fn way_words(&self, step: [usize; 2], place: [usize; 2]) -> Option<WayWords> {
+        let before = self.tokens_within([step[0], place[0]]);
         let near = &before[before.len().saturating_sub(WAY_REACH)..];
-        let says = |list: &[&str], token: &Token| list.contains(&&*token.word);
+        let says = |list: &[&str], token: &TextToken| list.contains(&&*token.word);
         let last = near.iter().rposition(|token| says(&PREPOSITIONS, token) || says(&WAY_VERBS, token))?;
         if says(&WAY_VERBS, &near[last]) {
-            return Some(Way { span: near[last].span, verb: "walk ".into() });
+            return Some(WayWords { span: near[last].span, verb: "walk ".into() });
         }
         let first = near[..last].iter().rposition(|token| !says(&PREPOSITIONS, token)).map_or(0, |at| at + 1);
         let verb = near[..first].last().filter(|token| says(&WALKING, token));
         let from = verb.map_or(near[first].span[0], |verb| verb.span[0]);
         let verb = verb.map_or_else(String::new, |verb| format!("{} ", verb.word));
-        Some(Way { span: [from, near[last].span[1]], verb })
+        Some(WayWords { span: [from, near[last].span[1]], verb })
     }
 
     /// Whether no word before a name describes the thing: before it is an article or a word of the way, or no word at
@@ -115,7 +115,7 @@ impl<'a> Spelt<'a> {
     #[must_use]
     pub fn is_bare(&self, name: [usize; 2]) -> bool {
         let before = self.tokens[..self.tokens.partition_point(|token| token.span[1] <= name[0])].last();
-        let is_of_name = |token: &Token| token.is_word() && !BEFORE_NAME.contains(&&*token.word);
+        let is_of_name = |token: &TextToken| token.is_word() && !BEFORE_NAME.contains(&&*token.word);
         !before.is_some_and(is_of_name)
     }
 
@@ -128,27 +128,27 @@ impl<'a> Spelt<'a> {
     }
 
     /// The words of a byte range with their opposites; `None` where they have none.
-    fn exchanged(&self, [from, to]: [usize; 2], pairs: &[&str]) -> Option<String> {
+    fn exchange_opposites(&self, [from, to]: [usize; 2], pairs: &[&str]) -> Option<String> {
         let (mut told, mut done) = (String::new(), from);
-        for token in self.within([from, to]) {
-            let Some(other) = opposite(&token.word, pairs) else { continue };
-            told.push_str(self.words([done, token.span[0]]));
-            told.push_str(&in_capitals_of(self.words(token.span), other));
+        for token in self.tokens_within([from, to]) {
+            let Some(other) = opposite_word(&token.word, pairs) else { continue };
+            told.push_str(self.words_of([done, token.span[0]]));
+            told.push_str(&in_capitals_of(self.words_of(token.span), other));
             done = token.span[1];
         }
-        told.push_str(self.words([done, to]));
+        told.push_str(self.words_of([done, to]));
         (done > from).then_some(told)
     }
 }
 
 /// Where the words that belong to a side begin.
-fn beginning(before: &[Token], side: usize) -> usize {
+fn side_beginning(before: &[TextToken], side: usize) -> usize {
     let belong = before.iter().rev().take_while(|token| BELONGING.contains(&&*token.word));
     belong.last().map_or(side, |first| first.span[0])
 }
 
 /// The other word of a pair.
-fn opposite<'a>(word: &str, pairs: &[&'a str]) -> Option<&'a str> {
+fn opposite_word<'a>(word: &str, pairs: &[&'a str]) -> Option<&'a str> {
     let at = pairs.iter().position(|one| *one == word)?;
     pairs.get(at ^ 1).copied()
 }
@@ -187,23 +187,23 @@ mod tests {
             ("the door to your left", "left", "to your left", "to your right"),
             ("geh LEFT", "LEFT", "LEFT", "RIGHT"),
         ] {
-            let spelt = Spelt::of(text);
-            let span = spelt.turn([0, text.len()], range(text, side));
-            assert_eq!((spelt.words(span), spelt.other_side(span).as_deref()), (told, Some(other)));
+            let spelt = TokenisedText::from_text(text);
+            let span = spelt.turn_words([0, text.len()], range(text, side));
+            assert_eq!((spelt.words_of(span), spelt.other_side(span).as_deref()), (told, Some(other)));
         }
     }
 
     #[test]
     fn a_side_and_a_climb_are_found_in_their_step() {
         let text = "Walk down the hall and up the stairs, the door is on your left";
-        let spelt = Spelt::of(text);
+        let spelt = TokenisedText::from_text(text);
         let step = [0, text.len()];
-        assert_eq!(spelt.words(spelt.side(step).unwrap()), "on your left");
-        let (span, other) = spelt.climb(step, true).unwrap();
-        assert_eq!((spelt.words(span), &*other), ("up", "down"));
-        assert_eq!(spelt.climb([0, 10], true), None);
-        assert_eq!(spelt.words(spelt.step(range(text, "and up the stairs, ")).unwrap()), "up the stairs");
-        assert_eq!(spelt.step(range(text, "and ")), None);
+        assert_eq!(spelt.words_of(spelt.side_words(step).unwrap()), "on your left");
+        let (span, other) = spelt.climb_word(step, true).unwrap();
+        assert_eq!((spelt.words_of(span), &*other), ("up", "down"));
+        assert_eq!(spelt.climb_word([0, 10], true), None);
+        assert_eq!(spelt.words_of(spelt.step_words(range(text, "and up the stairs, ")).unwrap()), "up the stairs");
+        assert_eq!(spelt.step_words(range(text, "and ")), None);
     }
 
     #[test]
@@ -214,33 +214,33 @@ mod tests {
             ("Leave the sofa", "Leave", "walk "),
             ("down to the sofa", "down to", ""),
         ] {
-            let spelt = Spelt::of(text);
-            let way = spelt.way([0, text.len()], range(text, "sofa")).unwrap();
-            assert_eq!((spelt.words(way.span), &*way.verb), (words, verb));
+            let spelt = TokenisedText::from_text(text);
+            let way = spelt.way_words([0, text.len()], range(text, "sofa")).unwrap();
+            assert_eq!((spelt.words_of(way.span), &*way.verb), (words, verb));
         }
-        assert_eq!(Spelt::of("the sofa").way([0, 8], [4, 8]), None);
+        assert_eq!(TokenisedText::from_text("the sofa").way_words([0, 8], [4, 8]), None);
     }
 
     #[test]
     fn a_name_is_bare_where_no_word_describes_it() {
         for (text, is_bare) in [("by the oven", true), ("oven", true), ("past an oven", true), ("a gas oven", false)] {
-            assert_eq!(Spelt::of(text).is_bare(range(text, "oven")), is_bare, "{text}");
+            assert_eq!(TokenisedText::from_text(text).is_bare(range(text, "oven")), is_bare, "{text}");
         }
     }
 
     #[test]
     fn with_its_article_includes_a_or_an() {
-        let (text, spelt) = ("by an oven", Spelt::of("by an oven"));
-        assert_eq!(spelt.words(spelt.with_its_article(range(text, "oven"))), "an oven");
+        let (text, spelt) = ("by an oven", TokenisedText::from_text("by an oven"));
+        assert_eq!(spelt.words_of(spelt.with_its_article(range(text, "oven"))), "an oven");
         assert_eq!(spelt.with_its_article([3, 5]), [3, 5]);
     }
 
     #[test]
     fn ranges_that_do_not_fit_have_no_words() {
-        let spelt = Spelt::of("門 left 🪑");
+        let spelt = TokenisedText::from_text("門 left 🪑");
         for span in [[1, 2], [9, 3], [usize::MAX, usize::MAX]] {
-            assert_eq!(spelt.words(span), "");
-            assert_eq!((spelt.side(span), spelt.step(span)), (None, None));
+            assert_eq!(spelt.words_of(span), "");
+            assert_eq!((spelt.side_words(span), spelt.step_words(span)), (None, None));
         }
     }
 }

@@ -4,14 +4,14 @@ use crate::reading::vocabulary as v;
 
 /// A word or a punctuation mark of a text.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Token {
+pub struct TextToken {
     /// Lower case.
     pub word: String,
     /// Byte range in the text.
     pub span: [usize; 2],
 }
 
-impl Token {
+impl TextToken {
     /// Whether it is a word and not a mark.
     #[must_use]
     pub fn is_word(&self) -> bool {
@@ -33,7 +33,7 @@ const LAST_ABBREVIATIONS: [&str; 10] = ["etc", "ft", "yd", "yds", "cm", "deg", "
 /// The words and marks of a text. An apostrophe within a word belongs to the word, and the point within a number to the
 /// number. A full stop that does not end a sentence ("approx.", "e.g.", "J. Smith") is left out.
 #[must_use]
-pub fn tokens(text: &str) -> Vec<Token> {
+pub fn split_tokens(text: &str) -> Vec<TextToken> {
     let mut tokens = Vec::new();
     let mut start = None;
     let mut chars = text.char_indices().peekable();
@@ -50,15 +50,15 @@ pub fn tokens(text: &str) -> Vec<Token> {
         }
         let word = start.take().map(|from| [from, at]);
         if let Some(span) = word {
-            tokens.push(Token { word: text[span[0]..at].to_lowercase(), span });
+            tokens.push(TextToken { word: text[span[0]..at].to_lowercase(), span });
         }
         let is_stop = c != '.' || word.is_none_or(|word| is_full_stop(text, word));
         if !c.is_whitespace() && c != '-' && is_stop {
-            tokens.push(Token { word: c.to_string(), span: [at, at + c.len_utf8()] });
+            tokens.push(TextToken { word: c.to_string(), span: [at, at + c.len_utf8()] });
         }
     }
     if let Some(from) = start {
-        tokens.push(Token { word: text[from..].to_lowercase(), span: [from, text.len()] });
+        tokens.push(TextToken { word: text[from..].to_lowercase(), span: [from, text.len()] });
     }
     tokens
 }
@@ -95,19 +95,19 @@ fn is_initial(letter: &str, next: &str) -> bool {
 
 /// The words of a text, lower case, without marks.
 #[must_use]
-pub fn words(text: &str) -> Vec<String> {
-    tokens(text).into_iter().filter(Token::is_word).map(|token| token.word).collect()
+pub fn split_words(text: &str) -> Vec<String> {
+    split_tokens(text).into_iter().filter(TextToken::is_word).map(|token| token.word).collect()
 }
 
 /// A text with its first letter as a capital.
 #[must_use]
-pub fn capital(text: &str) -> String {
+pub fn capitalise_first(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 /// The byte ranges of the pieces between the blanks of a text.
-pub fn pieces(text: &str) -> impl Iterator<Item = [usize; 2]> + '_ {
+pub fn split_blanks(text: &str) -> impl Iterator<Item = [usize; 2]> + '_ {
     let places = text.split_inclusive(char::is_whitespace).scan(0, |done, piece| {
         let from = *done;
         *done += piece.len();
@@ -125,7 +125,10 @@ pub fn word_count(text: &str) -> usize {
 /// Number of sentences: words up to a full stop, exclamation or question mark, or the end.
 #[must_use]
 pub fn sentence_count(text: &str) -> usize {
-    tokens(text).split(Token::ends_sentence).filter(|sentence| sentence.iter().any(Token::is_word)).count()
+    split_tokens(text)
+        .split(TextToken::ends_sentence)
+        .filter(|sentence| sentence.iter().any(TextToken::is_word))
+        .count()
 }
 
 #[cfg(test)]
@@ -136,7 +139,7 @@ mod tests {
     #[test]
     fn pieces_are_the_ranges_between_blanks() {
         for text in ["", " ", "  turn left,\n\t門 🪑 ."] {
-            let told: Vec<&str> = pieces(text).map(|[from, to]| &text[from..to]).collect();
+            let told: Vec<&str> = split_blanks(text).map(|[from, to]| &text[from..to]).collect();
             assert_eq!(told, text.split_whitespace().collect::<Vec<_>>());
         }
     }
@@ -146,7 +149,7 @@ mod tests {
         let text = "Walk to the robot's den. Then turn left, and wait!";
         assert_eq!(word_count(text), 10);
         assert_eq!(sentence_count(text), 2);
-        assert_eq!(words(text)[3], "robot's");
+        assert_eq!(split_words(text)[3], "robot's");
         assert_eq!(sentence_count("no stop at the end"), 1);
         assert_eq!(sentence_count(""), 0);
     }
@@ -176,13 +179,13 @@ mod tests {
         ] {
             assert_eq!(sentence_count(text), 2, "{text}");
         }
-        assert_eq!(words("Walk 3.5 meters"), ["walk", "3.5", "meters"]);
+        assert_eq!(split_words("Walk 3.5 meters"), ["walk", "3.5", "meters"]);
     }
 
     proptest! {
         #[test]
         fn spans_point_at_their_words(text in "\\PC{0,60}") {
-            for token in tokens(&text) {
+            for token in split_tokens(&text) {
                 prop_assert_eq!(text[token.span[0]..token.span[1]].to_lowercase(), token.word);
             }
         }

@@ -8,14 +8,14 @@
 #![allow(clippy::print_stdout, reason = "an example prints what it does")]
 
 use wayword_testkit::provider::{
-    Behaviour, Dialect, Gallery, Provider,
-    scripts::{Cast, FlawedEye},
+    PictureGallery, ProviderBehaviour, ProviderDialect, ScriptedProvider,
+    scripts::{FlawedEye, ScriptedCast},
 };
 
 fn main() -> std::io::Result<()> {
-    let cast = Cast::new(FlawedEye::new(Gallery::default(), 1, 0.0), 1, 0.0);
-    let provider = Provider::start(Behaviour::of("words", cast.clone()).and("eye", cast))?;
-    println!("{}", provider.base_url(Dialect::OpenAi));
+    let cast = ScriptedCast::new(FlawedEye::new(PictureGallery::default(), 1, 0.0), 1, 0.0);
+    let provider = ScriptedProvider::start(ProviderBehaviour::for_model("words", cast.clone()).and_model("eye", cast))?;
+    println!("{}", provider.base_url(ProviderDialect::OpenAi));
     loop {
         std::thread::park();
     }

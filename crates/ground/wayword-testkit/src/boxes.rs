@@ -1,7 +1,7 @@
 //! The box files of REVERIE (`BBox/SCAN_VIEWPOINT.json`): the objects near each viewpoint, projected into the 36 views of the
 //! Matterport3D simulator (12 headings at three elevations).
 
-use crate::plan::{self, Object, VIEWPOINTS, viewpoint_id};
+use crate::plan::{self, TestHouseObject, VIEWPOINTS, viewpoint_id};
 use glam::DVec3;
 use serde_json::{Map, Value, json};
 use std::f64::consts::FRAC_PI_6;
@@ -14,13 +14,13 @@ const HEIGHT_PX: f64 = 480.0;
 const MIN_SIDE_PX: f64 = 4.0;
 
 /// The contents of `SCAN_VIEWPOINT.json` for the viewpoint with this index.
-pub(crate) fn file(index: usize) -> Value {
+pub(crate) fn box_file(index: usize) -> Value {
     let viewpoint = &VIEWPOINTS[index];
-    let eye = plan::eye(viewpoint);
+    let eye = plan::camera_position(viewpoint);
     let mut listed = Map::new();
     for (id, object) in plan::OBJECTS.iter().enumerate() {
-        if eye.distance(plan::centre(object)) <= REACH_M {
-            let seen = if object.room == viewpoint.room { seen(eye, object) } else { Vec::new() };
+        if eye.distance(plan::object_centre(object)) <= REACH_M {
+            let seen = if object.room == viewpoint.room { boxes_by_view(eye, object) } else { Vec::new() };
             let (views, boxes): (Vec<usize>, Vec<[i64; 4]>) = seen.into_iter().unzip();
             listed.insert(id.to_string(), json!({ "name": object.name, "visible_pos": views, "bbox2d": boxes }));
         }
@@ -28,12 +28,12 @@ pub(crate) fn file(index: usize) -> Value {
     json!({ viewpoint_id(index): listed })
 }
 
-fn seen(eye: DVec3, object: &Object) -> Vec<(usize, [i64; 4])> {
+fn boxes_by_view(eye: DVec3, object: &TestHouseObject) -> Vec<(usize, [i64; 4])> {
     (0..36).filter_map(|view| Some((view, box_in(view, eye, object)?))).collect()
 }
 
 /// The object's box in a view, cut at the picture's edges; `None` where it is not in the view.
-fn box_in(view: usize, eye: DVec3, object: &Object) -> Option<[i64; 4]> {
+fn box_in(view: usize, eye: DVec3, object: &TestHouseObject) -> Option<[i64; 4]> {
     let heading = FRAC_PI_6 * (view % 12) as f64;
     let elevation = FRAC_PI_6 * ((view / 12) as f64 - 1.0);
     let forward = DVec3::new(
@@ -48,7 +48,8 @@ fn box_in(view: usize, eye: DVec3, object: &Object) -> Option<[i64; 4]> {
     let mut high = [f64::NEG_INFINITY; 2];
     for corner in 0..8 {
         let side = |bit: usize| if corner >> bit & 1 == 0 { -1.0 } else { 1.0 };
-        let to = plan::centre(object) + DVec3::from_array(object.half_m) * DVec3::new(side(0), side(1), side(2)) - eye;
+        let to = plan::object_centre(object) + DVec3::from_array(object.half_m) * DVec3::new(side(0), side(1), side(2))
+            - eye;
         let depth = to.dot(forward);
         if depth < 0.1 {
             return None;

@@ -4,7 +4,7 @@
 use crate::plan::{SCAN, viewpoint_id};
 use serde_json::{Value, json};
 
-struct Episode {
+struct TestHouseEpisode {
     path: &'static [usize],
     /// Radians.
     heading: f64,
@@ -15,8 +15,8 @@ struct Episode {
     r2r: [&'static str; 2],
 }
 
-const EPISODES: [Episode; 10] = [
-    Episode {
+const EPISODES: [TestHouseEpisode; 10] = [
+    TestHouseEpisode {
         path: &[0, 1, 6, 7, 8, 9, 10],
         heading: 0.0,
         object: 27,
@@ -29,7 +29,7 @@ const EPISODES: [Episode; 10] = [
             "Walk past the console table and go up the stairs. Pass the vase, keep to the hall, and enter the bedroom on the right.",
         ],
     },
-    Episode {
+    TestHouseEpisode {
         path: &[11, 10, 9, 8, 7, 6, 1],
         heading: 3.1,
         object: 6,
@@ -42,7 +42,7 @@ const EPISODES: [Episode; 10] = [
             "Pass the foot of the bed and leave the room. Turn left, go down the stairs and stop between the two pictures.",
         ],
     },
-    Episode {
+    TestHouseEpisode {
         path: &[3, 2, 1, 6, 7, 8, 12],
         heading: 4.6,
         object: 34,
@@ -55,7 +55,7 @@ const EPISODES: [Episode; 10] = [
             "Walk past the couch and out into the hallway. Climb the stairs, turn right at the top and stop near the towels.",
         ],
     },
-    Episode {
+    TestHouseEpisode {
         path: &[13, 9, 8, 7, 6, 1, 4],
         heading: 1.5,
         object: 16,
@@ -68,7 +68,7 @@ const EPISODES: [Episode; 10] = [
             "Leave the desk behind you and follow the hall past the plant. Descend the stairs and stop in the kitchen beside the sink.",
         ],
     },
-    Episode {
+    TestHouseEpisode {
         path: &[5, 4, 1, 0, 2],
         heading: 2.2,
         object: 9,
@@ -81,7 +81,7 @@ const EPISODES: [Episode; 10] = [
             "Walk past the dining table and out of the kitchen. Go to the coat rack, turn right and wait next to the couch.",
         ],
     },
-    Episode {
+    TestHouseEpisode {
         path: &[2, 0, 1, 4, 5],
         heading: 5.9,
         object: 15,
@@ -94,7 +94,7 @@ const EPISODES: [Episode; 10] = [
             "Leave the cushions and turn left at the bench. Go along the hallway and into the kitchen, and wait near the stove.",
         ],
     },
-    Episode {
+    TestHouseEpisode {
         path: &[12, 8, 7, 6, 1, 0],
         heading: 0.8,
         object: 1,
@@ -107,7 +107,7 @@ const EPISODES: [Episode; 10] = [
             "Walk out past the vase and descend the stairs. Continue beyond the pictures and stop by the coat rack.",
         ],
     },
-    Episode {
+    TestHouseEpisode {
         path: &[11, 10, 9, 8, 12],
         heading: 1.1,
         object: 35,
@@ -120,7 +120,7 @@ const EPISODES: [Episode; 10] = [
             "Leave the dresser behind, pass the bed and go into the hall. Walk by the picture and enter the bathroom.",
         ],
     },
-    Episode {
+    TestHouseEpisode {
         path: &[6, 7, 8, 9, 13],
         heading: 6.1,
         object: 40,
@@ -133,7 +133,7 @@ const EPISODES: [Episode; 10] = [
             "Go up past the picture and follow the upper hall to its end. Wait in the office near the bookshelf.",
         ],
     },
-    Episode {
+    TestHouseEpisode {
         path: &[1, 6, 7, 8, 9, 10, 11],
         heading: 2.9,
         object: 29,
@@ -148,13 +148,13 @@ const EPISODES: [Episode; 10] = [
     },
 ];
 
-fn path_ids(episode: &Episode) -> Vec<String> {
+fn path_ids(episode: &TestHouseEpisode) -> Vec<String> {
     episode.path.iter().map(|index| viewpoint_id(*index)).collect()
 }
 
 /// `REVERIE_*.json` as released in 2022.
-pub(crate) fn reverie() -> Value {
-    let item = |(number, episode): (usize, &Episode)| {
+pub(crate) fn reverie_file() -> Value {
+    let item = |(number, episode): (usize, &TestHouseEpisode)| {
         let path_id = 100 + number;
         json!({
             "id": format!("{path_id}_{}", episode.object),
@@ -170,8 +170,8 @@ pub(crate) fn reverie() -> Value {
 }
 
 /// `R2R_*.json`.
-pub(crate) fn r2r() -> Value {
-    let item = |(number, episode): (usize, &Episode)| {
+pub(crate) fn r2r_file() -> Value {
+    let item = |(number, episode): (usize, &TestHouseEpisode)| {
         json!({
             "distance": 10.0,
             "scan": SCAN,

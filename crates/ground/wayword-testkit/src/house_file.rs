@@ -7,7 +7,7 @@ use crate::plan::{self, OBJECTS, ROOMS, SCAN, VIEWPOINTS, viewpoint_id};
 const ROOM_M: f64 = 2.5;
 const ZEROS: &str = "0 0 0 0 0";
 
-pub(crate) fn text() -> String {
+pub(crate) fn house_file_text() -> String {
     let mut lines = vec!["ASCII 1.1".to_owned()];
     let (panoramas, objects, regions) = (VIEWPOINTS.len(), OBJECTS.len(), ROOMS.len());
     lines.push(format!(
@@ -25,12 +25,12 @@ pub(crate) fn text() -> String {
         lines.push(format!("R {index} {} 0 0 {} {place} 0 0 0 0", room.level, room.letter));
     }
     for (index, viewpoint) in VIEWPOINTS.iter().enumerate() {
-        let eye = plan::eye(viewpoint);
+        let eye = plan::camera_position(viewpoint);
         let place = format!("{} {} {}", eye.x, eye.y, eye.z);
         lines.push(format!("P {} {index} {} 0 {place} {ZEROS}", viewpoint_id(index), viewpoint.room));
     }
     for (index, object) in OBJECTS.iter().enumerate() {
-        let (centre, [a, b, c]) = (plan::centre(object), object.half_m);
+        let (centre, [a, b, c]) = (plan::object_centre(object), object.half_m);
         let place = format!("{} {} {} 1 0 0 0 1 0 {a} {b} {c}", centre.x, centre.y, centre.z);
         lines.push(format!("O {index} {} {index} {place} 0 0 0 {ZEROS}", object.room));
         lines.push(format!("C {index} {index} {} 0 misc {ZEROS}", object.name));

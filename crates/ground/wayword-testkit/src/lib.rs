@@ -3,7 +3,7 @@
 //! and contains no data of a dataset, so it can be published.
 //!
 //! There are stand-ins for services as well: [`provider`] serves models over HTTP that answer from scripts and fail in every
-//! way that real services fail; [`PlayedDetector`] detects things by script; [`Postgres`] starts a PostgreSQL server.
+//! way that real services fail; [`PlayedDetector`] detects things by script; [`PostgresServer`] starts a PostgreSQL server.
 //! [`documents`] extracts the commands that the repository's documents ask their readers to type.
 
 mod boxes;
@@ -22,7 +22,7 @@ use std::{fs, io, path::Path};
 
 pub use plan::{SCAN, viewpoint_id};
 pub use played_detector::PlayedDetector;
-pub use postgres::Postgres;
+pub use postgres::PostgresServer;
 
 /// Writes the building below `data`, laid out as a user's Matterport3D and REVERIE folders are:
 /// `matterport/connectivity`, `matterport/v1/scans`, `reverie` (boxes, `objpos.json`, `REVERIE_val_seen.json`) and
@@ -32,19 +32,19 @@ pub use postgres::Postgres;
 /// When a file cannot be written.
 pub fn write_building(data: &Path) -> io::Result<()> {
     let connectivity = data.join("matterport/connectivity");
-    write(&connectivity, &format!("{SCAN}_connectivity.json"), connectivity_file().to_string())?;
-    write(&connectivity, "scans.txt", format!("{SCAN}\n"))?;
+    write_file(&connectivity, &format!("{SCAN}_connectivity.json"), connectivity_file().to_string())?;
+    write_file(&connectivity, "scans.txt", format!("{SCAN}\n"))?;
     let segmentations = data.join(format!("matterport/v1/scans/{SCAN}/house_segmentations"));
-    write(&segmentations, "panorama_to_region.txt", panorama_to_region())?;
-    write(&segmentations, &format!("{SCAN}.house"), house_file::text())?;
+    write_file(&segmentations, "panorama_to_region.txt", panorama_to_region())?;
+    write_file(&segmentations, &format!("{SCAN}.house"), house_file::house_file_text())?;
     let reverie = data.join("reverie");
     for (index, _) in plan::VIEWPOINTS.iter().enumerate() {
         let file = format!("{SCAN}_{}.json", viewpoint_id(index));
-        write(&reverie.join("BBox"), &file, boxes::file(index).to_string())?;
+        write_file(&reverie.join("BBox"), &file, boxes::box_file(index).to_string())?;
     }
-    write(&reverie, "objpos.json", object_positions().to_string())?;
-    write(&reverie, "REVERIE_val_seen.json", episodes::reverie().to_string())?;
-    write(&data.join("r2r"), "R2R_val_seen.json", episodes::r2r().to_string())
+    write_file(&reverie, "objpos.json", object_positions().to_string())?;
+    write_file(&reverie, "REVERIE_val_seen.json", episodes::reverie_file().to_string())?;
+    write_file(&data.join("r2r"), "R2R_val_seen.json", episodes::r2r_file().to_string())
 }
 
 /// Adds photographs: a skybox per viewpoint (`VIEWPOINT_skybox_small.jpg`, six faces of 64 pixels) with walls in the
@@ -68,14 +68,14 @@ pub fn write_distinct_skyboxes(data: &Path) -> io::Result<()> {
 fn write_skyboxes_marked(data: &Path, mark: impl Fn(usize) -> u8) -> io::Result<()> {
     let folder = data.join(format!("matterport/v1/scans/{SCAN}/matterport_skybox_images"));
     for (index, _) in plan::VIEWPOINTS.iter().enumerate() {
-        write(&folder, &format!("{}_skybox_small.jpg", viewpoint_id(index)), pictures::skybox(mark(index))?)?;
+        write_file(&folder, &format!("{}_skybox_small.jpg", viewpoint_id(index)), pictures::skybox_jpeg(mark(index))?)?;
     }
     Ok(())
 }
 
 pub use pictures::wall_colour;
 
-fn write(folder: &Path, name: &str, contents: impl AsRef<[u8]>) -> io::Result<()> {
+fn write_file(folder: &Path, name: &str, contents: impl AsRef<[u8]>) -> io::Result<()> {
     fs::create_dir_all(folder)?;
     fs::write(folder.join(name), contents)
 }
@@ -85,7 +85,7 @@ fn connectivity_file() -> Value {
     let mut items: Vec<Value> = plan::VIEWPOINTS
         .iter()
         .enumerate()
-        .map(|(index, viewpoint)| connectivity_item(index, plan::eye(viewpoint).to_array(), true, count))
+        .map(|(index, viewpoint)| connectivity_item(index, plan::camera_position(viewpoint).to_array(), true, count))
         .collect();
     // A viewpoint that is not included: every real file has some.
     items.push(connectivity_item(count - 1, [5.0, 4.0, 1.5], false, count));
@@ -93,7 +93,7 @@ fn connectivity_file() -> Value {
 }
 
 fn connectivity_item(index: usize, [x, y, z]: [f64; 3], included: bool, count: usize) -> Value {
-    let open: Vec<bool> = (0..count).map(|other| plan::joined(index, other)).collect();
+    let open: Vec<bool> = (0..count).map(|other| plan::are_joined(index, other)).collect();
     json!({
         "image_id": viewpoint_id(index),
         // The skybox's axes: x east, y down, z north.
@@ -106,15 +106,17 @@ fn connectivity_item(index: usize, [x, y, z]: [f64; 3], included: bool, count: u
 }
 
 fn panorama_to_region() -> String {
-    let line = |(index, viewpoint): (usize, &plan::Viewpoint)| {
+    let line = |(index, viewpoint): (usize, &plan::TestHouseViewpoint)| {
         format!("{index} {} {} {}\n", viewpoint_id(index), viewpoint.room, plan::ROOMS[viewpoint.room].letter)
     };
     plan::VIEWPOINTS.iter().enumerate().map(line).collect()
 }
 
 fn object_positions() -> Value {
-    let centres =
-        plan::OBJECTS.iter().enumerate().map(|(id, object)| (id.to_string(), json!(plan::centre(object).to_array())));
+    let centres = plan::OBJECTS
+        .iter()
+        .enumerate()
+        .map(|(id, object)| (id.to_string(), json!(plan::object_centre(object).to_array())));
     let centres: serde_json::Map<String, Value> = centres.collect();
     json!({ SCAN: centres })
 }

@@ -15,35 +15,35 @@ use std::{
 use tempfile::TempDir;
 
 /// The user of the server.
-const USER: &str = "postgres";
+const SERVER_USER: &str = "postgres";
 
 /// A running server. It listens only on a socket in its own temporary folder, asks for no password, and stops when this
 /// value is dropped.
 #[derive(Debug)]
-pub struct Postgres {
+pub struct PostgresServer {
     programs: PathBuf,
     /// The user that the server runs as if this program runs as root. PostgreSQL refuses to run as root.
     as_user: Option<String>,
     folder: TempDir,
 }
 
-impl Postgres {
+impl PostgresServer {
     /// Starts a server with no data; `None` if PostgreSQL is not installed.
     ///
     /// # Panics
     /// When it is installed and cannot be started.
     #[must_use]
     pub fn start() -> Option<Self> {
-        let programs = programs()?;
+        let programs = find_programs()?;
         // The path of a socket must be short.
         let folder = tempfile::Builder::new().prefix("pg").tempdir().expect("a temporary folder");
         let server = Self { programs, as_user: other_user(), folder };
         if let Some(user) = &server.as_user {
-            done(Command::new("chown").arg(user).arg(server.folder.path()));
+            run_or_panic(Command::new("chown").arg(user).arg(server.folder.path()));
         }
-        let data = server.data();
-        let encoding = ["--encoding=UTF8", "--locale=C", "--auth=trust", "--no-sync", "-U", USER, "-D"];
-        done(server.program("initdb").args(encoding).arg(&data));
+        let data = server.data_folder();
+        let encoding = ["--encoding=UTF8", "--locale=C", "--auth=trust", "--no-sync", "-U", SERVER_USER, "-D"];
+        run_or_panic(server.program_command("initdb").args(encoding).arg(&data));
         server.go_on();
         Some(server)
     }
@@ -51,8 +51,8 @@ impl Postgres {
     /// The server that the tests of this program share. It is stopped when no test uses it any more.
     #[must_use]
     pub fn shared() -> Option<Arc<Self>> {
-        static SHARED: Mutex<Weak<Postgres>> = Mutex::new(Weak::new());
-        let mut shared = SHARED.lock().unwrap_or_else(PoisonError::into_inner);
+        static SHARED_SERVER: Mutex<Weak<PostgresServer>> = Mutex::new(Weak::new());
+        let mut shared = SHARED_SERVER.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(server) = shared.upgrade() {
             return Some(server);
         }
@@ -67,16 +67,18 @@ impl Postgres {
     /// When the server cannot make it.
     #[must_use]
     pub fn new_database(&self) -> String {
-        static NUMBER: AtomicU64 = AtomicU64::new(0);
-        let name = format!("test{}", NUMBER.fetch_add(1, Ordering::Relaxed));
-        done(self.program("createdb").args(["-U", USER, "-h"]).arg(self.folder.path()).arg(&name));
-        self.url_of(USER, &name)
+        static NEXT_DATABASE_NUMBER: AtomicU64 = AtomicU64::new(0);
+        let name = format!("test{}", NEXT_DATABASE_NUMBER.fetch_add(1, Ordering::Relaxed));
+        run_or_panic(
+            self.program_command("createdb").args(["-U", SERVER_USER, "-h"]).arg(self.folder.path()).arg(&name),
+        );
+        self.url_of(SERVER_USER, &name)
     }
 
     /// The URL of the database `postgres`, which every server has.
     #[must_use]
-    pub fn url(&self) -> String {
-        self.url_of(USER, "postgres")
+    pub fn default_url(&self) -> String {
+        self.url_of(SERVER_USER, "postgres")
     }
 
     /// The URL with which a client connects to a database as a role.
@@ -96,29 +98,29 @@ impl Postgres {
 
     /// Stops the server as a crash would.
     pub fn stop(&self) {
-        let mut stop = self.program("pg_ctl");
+        let mut stop = self.program_command("pg_ctl");
         // The call fails if the server does not run, which is fine here.
-        let _ = stop.args(["-m", "immediate", "-w", "stop", "-D"]).arg(self.data()).output();
+        let _ = stop.args(["-m", "immediate", "-w", "stop", "-D"]).arg(self.data_folder()).output();
     }
 
-    /// Starts the server again after [`Postgres::stop`].
+    /// Starts the server again after [`PostgresServer::stop`].
     ///
     /// # Panics
     /// When it cannot be started.
     pub fn go_on(&self) {
         let folder = self.folder.path().display();
         let options = format!("-c listen_addresses='' -c unix_socket_directories='{folder}' -c max_connections=200");
-        let mut start = self.program("pg_ctl");
-        start.args(["-w", "-o", &options, "-l"]).arg(self.folder.path().join("log")).arg("-D").arg(self.data());
-        done(start.arg("start").stdout(std::process::Stdio::null()));
+        let mut start = self.program_command("pg_ctl");
+        start.args(["-w", "-o", &options, "-l"]).arg(self.folder.path().join("log")).arg("-D").arg(self.data_folder());
+        run_or_panic(start.arg("start").stdout(std::process::Stdio::null()));
     }
 
-    fn data(&self) -> PathBuf {
+    fn data_folder(&self) -> PathBuf {
         self.folder.path().join("data")
     }
 
     /// One of PostgreSQL's programs, under the server's user.
-    fn program(&self, name: &str) -> Command {
+    fn program_command(&self, name: &str) -> Command {
         let program = self.programs.join(name);
         let mut command = match &self.as_user {
             None => Command::new(program),
@@ -134,14 +136,14 @@ impl Postgres {
     }
 }
 
-impl Drop for Postgres {
+impl Drop for PostgresServer {
     fn drop(&mut self) {
         self.stop();
     }
 }
 
 /// The folder of PostgreSQL's programs: the newest version of Debian's, else one on the `PATH`.
-fn programs() -> Option<PathBuf> {
+fn find_programs() -> Option<PathBuf> {
     let path = env::var_os("PATH").unwrap_or_default();
     let mut debian: Vec<PathBuf> = fs::read_dir("/usr/lib/postgresql")
         .into_iter()
@@ -150,7 +152,7 @@ fn programs() -> Option<PathBuf> {
         .map(|version| version.path().join("bin"))
         .collect();
     // The newest first.
-    debian.sort_by_key(|folder| std::cmp::Reverse(version(folder)));
+    debian.sort_by_key(|folder| std::cmp::Reverse(folder_version(folder)));
     let others = env::split_paths(&path).chain([PathBuf::from("/usr/local/bin")]);
     debian
         .into_iter()
@@ -159,7 +161,7 @@ fn programs() -> Option<PathBuf> {
 }
 
 /// The version in the path of one of Debian's folders.
-fn version(folder: &Path) -> u32 {
+fn folder_version(folder: &Path) -> u32 {
     let name = folder.parent().and_then(Path::file_name).and_then(|name| name.to_str());
     name.and_then(|name| name.parse().ok()).unwrap_or(0)
 }
@@ -168,11 +170,11 @@ fn version(folder: &Path) -> u32 {
 fn other_user() -> Option<String> {
     let id = |of: &[&str]| Command::new("id").args(of).output().ok().filter(|output| output.status.success());
     let is_root = id(&["-u"]).is_some_and(|output| output.stdout.trim_ascii() == b"0");
-    let other = if id(&["-u", USER]).is_some() { USER } else { "nobody" };
+    let other = if id(&["-u", SERVER_USER]).is_some() { SERVER_USER } else { "nobody" };
     is_root.then(|| other.to_owned())
 }
 
-fn done(command: &mut Command) -> Output {
+fn run_or_panic(command: &mut Command) -> Output {
     // The server inherits the pipes and keeps them open. `pg_ctl start` therefore runs with a log file and without stdout;
     // otherwise `output` would wait until the server ends.
     let output = command.output().unwrap_or_else(|error| panic!("{command:?}: {error}"));
@@ -188,7 +190,7 @@ mod tests {
     #[test]
     fn newest_debian_version_sorts_last() {
         let path = |version: &str| PathBuf::from(format!("/usr/lib/postgresql/{version}/bin"));
-        assert!(version(&path("17")) > version(&path("9.6")));
-        assert!(version(&path("17")) > version(&path("15")));
+        assert!(folder_version(&path("17")) > folder_version(&path("9.6")));
+        assert!(folder_version(&path("17")) > folder_version(&path("15")));
     }
 }

@@ -4,7 +4,7 @@ use std::{fs, time::Duration};
 
 /// Processor time of this process so far, user and system. Zero on systems without `/proc`.
 #[must_use]
-pub fn cpu() -> Duration {
+pub fn processor_time() -> Duration {
     // The program's name in brackets may have spaces. The fields from the third on come after it.
     let stat = fs::read_to_string("/proc/self/stat").unwrap_or_default();
     let fields: Vec<u64> = stat
@@ -45,13 +45,13 @@ mod tests {
     /// Other tests of this process may compute at the same time, so there is only a lower bound.
     #[test]
     fn processor_time_grows_with_work() {
-        let (before, begun) = (cpu(), Instant::now());
+        let (before, begun) = (processor_time(), Instant::now());
         let mut sum = 0u64;
-        while cpu() - before < Duration::from_millis(100) && begun.elapsed() < Duration::from_secs(60) {
+        while processor_time() - before < Duration::from_millis(100) && begun.elapsed() < Duration::from_secs(60) {
             sum = (0..1_000_000).fold(sum, |sum, one| sum.wrapping_add(black_box(one)));
         }
         black_box(sum);
-        assert!(cpu() - before >= Duration::from_millis(100));
+        assert!(processor_time() - before >= Duration::from_millis(100));
     }
 
     #[test]

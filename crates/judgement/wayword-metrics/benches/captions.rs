@@ -6,7 +6,7 @@
 use criterion::{Criterion, criterion_group, criterion_main};
 use serde_json::Value;
 use std::hint::black_box;
-use wayword_metrics::captions::{Row, Text, Vocabulary, scores};
+use wayword_metrics::captions::{CaptionRow, CaptionVocabulary, NumberedText, score_rows};
 
 /// For each item the tokens of its text, and of its references after it.
 fn items() -> Vec<Vec<Vec<String>>> {
@@ -23,12 +23,14 @@ fn captions(criterion: &mut Criterion) {
     let items = items();
     criterion.bench_function("captions", |bencher| {
         bencher.iter(|| {
-            let mut vocabulary = Vocabulary::default();
-            let texts: Vec<Vec<Text>> =
-                items.iter().map(|item| item.iter().map(|tokens| vocabulary.text(tokens)).collect()).collect();
-            let rows: Vec<Row<'_>> =
-                texts.iter().map(|texts| Row { text: &texts[0], references: texts[1..].iter().collect() }).collect();
-            black_box(scores(&rows))
+            let mut vocabulary = CaptionVocabulary::default();
+            let texts: Vec<Vec<NumberedText>> =
+                items.iter().map(|item| item.iter().map(|tokens| vocabulary.number_text(tokens)).collect()).collect();
+            let rows: Vec<CaptionRow<'_>> = texts
+                .iter()
+                .map(|texts| CaptionRow { text: &texts[0], references: texts[1..].iter().collect() })
+                .collect();
+            black_box(score_rows(&rows))
         });
     });
 }

@@ -1,17 +1,17 @@
 //! Bootstrap intervals for means of values that come in clusters, as several instructions about one path do.
 
-use crate::Drawing;
+use crate::ResamplingOptions;
 use rand::Rng;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use wayword_core::rng;
+use wayword_core::seeded_rng;
 
 /// Most resamples that are drawn; more would not change the digits that reports show.
 const MOST_RESAMPLES: usize = 100_000;
 
 /// A mean with its interval.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Estimate {
+pub struct MeanEstimate {
     /// The mean over all values.
     pub mean: f64,
     /// Lower end of the interval.
@@ -30,8 +30,13 @@ pub struct Estimate {
 /// the interval narrower than it is. `level` is the share that the interval covers, as 0.95; `resamples` beyond 100,000 are
 /// not drawn. `None` where there are no values.
 #[must_use]
-pub fn clustered_interval<C: Ord>(values: &[(C, f64)], resamples: usize, level: f64, seed: u64) -> Option<Estimate> {
-    let mut rng = rng(seed, &["bootstrap"]);
+pub fn clustered_interval<C: Ord>(
+    values: &[(C, f64)],
+    resamples: usize,
+    level: f64,
+    seed: u64,
+) -> Option<MeanEstimate> {
+    let mut rng = seeded_rng(seed, &["bootstrap"]);
     let draw = move |clusters: usize| (0..clusters).map(|_| rng.random_range(0..clusters)).collect();
     clustered_interval_of(values, resamples.clamp(1, MOST_RESAMPLES), level, draw)
 }
@@ -44,24 +49,24 @@ pub fn clustered_interval_of<C: Ord>(
     resamples: usize,
     level: f64,
     mut draw: impl FnMut(usize) -> Vec<usize>,
-) -> Option<Estimate> {
-    let mut clusters: BTreeMap<&C, Sum> = BTreeMap::new();
+) -> Option<MeanEstimate> {
+    let mut clusters: BTreeMap<&C, ClusterSum> = BTreeMap::new();
     for (cluster, value) in values {
-        clusters.entry(cluster).or_default().add(Sum { total: *value, count: 1 });
+        clusters.entry(cluster).or_default().add(ClusterSum { total: *value, count: 1 });
     }
-    let clusters: Vec<Sum> = clusters.into_values().collect();
-    let all = clusters.iter().copied().reduce(Sum::plus)?;
+    let clusters: Vec<ClusterSum> = clusters.into_values().collect();
+    let all = clusters.iter().copied().reduce(ClusterSum::plus)?;
     let mut mean = || {
         let drawn = draw(clusters.len()).into_iter().filter_map(|at| clusters.get(at).copied());
-        drawn.reduce(Sum::plus).unwrap_or(all).mean()
+        drawn.reduce(ClusterSum::plus).unwrap_or(all).mean()
     };
     let mut means: Vec<f64> = (0..resamples.max(1)).map(|_| mean()).collect();
     means.sort_unstable_by(f64::total_cmp);
     let tail = (1.0 - level.clamp(0.0, 1.0)) / 2.0;
-    Some(Estimate {
+    Some(MeanEstimate {
         mean: all.mean(),
-        low: quantile(&means, tail),
-        high: quantile(&means, 1.0 - tail),
+        low: interpolated_quantile(&means, tail),
+        high: interpolated_quantile(&means, 1.0 - tail),
         values: values.len(),
         clusters: clusters.len(),
     })
@@ -72,10 +77,10 @@ pub fn clustered_interval_of<C: Ord>(
 /// interval is NaN if no draw gives a finite value.
 pub(crate) fn interval_of<const N: usize>(
     clusters: usize,
-    drawing: &Drawing,
+    drawing: &ResamplingOptions,
     mut figures: impl FnMut(&[usize]) -> [f64; N],
 ) -> [(f64, f64); N] {
-    let mut rng = rng(drawing.seed, &["bootstrap"]);
+    let mut rng = seeded_rng(drawing.seed, &["bootstrap"]);
     let resamples = drawing.resamples.clamp(1, MOST_RESAMPLES);
     let mut found = [(); N].map(|()| Vec::with_capacity(resamples));
     let mut drawn = vec![0; clusters];
@@ -99,16 +104,16 @@ pub fn percentile_interval(mut values: Vec<f64>, level: f64) -> Option<[f64; 2]>
     }
     values.sort_unstable_by(f64::total_cmp);
     let tail = (1.0 - level.clamp(0.0, 1.0)) / 2.0;
-    Some([tail, 1.0 - tail].map(|share| quantile(&values, share)))
+    Some([tail, 1.0 - tail].map(|share| interpolated_quantile(&values, share)))
 }
 
 #[derive(Debug, Clone, Copy, Default)]
-struct Sum {
+struct ClusterSum {
     total: f64,
     count: usize,
 }
 
-impl Sum {
+impl ClusterSum {
     fn add(&mut self, other: Self) {
         *self = self.plus(other);
     }
@@ -123,7 +128,7 @@ impl Sum {
 }
 
 /// A quantile of sorted values, interpolated linearly between the two neighbours.
-fn quantile(sorted: &[f64], share: f64) -> f64 {
+fn interpolated_quantile(sorted: &[f64], share: f64) -> f64 {
     let at = share * (sorted.len() - 1) as f64;
     let below = sorted[at.floor() as usize];
     below + (sorted[at.ceil() as usize] - below) * at.fract()
@@ -134,11 +139,11 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn interval(values: &[(u8, f64)], level: f64) -> Estimate {
+    fn interval(values: &[(u8, f64)], level: f64) -> MeanEstimate {
         clustered_interval(values, 1000, level, 3).unwrap()
     }
 
-    fn width(estimate: Estimate) -> f64 {
+    fn width(estimate: MeanEstimate) -> f64 {
         estimate.high - estimate.low
     }
 

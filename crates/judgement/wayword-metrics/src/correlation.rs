@@ -7,8 +7,8 @@ use std::cmp::Ordering;
 
 /// Pearson's correlation. If one list contains only 0 and 1, this is the point-biserial correlation.
 #[must_use]
-pub fn pearson(a: &[f64], b: &[f64]) -> Option<f64> {
-    let (a, b) = (centred(a)?, centred(b)?);
+pub fn pearson_correlation(a: &[f64], b: &[f64]) -> Option<f64> {
+    let (a, b) = (centre_values(a)?, centre_values(b)?);
     if a.len() != b.len() {
         return None;
     }
@@ -21,8 +21,8 @@ pub fn pearson(a: &[f64], b: &[f64]) -> Option<f64> {
 
 /// Spearman's rank correlation: Pearson's of the ranks, where equal values share the mean of their ranks.
 #[must_use]
-pub fn spearman(a: &[f64], b: &[f64]) -> Option<f64> {
-    pearson(&ranks(a)?, &ranks(b)?)
+pub fn spearman_correlation(a: &[f64], b: &[f64]) -> Option<f64> {
+    pearson_correlation(&mean_ranks(a)?, &mean_ranks(b)?)
 }
 
 /// Kendall's tau-b: of all pairs of items, how many more are in the same order on both sides than in opposite orders,
@@ -32,15 +32,16 @@ pub fn kendall_tau_b(a: &[f64], b: &[f64]) -> Option<f64> {
     if a.len() != b.len() || a.len() < 2 || a.iter().chain(b).any(|value| !value.is_finite()) {
         return None;
     }
-    let mut pairs: Vec<(f64, f64)> = a.iter().zip(b).map(|(a, b)| (clean(*a), clean(*b))).collect();
+    let mut pairs: Vec<(f64, f64)> =
+        a.iter().zip(b).map(|(a, b)| (without_minus_zero(*a), without_minus_zero(*b))).collect();
     let second = |x: &(f64, f64), y: &(f64, f64)| x.1.total_cmp(&y.1);
     pairs.sort_unstable_by(|x, y| x.0.total_cmp(&y.0).then_with(|| second(x, y)));
-    let tied_in_both = tied(&pairs, |x, y| x == y);
-    let tied_in_a = tied(&pairs, |x, y| x.0 == y.0);
+    let tied_in_both = count_tied_pairs(&pairs, |x, y| x == y);
+    let tied_in_a = count_tied_pairs(&pairs, |x, y| x.0 == y.0);
     // In the order of A, with ties of A in the order of B, every pair that B has the other way round is discordant.
     let mut of_b: Vec<f64> = pairs.iter().map(|(_, b)| *b).collect();
-    let discordant = exchanges(&mut of_b);
-    let tied_in_b = tied(&of_b, |x, y| x == y);
+    let discordant = count_exchanges(&mut of_b);
+    let tied_in_b = count_tied_pairs(&of_b, |x, y| x == y);
     let all = choose_two(pairs.len());
     let [apart_in_a, apart_in_b] = [tied_in_a, tied_in_b].map(|tied| (all - tied) as f64);
     let concordant = all + tied_in_both - tied_in_a - tied_in_b - discordant;
@@ -49,11 +50,11 @@ pub fn kendall_tau_b(a: &[f64], b: &[f64]) -> Option<f64> {
 }
 
 /// Turns -0.0 into 0.0: `total_cmp` would sort them apart, but they are one value.
-fn clean(value: f64) -> f64 {
+fn without_minus_zero(value: f64) -> f64 {
     if value == 0.0 { 0.0 } else { value }
 }
 
-fn centred(values: &[f64]) -> Option<Vec<f64>> {
+fn centre_values(values: &[f64]) -> Option<Vec<f64>> {
     if values.len() < 2 || values.iter().any(|value| !value.is_finite()) {
         return None;
     }
@@ -61,12 +62,12 @@ fn centred(values: &[f64]) -> Option<Vec<f64>> {
     Some(values.iter().map(|value| value - mean).collect())
 }
 
-fn ranks(values: &[f64]) -> Option<Vec<f64>> {
+fn mean_ranks(values: &[f64]) -> Option<Vec<f64>> {
     if values.iter().any(|value| !value.is_finite()) {
         return None;
     }
     let mut order: Vec<usize> = (0..values.len()).collect();
-    order.sort_unstable_by(|x, y| clean(values[*x]).total_cmp(&clean(values[*y])));
+    order.sort_unstable_by(|x, y| without_minus_zero(values[*x]).total_cmp(&without_minus_zero(values[*y])));
     let mut ranks = vec![0.0; values.len()];
     let mut before = 0;
     for same in order.chunk_by(|x, y| values[*x] == values[*y]) {
@@ -83,17 +84,17 @@ fn choose_two(count: usize) -> u64 {
 }
 
 /// Pairs within runs of equal values.
-fn tied<T>(sorted: &[T], same: impl FnMut(&T, &T) -> bool) -> u64 {
+fn count_tied_pairs<T>(sorted: &[T], same: impl FnMut(&T, &T) -> bool) -> u64 {
     sorted.chunk_by(same).map(|run| choose_two(run.len())).sum()
 }
 
 /// Sorts by merging, and counts the pairs that were in the wrong order (Knight 1966).
-fn exchanges(values: &mut [f64]) -> u64 {
+fn count_exchanges(values: &mut [f64]) -> u64 {
     if values.len() < 2 {
         return 0;
     }
     let (left, right) = values.split_at_mut(values.len() / 2);
-    let mut count = exchanges(left) + exchanges(right);
+    let mut count = count_exchanges(left) + count_exchanges(right);
     let mut merged = Vec::with_capacity(left.len() + right.len());
     let (mut l, mut r) = (0, 0);
     while l < left.len() && r < right.len() {
@@ -118,7 +119,7 @@ mod tests {
     use proptest::prelude::*;
 
     type Correlation = fn(&[f64], &[f64]) -> Option<f64>;
-    const ALL: [Correlation; 3] = [pearson, spearman, kendall_tau_b];
+    const ALL: [Correlation; 3] = [pearson_correlation, spearman_correlation, kendall_tau_b];
 
     /// `(a, b, pearson, spearman, tau-b)` by SciPy 1.17.1: `pearsonr`, `spearmanr`, `kendalltau`.
     fn known() -> Vec<(Vec<f64>, Vec<f64>, [f64; 3])> {
@@ -150,9 +151,9 @@ mod tests {
     #[test]
     fn rank_correlations_depend_only_on_the_order() {
         let (a, b) = ([1.0, 2.0, 3.0, 4.0], [1.0, 10.0, 100.0, 1e6]);
-        assert_eq!(spearman(&a, &b), Some(1.0));
+        assert_eq!(spearman_correlation(&a, &b), Some(1.0));
         assert_eq!(kendall_tau_b(&a, &b), Some(1.0));
-        assert!(pearson(&a, &b).unwrap() < 0.9);
+        assert!(pearson_correlation(&a, &b).unwrap() < 0.9);
     }
 
     #[test]

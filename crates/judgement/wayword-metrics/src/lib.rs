@@ -2,7 +2,7 @@
 //! meaning (as: what another person reaches, and what a text about another path reaches).
 //!
 //! Architecture invariant: this crate does not read files or run models, and uses only the graph of a platform; vectors come
-//! from the caller. Distances are computed once and cached ([`Atlas`]), and equal input gives equal figures.
+//! from the caller. Distances are computed once and cached ([`DistanceAtlas`]), and equal input gives equal figures.
 
 mod bootstrap;
 pub mod captions;
@@ -14,16 +14,18 @@ mod study;
 mod trajectory;
 mod words;
 
-pub use bootstrap::{Estimate, clustered_interval, clustered_interval_of, percentile_interval};
-pub use correlation::{kendall_tau_b, pearson, spearman};
+pub use bootstrap::{MeanEstimate, clustered_interval, clustered_interval_of, percentile_interval};
+pub use correlation::{kendall_tau_b, pearson_correlation, spearman_correlation};
 pub use mcnemar::McNemar;
-pub use similarity::{Drawing, Said, Similarity, similarity};
+pub use similarity::{ItemVectors, ResamplingOptions, SetSimilarity, compare_sets};
 pub use study::{
-    Agreement, Answer, BradleyTerry, Comparison, Detectable, Difference, Figure, Interval, Method, NoStrength, Plan,
-    Preference, Scale, Strength, Term, agreement, bradley_terry, detectable, mean, mean_difference, mean_share, share,
-    share_difference, wilson,
+    AnswerScale, BradleyTerry, ConfidenceInterval, DetectableShareDifference, FigureDifference, FittedTerm,
+    IntervalMethod, NoStrength, PairPreference, PowerPlan, RaterAgreement, StudyAnswer, StudyFigure, SystemComparison,
+    SystemStrength, answer_mean, answer_share, bradley_terry, detectable_difference, krippendorff_alpha,
+    mean_difference, mean_share, share_difference, wilson_interval,
 };
 pub use trajectory::{
-    Atlas, Course, Demand, Distances, Grounding, Invalid, Metric, Outcome, Rule, Score, Trajectory, problems, score,
+    AgentTrajectory, DistanceAtlas, EpisodeDemand, EpisodeScorer, SceneDistances, SuccessOutcome, TargetGrounding,
+    TrajectoryError, TrajectoryMetric, TrajectoryScore, TrajectorySuccessRule, find_problems, score_trajectory,
 };
-pub use words::Words;
+pub use words::HashedWordEncoder;

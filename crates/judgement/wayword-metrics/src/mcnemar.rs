@@ -17,7 +17,7 @@ pub struct McNemar {
 impl McNemar {
     /// The test of pairs: whether the first and whether the second succeeds on an item. `p` is 1 where they never differ.
     #[must_use]
-    pub fn of(pairs: impl Iterator<Item = (bool, bool)>) -> Self {
+    pub fn from_pairs(pairs: impl Iterator<Item = (bool, bool)>) -> Self {
         let [mut only_first, mut only_second] = [0, 0];
         for (first, second) in pairs {
             only_first += usize::from(first && !second);
@@ -51,19 +51,19 @@ mod tests {
 
     fn test(only_first: usize, only_second: usize) -> McNemar {
         let first = std::iter::repeat_n((true, false), only_first);
-        McNemar::of(first.chain(std::iter::repeat_n((false, true), only_second)))
+        McNemar::from_pairs(first.chain(std::iter::repeat_n((false, true), only_second)))
     }
 
     #[test]
     fn mcnemar_p_is_one_for_methods_that_never_differ() {
-        let same = McNemar::of([(true, true), (false, false)].into_iter());
+        let same = McNemar::from_pairs([(true, true), (false, false)].into_iter());
         assert_eq!(same, McNemar { only_first: 0, only_second: 0, p: 1.0 });
         assert_eq!(test(8, 8).p, 1.0);
     }
 
     #[test]
     fn mcnemar_counts_pairs_by_the_only_success() {
-        let found = McNemar::of([(true, false), (true, false), (false, true), (true, true)].into_iter());
+        let found = McNemar::from_pairs([(true, false), (true, false), (false, true), (true, true)].into_iter());
         assert_eq!((found.only_first, found.only_second), (2, 1));
     }
 

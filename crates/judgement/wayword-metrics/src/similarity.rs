@@ -1,18 +1,18 @@
 //! How alike two sets of instructions are, by the cosines of their text vectors. A cosine has no meaning by itself, so two
 //! anchors come with it: two people's texts about the same item, and texts about different paths.
 
-use crate::{Estimate, clustered_interval};
+use crate::{MeanEstimate, clustered_interval};
 use rand::Rng;
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
-use wayword_core::rng;
+use wayword_core::seeded_rng;
 
 /// How many random items of other paths each item is compared with, for the anchor of random pairs.
-const OTHERS: usize = 10;
+const RANDOM_PAIRS_PER_ITEM: usize = 10;
 
 /// The text vectors of one item.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Said<'a> {
+pub struct ItemVectors<'a> {
     /// The path that it is about: items of one path are not independent.
     pub cluster: String,
     /// A vector per text. All vectors of a comparison have the same length.
@@ -21,7 +21,7 @@ pub struct Said<'a> {
 
 /// How intervals and random pairs are drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Drawing {
+pub struct ResamplingOptions {
     /// Resamples of the intervals.
     pub resamples: usize,
     /// The share that the intervals cover, as 0.95.
@@ -32,15 +32,15 @@ pub struct Drawing {
 
 /// How alike two sets are.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Similarity {
+pub struct SetSimilarity {
     /// A against B: over items, the mean cosine of a text in A and a text in B of the same item. `None` without a common item.
-    pub figure: Option<Estimate>,
+    pub figure: Option<MeanEstimate>,
     /// The same between two texts of B on one item: the similarity that two people reach. `None` where no item has two.
-    pub same_item: Option<Estimate>,
+    pub same_item: Option<MeanEstimate>,
     /// The same between a text of B on the item and one on an item of another path, drawn at random: the similarity that an
     /// author reaches without having seen the path. Its interval takes only the path of the first text into account. `None`
     /// where there is a single path.
-    pub random_pairs: Option<Estimate>,
+    pub random_pairs: Option<MeanEstimate>,
     /// Items that A alone has.
     pub only_in_a: usize,
     /// Items that B alone has.
@@ -55,20 +55,24 @@ pub struct Similarity {
 /// An item's figure is the mean cosine over all pairs of texts, the set's the mean over items (the average pairwise cosine of
 /// arXiv 2403.11487). Intervals draw paths. Items without a text count as absent.
 #[must_use]
-pub fn similarity(a: &BTreeMap<String, Said<'_>>, b: &BTreeMap<String, Said<'_>>, drawing: &Drawing) -> Similarity {
-    let ids = |set: &BTreeMap<String, Said<'_>>| -> BTreeSet<String> {
+pub fn compare_sets(
+    a: &BTreeMap<String, ItemVectors<'_>>,
+    b: &BTreeMap<String, ItemVectors<'_>>,
+    drawing: &ResamplingOptions,
+) -> SetSimilarity {
+    let ids = |set: &BTreeMap<String, ItemVectors<'_>>| -> BTreeSet<String> {
         set.iter().filter(|(_, said)| !said.vectors.is_empty()).map(|(id, _)| id.clone()).collect()
     };
     let (in_a, in_b) = (ids(a), ids(b));
-    let common: Vec<(&str, &Said<'_>, &Said<'_>)> =
+    let common: Vec<(&str, &ItemVectors<'_>, &ItemVectors<'_>)> =
         in_a.intersection(&in_b).map(|id| (id.as_str(), &a[id], &b[id])).collect();
-    let of_b: Vec<(&str, &Said<'_>)> = common.iter().map(|(id, _, b)| (*id, *b)).collect();
+    let of_b: Vec<(&str, &ItemVectors<'_>)> = common.iter().map(|(id, _, b)| (*id, *b)).collect();
     let estimate = |values: &[(&str, f64)]| clustered_interval(values, drawing.resamples, drawing.level, drawing.seed);
     let figures: Vec<(&str, f64)> =
-        common.iter().filter_map(|(_, a, b)| Some((b.cluster.as_str(), across(a, b)?))).collect();
+        common.iter().filter_map(|(_, a, b)| Some((b.cluster.as_str(), mean_cosine_between(a, b)?))).collect();
     let same: Vec<(&str, f64)> =
-        of_b.iter().filter_map(|(_, said)| Some((said.cluster.as_str(), within(said)?))).collect();
-    Similarity {
+        of_b.iter().filter_map(|(_, said)| Some((said.cluster.as_str(), mean_cosine_within(said)?))).collect();
+    SetSimilarity {
         figure: estimate(&figures),
         same_item: estimate(&same),
         random_pairs: estimate(&at_random(&of_b, drawing.seed)),
@@ -79,37 +83,37 @@ pub fn similarity(a: &BTreeMap<String, Said<'_>>, b: &BTreeMap<String, Said<'_>>
 }
 
 /// The mean cosine over all pairs of a text of `a` and one of `b`.
-fn across(a: &Said<'_>, b: &Said<'_>) -> Option<f64> {
+fn mean_cosine_between(a: &ItemVectors<'_>, b: &ItemVectors<'_>) -> Option<f64> {
     mean(a.vectors.iter().flat_map(|a| b.vectors.iter().map(move |b| cosine(a, b))))
 }
 
 /// The mean cosine over all unordered pairs of one item's texts; `None` for fewer than two.
-fn within(said: &Said<'_>) -> Option<f64> {
+fn mean_cosine_within(said: &ItemVectors<'_>) -> Option<f64> {
     let texts = said.vectors.iter().enumerate();
     mean(texts.flat_map(|(at, a)| said.vectors[at + 1..].iter().map(move |b| cosine(a, b))))
 }
 
 /// The mean cosine of each item with items of other paths, drawn with replacement; with the path of the item.
-fn at_random<'a>(items: &[(&str, &'a Said<'_>)], seed: u64) -> Vec<(&'a str, f64)> {
-    let mut paths: BTreeMap<&str, Vec<&Said<'_>>> = BTreeMap::new();
+fn at_random<'a>(items: &[(&str, &'a ItemVectors<'_>)], seed: u64) -> Vec<(&'a str, f64)> {
+    let mut paths: BTreeMap<&str, Vec<&ItemVectors<'_>>> = BTreeMap::new();
     for (_, said) in items {
         paths.entry(&said.cluster).or_default().push(said);
     }
     // Items are in the order of their paths, so an item of another path is before the first or after the last of its
     // own path.
     let mut first = BTreeMap::new();
-    let mut ordered: Vec<&Said<'_>> = Vec::with_capacity(items.len());
+    let mut ordered: Vec<&ItemVectors<'_>> = Vec::with_capacity(items.len());
     for (path, of_path) in &paths {
         first.insert(*path, ordered.len());
         ordered.extend(of_path);
     }
-    let of_item = |(id, said): &(&str, &'a Said<'_>)| {
+    let of_item = |(id, said): &(&str, &'a ItemVectors<'_>)| {
         let (first, count) = (first[&*said.cluster], paths[&*said.cluster].len());
         let others = ordered.len() - count;
-        let mut rng = rng(seed, &["random pairs", id]);
-        let drawn = (0..if others == 0 { 0 } else { OTHERS }).filter_map(|_| {
+        let mut rng = seeded_rng(seed, &["random pairs", id]);
+        let drawn = (0..if others == 0 { 0 } else { RANDOM_PAIRS_PER_ITEM }).filter_map(|_| {
             let at = rng.random_range(0..others);
-            across(said, ordered[if at < first { at } else { at + count }])
+            mean_cosine_between(said, ordered[if at < first { at } else { at + count }])
         });
         Some((said.cluster.as_str(), mean(drawn)?))
     };

@@ -3,33 +3,33 @@
 use wayword_core::{ModelError, TextEncoder, seed};
 
 /// How many slots words are hashed to.
-const PLACES: u64 = 1024;
+const HASH_SLOT_COUNT: u64 = 1024;
 
 /// Encodes a text as counts of hashed words. Paraphrases in other words come out far apart, so its figures are comparable with each
 /// other, but not with those of a sentence encoder.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Words;
+pub struct HashedWordEncoder;
 
-impl TextEncoder for Words {
+impl TextEncoder for HashedWordEncoder {
     fn name(&self) -> &str {
         "words"
     }
 
-    fn encode(&self, texts: &[&str]) -> Result<Vec<Vec<f32>>, ModelError> {
-        Ok(texts.iter().map(|text| vector(text)).collect())
+    fn encode_texts(&self, texts: &[&str]) -> Result<Vec<Vec<f32>>, ModelError> {
+        Ok(texts.iter().map(|text| hashed_counts(text)).collect())
     }
 }
 
-fn vector(text: &str) -> Vec<f32> {
+fn hashed_counts(text: &str) -> Vec<f32> {
     // Texts without words have a slot of their own, because every vector has length 1.
-    let mut counts = vec![0.0f32; PLACES as usize + 1];
+    let mut counts = vec![0.0f32; HASH_SLOT_COUNT as usize + 1];
     let lower = text.to_lowercase();
     for word in lower.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()) {
-        counts[(seed::derive(0, &[word]) % PLACES) as usize] += 1.0;
+        counts[(seed::derive_seed(0, &[word]) % HASH_SLOT_COUNT) as usize] += 1.0;
     }
     let length = counts.iter().map(|count| count * count).sum::<f32>().sqrt();
     if length == 0.0 {
-        counts[PLACES as usize] = 1.0;
+        counts[HASH_SLOT_COUNT as usize] = 1.0;
         return counts;
     }
     counts.into_iter().map(|count| count / length).collect()
@@ -40,7 +40,7 @@ mod tests {
     use super::*;
 
     fn alike(a: &str, b: &str) -> f32 {
-        vector(a).iter().zip(vector(b)).map(|(a, b)| a * b).sum()
+        hashed_counts(a).iter().zip(hashed_counts(b)).map(|(a, b)| a * b).sum()
     }
 
     #[test]

@@ -2,7 +2,7 @@
 //! instructions are compared by how well the agents do.
 //!
 //! Architecture invariant: an agent gets an instruction and, at each node, only the input that `sight` makes for it. An agent
-//! that walks by phrases gets how well they fit four views ([`Sight`]). An agent that reads gets the ways out of the node, its
+//! that walks by phrases gets how well they fit four views ([`NodeSight`]). An agent that reads gets the ways out of the node, its
 //! room, and through which way each thing lies (`Sighting`). The agent with a language model gets the same in words, or pictures.
 //! None of them gets a pose, a goal or a map of the scene. Agents that know more are in `agents::baselines` and
 //! `agents::map_reader`. This crate opens no files, and uses platforms only through the trait.
@@ -20,4 +20,4 @@ mod testing;
 pub mod walk;
 
 pub use error::WalkError;
-pub use sight::{AgentView, Seen, Sight, Things};
+pub use sight::{AgentView, NodeSight, SightView, ThingSource};

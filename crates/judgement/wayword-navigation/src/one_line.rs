@@ -10,7 +10,7 @@ pub(crate) fn one_line(text: &str) -> String {
 }
 
 /// As [`one_line`], cut after a number of characters.
-pub(crate) fn quoted(text: &str, most_chars: usize) -> String {
+pub(crate) fn shorten_line(text: &str, most_chars: usize) -> String {
     let line = one_line(text);
     match line.char_indices().nth(most_chars) {
         Some((at, _)) => format!("{} ...", &line[..at]),

@@ -3,7 +3,7 @@
 
 mod sighting;
 
-pub use sighting::Things;
+pub use sighting::ThingSource;
 
 use crate::error::WalkError;
 use std::{
@@ -11,7 +11,8 @@ use std::{
     sync::{Arc, Mutex, PoisonError},
 };
 use wayword_core::{
-    DVec3, Frame, Gaze, Grounder, Heading, ObjectId, Platform, Pose, SceneId, View, ViewpointGraph, ViewpointId,
+    DVec3, Frame, Heading, ObjectId, PhraseGrounder, Platform, Pose, SceneId, View, ViewGaze, ViewpointGraph,
+    ViewpointId,
 };
 
 /// An agent's access to one scene: a platform that gives views, and a grounder that scores how well phrases fit them.
@@ -20,19 +21,19 @@ use wayword_core::{
 /// scores are cached, so that all agents that walk by one instruction share them.
 pub struct AgentView<'a> {
     platform: &'a dyn Platform,
-    grounder: &'a dyn Grounder,
+    grounder: &'a dyn PhraseGrounder,
     scene: SceneId,
     graph: Arc<ViewpointGraph>,
     needs_pictures: bool,
-    around: Mutex<BTreeMap<ViewpointId, Arc<Around>>>,
-    scores: Mutex<BTreeMap<(ViewpointId, Vec<String>), Scores>>,
+    around: Mutex<BTreeMap<ViewpointId, Arc<NodeViews>>>,
+    scores: Mutex<BTreeMap<(ViewpointId, Vec<String>), ViewScores>>,
 }
 
 /// How well phrases fit each of the four views of a node.
-type Scores = Arc<[Vec<f32>; 4]>;
+type ViewScores = Arc<[Vec<f32>; 4]>;
 
 /// The four views around a node.
-struct Around {
+struct NodeViews {
     views: [View; 4],
     /// Neighbours in each view, nearest first.
     onward: [Vec<ViewpointId>; 4],
@@ -40,14 +41,14 @@ struct Around {
 
 /// The input at a node for an agent that walks by phrases.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Sight {
+pub struct NodeSight {
     /// North, east, south, west.
-    pub views: [Seen; 4],
+    pub views: [SightView; 4],
 }
 
 /// One view at a node, as an agent gets it.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Seen {
+pub struct SightView {
     /// How well each phrase fits, in the order in which they were given.
     pub scores: Vec<f32>,
     /// The neighbours in it, nearest first.
@@ -61,7 +62,7 @@ impl<'a> AgentView<'a> {
     /// When the platform cannot give the scene's graph.
     pub fn new(
         platform: &'a dyn Platform,
-        grounder: &'a dyn Grounder,
+        grounder: &'a dyn PhraseGrounder,
         needs_pictures: bool,
         scene: &SceneId,
     ) -> Result<Self, WalkError> {
@@ -69,7 +70,7 @@ impl<'a> AgentView<'a> {
             platform,
             grounder,
             scene: scene.clone(),
-            graph: platform.graph(scene)?,
+            graph: platform.graph_for_scene(scene)?,
             needs_pictures,
             around: Mutex::default(),
             scores: Mutex::default(),
@@ -80,20 +81,20 @@ impl<'a> AgentView<'a> {
     ///
     /// # Errors
     /// When the platform gives no view, or the grounder fails.
-    pub fn look(&self, viewpoint: &ViewpointId, phrases: &[String]) -> Result<Sight, WalkError> {
-        let around = self.around(viewpoint)?;
-        let scores = self.scores(viewpoint, &around, phrases)?;
-        let seen = |view: usize| Seen { scores: scores[view].clone(), onward: around.onward[view].clone() };
-        Ok(Sight { views: std::array::from_fn(seen) })
+    pub fn look_from(&self, viewpoint: &ViewpointId, phrases: &[String]) -> Result<NodeSight, WalkError> {
+        let around = self.cached_views(viewpoint)?;
+        let scores = self.phrase_scores(viewpoint, &around, phrases)?;
+        let seen = |view: usize| SightView { scores: scores[view].clone(), onward: around.onward[view].clone() };
+        Ok(NodeSight { views: std::array::from_fn(seen) })
     }
 
     /// The object around a node that a phrase fits best, where the grounder can name one.
     ///
     /// # Errors
     /// When the platform gives no view, or the grounder fails.
-    pub fn point(&self, viewpoint: &ViewpointId, phrase: &str) -> Result<Option<ObjectId>, WalkError> {
-        let around = self.around(viewpoint)?;
-        Ok(self.grounder.point(&around.views.each_ref(), phrase)?)
+    pub fn point_at_object(&self, viewpoint: &ViewpointId, phrase: &str) -> Result<Option<ObjectId>, WalkError> {
+        let around = self.cached_views(viewpoint)?;
+        Ok(self.grounder.point_to_object(&around.views.each_ref(), phrase)?)
     }
 
     /// The four views of a node, from north clockwise. They are not cached, because the pictures of many walks would fill the
@@ -101,13 +102,13 @@ impl<'a> AgentView<'a> {
     ///
     /// # Errors
     /// When the platform gives no view.
-    pub(crate) fn views(&self, viewpoint: &ViewpointId) -> Result<[View; 4], WalkError> {
+    pub(crate) fn views_around(&self, viewpoint: &ViewpointId) -> Result<[View; 4], WalkError> {
         Ok(self.look_around(viewpoint)?.views)
     }
 
     /// Where a node is, metres, world frame.
-    pub(crate) fn position(&self, viewpoint: &ViewpointId) -> DVec3 {
-        self.graph.position(viewpoint).unwrap_or_default()
+    pub(crate) fn node_position(&self, viewpoint: &ViewpointId) -> DVec3 {
+        self.graph.position_of(viewpoint).unwrap_or_default()
     }
 
     /// The direction from one node to another; `None` if one is straight above the other.
@@ -115,7 +116,7 @@ impl<'a> AgentView<'a> {
         heading_to(&self.graph, from, to)
     }
 
-    fn around(&self, viewpoint: &ViewpointId) -> Result<Arc<Around>, WalkError> {
+    fn cached_views(&self, viewpoint: &ViewpointId) -> Result<Arc<NodeViews>, WalkError> {
         if let Some(around) = self.around.lock().unwrap_or_else(PoisonError::into_inner).get(viewpoint) {
             return Ok(Arc::clone(around));
         }
@@ -124,24 +125,32 @@ impl<'a> AgentView<'a> {
         Ok(Arc::clone(all.entry(viewpoint.clone()).or_insert(around)))
     }
 
-    fn look_around(&self, viewpoint: &ViewpointId) -> Result<Around, WalkError> {
+    fn look_around(&self, viewpoint: &ViewpointId) -> Result<NodeViews, WalkError> {
         let frame = frame_at(&self.graph, &self.scene, viewpoint)?;
-        let look = |gaze: Gaze| match self.needs_pictures {
-            true => self.platform.look(&self.scene, &frame, gaze),
+        let look = |gaze: ViewGaze| match self.needs_pictures {
+            true => self.platform.look_from(&self.scene, &frame, gaze),
             false => self.platform.look_without_picture(&self.scene, &frame, gaze),
         };
-        let [north, east, south, west] = Gaze::compass();
+        let [north, east, south, west] = ViewGaze::compass_views();
         let views = [look(north)?, look(east)?, look(south)?, look(west)?];
-        Ok(Around { views, onward: Gaze::compass().map(|gaze| onward(&self.graph, viewpoint, gaze)) })
+        Ok(NodeViews {
+            views,
+            onward: ViewGaze::compass_views().map(|gaze| neighbours_in_view(&self.graph, viewpoint, gaze)),
+        })
     }
 
-    fn scores(&self, viewpoint: &ViewpointId, around: &Around, phrases: &[String]) -> Result<Scores, WalkError> {
+    fn phrase_scores(
+        &self,
+        viewpoint: &ViewpointId,
+        around: &NodeViews,
+        phrases: &[String],
+    ) -> Result<ViewScores, WalkError> {
         let key = (viewpoint.clone(), phrases.to_vec());
         if let Some(scores) = self.scores.lock().unwrap_or_else(PoisonError::into_inner).get(&key) {
             return Ok(Arc::clone(scores));
         }
         let phrases: Vec<&str> = phrases.iter().map(String::as_str).collect();
-        let told = self.grounder.ground(&around.views.each_ref(), &phrases);
+        let told = self.grounder.score_phrases(&around.views.each_ref(), &phrases);
         let told = told.into_iter().collect::<Result<Vec<_>, _>>()?;
         let whole = told.iter().all(|scores| scores.len() == phrases.len() && scores.iter().all(|one| one.is_finite()));
         let scores = <[Vec<f32>; 4]>::try_from(told).ok().filter(|_| whole);
@@ -154,23 +163,23 @@ impl<'a> AgentView<'a> {
 /// A frame at a node, looking north.
 pub(crate) fn frame_at(graph: &ViewpointGraph, scene: &SceneId, viewpoint: &ViewpointId) -> Result<Frame, WalkError> {
     let unknown = || WalkError::Unknown { scene: scene.clone(), viewpoint: viewpoint.clone() };
-    let position = graph.position(viewpoint).ok_or_else(unknown)?;
-    let pose = Pose::level(position, Heading::NORTH);
-    Ok(Frame { pose, viewpoint: Some(viewpoint.clone()), level: graph.level(viewpoint) })
+    let position = graph.position_of(viewpoint).ok_or_else(unknown)?;
+    let pose = Pose::looking_level(position, Heading::NORTH);
+    Ok(Frame { pose, viewpoint: Some(viewpoint.clone()), level: graph.level_of(viewpoint) })
 }
 
 /// The direction from one node to another; `None` if one is straight above the other.
 pub(crate) fn heading_to(graph: &ViewpointGraph, from: &ViewpointId, to: &ViewpointId) -> Option<Heading> {
-    Heading::towards(graph.position(from)?, graph.position(to)?)
+    Heading::towards(graph.position_of(from)?, graph.position_of(to)?)
 }
 
 /// The neighbours that lie in a view, nearest first. A neighbour straight above or below counts as north, because every
 /// neighbour must be in one of the views.
-fn onward(graph: &ViewpointGraph, from: &ViewpointId, gaze: Gaze) -> Vec<ViewpointId> {
-    let position = |id: &ViewpointId| graph.position(id).unwrap_or_default();
+fn neighbours_in_view(graph: &ViewpointGraph, from: &ViewpointId, gaze: ViewGaze) -> Vec<ViewpointId> {
+    let position = |id: &ViewpointId| graph.position_of(id).unwrap_or_default();
     let here = position(from);
-    let lies_in = |to: &&ViewpointId| gaze.holds(heading_to(graph, from, to).unwrap_or(Heading::NORTH));
-    let mut in_view: Vec<&ViewpointId> = graph.neighbours(from).into_iter().filter(lies_in).collect();
+    let lies_in = |to: &&ViewpointId| gaze.holds_heading(heading_to(graph, from, to).unwrap_or(Heading::NORTH));
+    let mut in_view: Vec<&ViewpointId> = graph.neighbours_of(from).into_iter().filter(lies_in).collect();
     in_view.sort_by(|a, b| here.distance(position(a)).total_cmp(&here.distance(position(b))));
     in_view.into_iter().cloned().collect()
 }
@@ -185,19 +194,19 @@ mod tests {
     /// Gives the same scores to every view.
     struct Says(Vec<f32>);
 
-    impl Grounder for Says {
+    impl PhraseGrounder for Says {
         fn name(&self) -> &str {
             "says"
         }
 
-        fn ground(&self, views: &[&View], _: &[&str]) -> Vec<Result<Vec<f32>, ModelError>> {
+        fn score_phrases(&self, views: &[&View], _: &[&str]) -> Vec<Result<Vec<f32>, ModelError>> {
             views.iter().map(|_| Ok(self.0.clone())).collect()
         }
     }
 
-    fn told(grounder: &Says, phrases: usize) -> Result<Sight, WalkError> {
+    fn told(grounder: &Says, phrases: usize) -> Result<NodeSight, WalkError> {
         let world = Cross::new(&[]);
-        AgentView::new(&world, grounder, false, &scene())?.look(&id("middle"), &vec!["a sink".to_owned(); phrases])
+        AgentView::new(&world, grounder, false, &scene())?.look_from(&id("middle"), &vec!["a sink".to_owned(); phrases])
     }
 
     #[test]
@@ -212,7 +221,10 @@ mod tests {
         let (world, grounder) = (Cross::new(&[]), Says(vec![0.5]));
         let agent_view = AgentView::new(&world, &grounder, false, &scene()).unwrap();
         let phrases = ["a sink".to_owned()];
-        assert_eq!(agent_view.look(&id("n1"), &phrases).unwrap(), agent_view.look(&id("n1"), &phrases).unwrap());
+        assert_eq!(
+            agent_view.look_from(&id("n1"), &phrases).unwrap(),
+            agent_view.look_from(&id("n1"), &phrases).unwrap()
+        );
         assert_eq!(world.looks.load(Ordering::Relaxed), 4);
     }
 
@@ -223,7 +235,7 @@ mod tests {
             assert!(matches!(error, WalkError::Unusable { .. }) && !error.ends_run(), "{error}");
         }
         let world = Cross::new(&[]);
-        let nowhere = AgentView::new(&world, &Says(vec![]), false, &scene()).unwrap().look(&id("attic"), &[]);
+        let nowhere = AgentView::new(&world, &Says(vec![]), false, &scene()).unwrap().look_from(&id("attic"), &[]);
         assert!(matches!(nowhere, Err(WalkError::Unknown { .. })));
     }
 }

@@ -1,6 +1,6 @@
 //! A platform for tests: a cross of corridors, with a thing at the end of each arm.
 
-use crate::agents::Start;
+use crate::agents::AgentStart;
 use std::{
     collections::{BTreeMap, BTreeSet},
     sync::{
@@ -9,8 +9,8 @@ use std::{
     },
 };
 use wayword_core::{
-    DVec3, Frame, Gaze, GroundTruth, Heading, Label, ObjectId, Path, PathRequest, Platform, PlatformError, Pose,
-    SceneId, View, ViewpointGraph, ViewpointId,
+    DVec3, Frame, GroundTruth, Heading, ObjectId, ObjectLabel, Path, PathRequest, Platform, PlatformError, Pose,
+    SceneId, View, ViewGaze, ViewpointGraph, ViewpointId,
 };
 
 /// Arms of two nodes to the north, east, south and west of `middle`: `n1`, `n2`, `e1` and so on. Beyond the end of each arm is a
@@ -44,14 +44,14 @@ impl Cross {
     /// The things at the ends of the arms.
     pub(crate) fn new(things: &[(&'static str, &'static str)]) -> Self {
         let mut graph = ViewpointGraph::default();
-        graph.add(id("middle"), DVec3::ZERO, Some(1)).unwrap();
+        graph.add_viewpoint(id("middle"), DVec3::ZERO, Some(1)).unwrap();
         for (arm, deg) in ARMS {
-            let out = Heading::new(f64::to_radians(deg)).unwrap().direction();
+            let out = Heading::new(f64::to_radians(deg)).unwrap().unit_vector();
             let mut before = id("middle");
             for at in 1..=2 {
                 let node = id(&format!("{arm}{at}"));
-                graph.add(node.clone(), out * 2.0 * f64::from(at), Some(1)).unwrap();
-                graph.join(&before, &node).unwrap();
+                graph.add_viewpoint(node.clone(), out * 2.0 * f64::from(at), Some(1)).unwrap();
+                graph.join_viewpoints(&before, &node).unwrap();
                 before = node;
             }
         }
@@ -82,8 +82,8 @@ impl Cross {
     }
 
     /// The thing that is seen from a node.
-    pub(crate) fn labels(&self, node: &ViewpointId) -> Vec<Label> {
-        let label = |name: &&str| Label {
+    pub(crate) fn labels(&self, node: &ViewpointId) -> Vec<ObjectLabel> {
+        let label = |name: &&str| ObjectLabel {
             object: ObjectId::new(*name).unwrap(),
             name: (*name).to_owned(),
             heading: outward(node.as_str()),
@@ -97,8 +97,8 @@ impl Cross {
     }
 
     /// In the middle, looking north.
-    pub(crate) fn start() -> Start {
-        Start { scene: scene(), viewpoint: id("middle"), heading: Heading::NORTH }
+    pub(crate) fn start() -> AgentStart {
+        AgentStart { scene: scene(), viewpoint: id("middle"), heading: Heading::NORTH }
     }
 }
 
@@ -107,11 +107,11 @@ impl Platform for Cross {
         "cross"
     }
 
-    fn scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
+    fn list_scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
         Ok(vec![scene()])
     }
 
-    fn graph(&self, _: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {
+    fn graph_for_scene(&self, _: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {
         Ok(Arc::clone(&self.graph))
     }
 
@@ -119,14 +119,14 @@ impl Platform for Cross {
         panic!("no test here samples a path")
     }
 
-    fn look(&self, _: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
+    fn look_from(&self, _: &SceneId, from: &Frame, gaze: ViewGaze) -> Result<View, PlatformError> {
         self.looks.fetch_add(1, Ordering::Relaxed);
         let node = from.viewpoint.clone().unwrap();
-        let labels = if gaze.holds(outward(node.as_str())) { self.labels(&node) } else { Vec::new() };
+        let labels = if gaze.holds_heading(outward(node.as_str())) { self.labels(&node) } else { Vec::new() };
         let room = self.rooms.get(node.as_str()).map(|room| (*room).to_owned());
         self.looked_from.lock().unwrap().insert(node);
         let truth = self.has_labels.then_some(GroundTruth { labels, lists_objects: true, room });
-        Ok(View::new(Pose::level(from.pose.position, gaze.heading), gaze.horizontal_fov_rad, None, truth))
+        Ok(View::new(Pose::looking_level(from.pose.position, gaze.heading), gaze.horizontal_fov_rad, None, truth))
     }
 
     fn object_name(&self, _: &SceneId, _: &Frame, _: &ObjectId) -> Result<Option<String>, PlatformError> {

@@ -1,13 +1,13 @@
 //! The record of one walk: every step of an agent, why the walk ended, and what it cost. It is a line of the file of walks, so the
 //! field names are part of a file format.
 
-use crate::directions::Directions;
+use crate::directions::SplitInstruction;
 use serde::{Deserialize, Serialize};
 use wayword_core::{Heading, ObjectId, SceneId, ViewpointId};
 
 /// One agent's walk by one instruction.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Walk {
+pub struct AgentWalkRecord {
     /// The agent (`clip-nav`, `random/5`).
     pub agent: String,
     /// Which set the instruction is from (`original`, `central`), or how an original was swapped (`original~other-path`).
@@ -22,45 +22,45 @@ pub struct Walk {
     pub scene: SceneId,
     /// The instruction as it was split for the agent; `None` for an agent that does not read.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub directions: Option<Directions>,
+    pub directions: Option<SplitInstruction>,
     /// Every node at which it stood, in order; at least the start.
-    pub steps: Vec<Step>,
+    pub steps: Vec<AgentStep>,
     /// Why it ended.
-    pub end: End,
+    pub end: WalkEnd,
     /// The object that it takes for the target, where its grounder can name one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub object: Option<ObjectId>,
     /// Calls, tokens and cost, for an agent with a language model.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub effort: Option<Effort>,
+    pub effort: Option<WalkEffort>,
 }
 
 /// A stop at a node, and the agent's decision there.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Step {
+pub struct AgentStep {
     /// The node.
     pub viewpoint: ViewpointId,
     /// The direction of the hop that led here; at the start the episode's.
     pub heading_rad: Heading,
     /// The scores of the four views. Empty on the way back over nodes, and for agents that do not look.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub views: Vec<Scored>,
+    pub views: Vec<StepViewScores>,
     /// The current key phrase when it looked, from 0; beyond the last where only the activity is left.
     #[serde(default)]
     pub phrase: usize,
     /// A summary of the surroundings, for an agent that reads; `None` for the others.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub told: Option<Told>,
+    pub told: Option<SurroundingsSummary>,
     /// Its decision.
-    pub choice: Choice,
+    pub choice: StepChoice,
     /// The reason, in the words of the model that decided; `None` if no model decided, or it gave no reason.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
 }
 
-impl Step {
+impl AgentStep {
     /// A stop without views, surroundings or a reason.
-    pub(crate) fn new(viewpoint: ViewpointId, heading_rad: Heading, choice: Choice) -> Self {
+    pub(crate) fn new(viewpoint: ViewpointId, heading_rad: Heading, choice: StepChoice) -> Self {
         Self { viewpoint, heading_rad, views: Vec::new(), phrase: 0, told: None, choice, reason: None }
     }
 }
@@ -68,7 +68,7 @@ impl Step {
 /// Calls, tokens and cost of one walk of an agent with a language model. Calls of a model that only describes pictures are not
 /// counted.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct Effort {
+pub struct WalkEffort {
     /// Calls of the model.
     pub calls: usize,
     /// How often it looked around.
@@ -86,7 +86,7 @@ pub struct Effort {
     pub seconds: f64,
     /// Counts of useless replies.
     #[serde(default)]
-    pub useless: Useless,
+    pub useless: UselessReplies,
     /// The problem of the last useless reply, and how that reply began.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub last_useless: Option<String>,
@@ -97,7 +97,7 @@ pub struct Effort {
 
 /// Counts of useless replies, by problem.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Useless {
+pub struct UselessReplies {
     /// The reply calls no tool.
     pub no_call: usize,
     /// The reply names a way that does not exist.
@@ -108,7 +108,7 @@ pub struct Useless {
     pub failed: usize,
 }
 
-impl Useless {
+impl UselessReplies {
     /// The number of all useless replies.
     #[must_use]
     pub fn sum(&self) -> usize {
@@ -120,7 +120,7 @@ impl Useless {
 /// values, because files contain many of them.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(from = "(f32, f32, usize)", into = "(f32, f32, usize)")]
-pub struct Scored {
+pub struct StepViewScores {
     /// How well the current key phrase fits it.
     pub phrase: f32,
     /// How well the activity fits it.
@@ -131,7 +131,7 @@ pub struct Scored {
 
 /// A summary of what an agent that reads learned at a step.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Told {
+pub struct SurroundingsSummary {
     /// The room, if it was given to the agent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub room: Option<String>,
@@ -144,7 +144,7 @@ pub struct Told {
 /// The agent's decision at a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Choice {
+pub enum StepChoice {
     /// Went on through one of the four views, from 0.
     Onward(usize),
     /// Went on without looking (baselines, upper bounds, and agents that know the map).
@@ -158,7 +158,7 @@ pub enum Choice {
 /// Why a walk ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum End {
+pub enum WalkEnd {
     /// The agent took the place for the goal.
     Stopped,
     /// It had made the most steps that it may.
@@ -175,14 +175,14 @@ pub enum End {
     NoUse,
 }
 
-impl From<(f32, f32, usize)> for Scored {
+impl From<(f32, f32, usize)> for StepViewScores {
     fn from((phrase, activity, ways): (f32, f32, usize)) -> Self {
         Self { phrase, activity, ways }
     }
 }
 
-impl From<Scored> for (f32, f32, usize) {
-    fn from(scored: Scored) -> Self {
+impl From<StepViewScores> for (f32, f32, usize) {
+    fn from(scored: StepViewScores) -> Self {
         (scored.phrase, scored.activity, scored.ways)
     }
 }

@@ -3,16 +3,16 @@
 
 use rand::Rng;
 use std::f64::consts::TAU;
-use wayword_core::rng;
+use wayword_core::seeded_rng;
 
 /// A number from the uniform distribution on [0, 1).
-pub(crate) fn uniform(seed: u64, purpose: &[&str]) -> f64 {
-    rng(seed, purpose).random()
+pub(crate) fn draw_uniform(seed: u64, purpose: &[&str]) -> f64 {
+    seeded_rng(seed, purpose).random()
 }
 
 /// A number from the standard normal distribution.
-pub(crate) fn normal(seed: u64, purpose: &[&str]) -> f64 {
-    normal_pair(&mut rng(seed, purpose))[0]
+pub(crate) fn draw_normal(seed: u64, purpose: &[&str]) -> f64 {
+    normal_pair(&mut seeded_rng(seed, purpose))[0]
 }
 
 /// Two independent numbers from the standard normal distribution (Box and Muller, "A note on the generation of random
@@ -30,7 +30,7 @@ mod tests {
 
     #[test]
     fn normal_numbers_have_their_mean_and_spread() {
-        let mut dice = rng(1, &["test"]);
+        let mut dice = seeded_rng(1, &["test"]);
         let drawn: Vec<f64> = (0..20_000).flat_map(|_| normal_pair(&mut dice)).collect();
         let mean = drawn.iter().sum::<f64>() / drawn.len() as f64;
         let variance = drawn.iter().map(|x| x * x).sum::<f64>() / drawn.len() as f64;

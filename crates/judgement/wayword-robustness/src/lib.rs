@@ -17,7 +17,7 @@ pub mod ratio;
 pub mod sets;
 pub mod worlds;
 
-pub use agreement::Agreement;
-pub use change::{Change, ChangeError, Dose, Elsewhere, Sees, Setting, Whole};
-pub use facts::{Facts, Floor};
+pub use agreement::TextAgreement;
+pub use change::{Change, ChangeError, ChangeSetting, DoseKind, OtherPlatform, SightSource, WholeChange};
+pub use facts::{FloorFact, TextFacts};
 pub use paths::ChangedPath;

@@ -3,11 +3,11 @@
 //! Two anchors fix the scale. R is 1 if the text after the change agrees with the original as well as a text for the same unchanged
 //! world that is simply generated again, and 0 if it agrees no better than the text of another path.
 
-use crate::agreement::Agreement;
+use crate::agreement::TextAgreement;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use wayword_core::seed::derive;
-use wayword_metrics::{Estimate, percentile_interval};
+use wayword_core::seed::derive_seed;
+use wayword_metrics::{MeanEstimate, percentile_interval};
 
 /// Fewest paths for which R is computed.
 pub const LEAST_PATHS: usize = 30;
@@ -15,28 +15,28 @@ pub const LEAST_PATHS: usize = 30;
 pub const LEAST_GAP: f64 = 0.1;
 
 /// The kinds of statements, and the mean of all.
-pub const KINDS: [&str; 5] = ["landmarks", "turns", "rooms", "floors", "mean"];
+pub const STATEMENT_KINDS: [&str; 5] = ["landmarks", "turns", "rooms", "floors", "mean"];
 
 /// The agreements of the original text of one path with three other texts.
 #[derive(Debug, Clone, PartialEq)]
-pub struct OfPath {
+pub struct PathAgreements {
     /// Its scene. Texts of one scene are not independent.
     pub scene: String,
     /// With the text in the changed world.
-    pub changed: Agreement,
+    pub changed: TextAgreement,
     /// With a second text in the unchanged world.
-    pub again: Agreement,
+    pub again: TextAgreement,
     /// With the text of another path.
-    pub other: Agreement,
+    pub other: TextAgreement,
 }
 
 /// R for one kind of statement.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Robustness {
-    /// One of [`KINDS`].
+pub struct RobustnessRatio {
+    /// One of [`STATEMENT_KINDS`].
     pub kind: String,
     /// The ratio with its interval.
-    pub r: Option<Estimate>,
+    pub r: Option<MeanEstimate>,
     /// Why R cannot be computed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
@@ -52,7 +52,7 @@ pub struct Robustness {
 
 /// Options of the bootstrap that gives intervals.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Drawing {
+pub struct BootstrapOptions {
     /// Number of resamples.
     pub resamples: usize,
     /// The confidence level, as 0.95.
@@ -67,19 +67,19 @@ pub struct Drawing {
 /// the mean of kinds, each path counts with the kinds that all three comparisons have. The interval is a percentile bootstrap over
 /// whole scenes (Efron 1979), in which both anchors vary with the resample; resamples with equal anchors are left out.
 #[must_use]
-pub fn robustness(paths: &[OfPath], drawing: Drawing) -> Vec<Robustness> {
-    KINDS.iter().enumerate().map(|(kind, name)| of_kind(paths, kind, name, drawing)).collect()
+pub fn robustness_ratios(paths: &[PathAgreements], drawing: BootstrapOptions) -> Vec<RobustnessRatio> {
+    STATEMENT_KINDS.iter().enumerate().map(|(kind, name)| of_kind(paths, kind, name, drawing)).collect()
 }
 
-fn of_kind(paths: &[OfPath], kind: usize, name: &str, drawing: Drawing) -> Robustness {
-    let mut scenes: BTreeMap<&str, Sum> = BTreeMap::new();
+fn of_kind(paths: &[PathAgreements], kind: usize, name: &str, drawing: BootstrapOptions) -> RobustnessRatio {
+    let mut scenes: BTreeMap<&str, AgreementSum> = BTreeMap::new();
     for path in paths {
-        if let Some(three) = three(path, kind) {
-            scenes.entry(&path.scene).or_default().add(&three);
+        if let Some(three) = three_agreements(path, kind) {
+            scenes.entry(&path.scene).or_default().add_path(&three);
         }
     }
-    let scenes: Vec<Sum> = scenes.into_values().collect();
-    let all = scenes.iter().fold(Sum::default(), |all, scene| all.plus(scene));
+    let scenes: Vec<AgreementSum> = scenes.into_values().collect();
+    let all = scenes.iter().fold(AgreementSum::default(), |all, scene| all.plus(scene));
     let gap = all.mean(1) - all.mean(2);
     let reason = match all.paths {
         0 => Some("no path has such statements".to_owned()),
@@ -94,9 +94,9 @@ fn of_kind(paths: &[OfPath], kind: usize, name: &str, drawing: Drawing) -> Robus
         _ => None,
     };
     let known = |of: usize| (all.paths > 0).then(|| all.mean(of));
-    Robustness {
+    RobustnessRatio {
         kind: name.to_owned(),
-        r: reason.is_none().then(|| interval(&scenes, &all, name, drawing)),
+        r: reason.is_none().then(|| ratio_interval(&scenes, &all, name, drawing)),
         reason,
         changed: known(0),
         again: known(1),
@@ -106,8 +106,8 @@ fn of_kind(paths: &[OfPath], kind: usize, name: &str, drawing: Drawing) -> Robus
 }
 
 /// The three agreements of a path for a kind, or for the mean of the kinds that all three have.
-fn three(path: &OfPath, kind: usize) -> Option<[f64; 3]> {
-    let kinds = [path.changed.kinds(), path.again.kinds(), path.other.kinds()];
+fn three_agreements(path: &PathAgreements, kind: usize) -> Option<[f64; 3]> {
+    let kinds = [path.changed.by_kind(), path.again.by_kind(), path.other.by_kind()];
     let of = |kind: usize| Some([kinds[0][kind]?, kinds[1][kind]?, kinds[2][kind]?]);
     if kind < kinds[0].len() {
         return of(kind);
@@ -119,13 +119,13 @@ fn three(path: &OfPath, kind: usize) -> Option<[f64; 3]> {
 
 /// Sums over paths.
 #[derive(Debug, Clone, Copy, Default)]
-struct Sum {
+struct AgreementSum {
     of: [f64; 3],
     paths: usize,
 }
 
-impl Sum {
-    fn add(&mut self, three: &[f64; 3]) {
+impl AgreementSum {
+    fn add_path(&mut self, three: &[f64; 3]) {
         *self = self.plus(&Self { of: *three, paths: 1 });
     }
 
@@ -142,22 +142,23 @@ impl Sum {
     }
 }
 
-fn interval(scenes: &[Sum], all: &Sum, name: &str, drawing: Drawing) -> Estimate {
+fn ratio_interval(scenes: &[AgreementSum], all: &AgreementSum, name: &str, drawing: BootstrapOptions) -> MeanEstimate {
     let draw = |resample: usize, at: usize| {
         let words = ["robustness", name, &resample.to_string(), &at.to_string()];
-        &scenes[(derive(drawing.seed, &words) >> 16) as usize % scenes.len()]
+        &scenes[(derive_seed(drawing.seed, &words) >> 16) as usize % scenes.len()]
     };
-    let resampled = |resample: usize| (0..scenes.len()).fold(Sum::default(), |sum, at| sum.plus(draw(resample, at)));
-    let apart = |sum: &Sum| sum.mean(1) - sum.mean(2) > f64::EPSILON;
+    let resampled =
+        |resample: usize| (0..scenes.len()).fold(AgreementSum::default(), |sum, at| sum.plus(draw(resample, at)));
+    let apart = |sum: &AgreementSum| sum.mean(1) - sum.mean(2) > f64::EPSILON;
     let ratios = (0..drawing.resamples.max(1)).map(resampled).filter(apart).map(|sum| sum.ratio()).collect();
     let mean = all.ratio();
     let [low, high] = percentile_interval(ratios, drawing.level).unwrap_or([mean; 2]);
-    Estimate { mean, low, high, values: all.paths, clusters: scenes.len() }
+    MeanEstimate { mean, low, high, values: all.paths, clusters: scenes.len() }
 }
 
 /// The change of R per unit of the dose: the slope of a least squares line. `None` for fewer than two different doses.
 #[must_use]
-pub fn slope(points: &[(f64, f64)]) -> Option<f64> {
+pub fn dose_slope(points: &[(f64, f64)]) -> Option<f64> {
     let count = points.len() as f64;
     let (dose, ratio) = (
         points.iter().map(|point| point.0).sum::<f64>() / count,
@@ -195,14 +196,14 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    const DRAWING: Drawing = Drawing { resamples: 400, level: 0.95, seed: 1 };
+    const DRAWING: BootstrapOptions = BootstrapOptions { resamples: 400, level: 0.95, seed: 1 };
 
-    fn turns(share: f64) -> Agreement {
-        Agreement { turns: Some(share), ..Agreement::default() }
+    fn turns(share: f64) -> TextAgreement {
+        TextAgreement { turns: Some(share), ..TextAgreement::default() }
     }
 
-    fn paths(count: usize, changed: impl Fn(usize) -> f64) -> Vec<OfPath> {
-        let path = |at: usize| OfPath {
+    fn paths(count: usize, changed: impl Fn(usize) -> f64) -> Vec<PathAgreements> {
+        let path = |at: usize| PathAgreements {
             scene: format!("house2-{}", at % 10),
             changed: turns(changed(at)),
             again: turns(0.8),
@@ -211,8 +212,8 @@ mod tests {
         (0..count).map(path).collect()
     }
 
-    fn of_turns(paths: &[OfPath]) -> Robustness {
-        robustness(paths, DRAWING).remove(1)
+    fn of_turns(paths: &[PathAgreements]) -> RobustnessRatio {
+        robustness_ratios(paths, DRAWING).remove(1)
     }
 
     #[test]
@@ -233,14 +234,14 @@ mod tests {
         let mut near = paths(40, |_| 0.5);
         near.iter_mut().for_each(|path| path.other = turns(0.75));
         assert!(of_turns(&near).reason.unwrap().contains("0.1 apart"));
-        assert_eq!(robustness(&near, DRAWING)[0].reason.as_deref(), Some("no path has such statements"));
+        assert_eq!(robustness_ratios(&near, DRAWING)[0].reason.as_deref(), Some("no path has such statements"));
     }
 
     #[test]
     fn the_mean_takes_the_kinds_that_all_three_have() {
         let mut paths = paths(40, |_| 0.8);
         paths.iter_mut().for_each(|path| path.changed.rooms = Some(0.0));
-        assert_eq!(robustness(&paths, DRAWING)[4].r.unwrap().mean, 1.0);
+        assert_eq!(robustness_ratios(&paths, DRAWING)[4].r.unwrap().mean, 1.0);
     }
 
     #[test]
@@ -250,8 +251,8 @@ mod tests {
         assert_eq!(falls(&[(60.0, 0.5), (120.0, 0.9)], 90.0), [75.0]);
         assert!(falls(&[(1.0, 0.9)], 0.0).is_empty());
         assert_eq!(falls_at(&[(3.0, 0.5), (1.0, 1.0)], None, 0.75), [2.0]);
-        assert_eq!(slope(&[(0.0, 1.0), (2.0, 0.5)]), Some(-0.25));
-        assert_eq!(slope(&[(1.0, 0.5)]), None);
+        assert_eq!(dose_slope(&[(0.0, 1.0), (2.0, 0.5)]), Some(-0.25));
+        assert_eq!(dose_slope(&[(1.0, 0.5)]), None);
     }
 
     proptest! {

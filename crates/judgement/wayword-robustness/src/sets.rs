@@ -1,16 +1,16 @@
 //! Compares several sets of texts for the same buildings: how an agent's success varies between the sets, and whether the sets rank
 //! agents alike.
 
-use crate::ratio::Drawing;
+use crate::ratio::BootstrapOptions;
 use rand::Rng;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
-use wayword_core::rng;
+use wayword_core::seeded_rng;
 use wayword_metrics::{kendall_tau_b, percentile_interval};
 
 /// An agent's success with one text.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Followed {
+pub struct FollowResult {
     /// The agent.
     pub agent: String,
     /// The set of the text.
@@ -29,7 +29,7 @@ pub struct Followed {
 
 /// An agent's success rates with several sets.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct OfAgent {
+pub struct AgentSuccess {
     /// The agent.
     pub agent: String,
     /// Its success rate with each set, over the paths that all sets have. Each path counts once, with the mean of its texts.
@@ -41,12 +41,12 @@ pub struct OfAgent {
     /// The number of paths.
     pub paths: usize,
     /// From where the variance of success comes.
-    pub shares: Option<Shares>,
+    pub shares: Option<VarianceShares>,
 }
 
 /// The sources of the variance of success, as shares that add up to 1. Each has a value and the two bounds of its interval.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Shares {
+pub struct VarianceShares {
     /// From scene to scene.
     pub scene: [f64; 3],
     /// From path to path within a scene.
@@ -59,7 +59,7 @@ pub struct Shares {
 
 /// Whether two sets rank agents alike.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Ranking {
+pub struct RankingAgreement {
     /// One set.
     pub one: String,
     /// The other.
@@ -71,37 +71,37 @@ pub struct Ranking {
 }
 
 /// By scene and path: for each set the sum and the number of its successes.
-type Sums<'a> = BTreeMap<&'a str, BTreeMap<&'a str, Vec<(f64, usize)>>>;
+type SuccessSums<'a> = BTreeMap<&'a str, BTreeMap<&'a str, Vec<(f64, usize)>>>;
 
 /// Success by path: for each scene its paths, for each path a mean for each set.
-type Table = Vec<Vec<Vec<f64>>>;
+type SuccessTable = Vec<Vec<Vec<f64>>>;
 
 /// Computes the success rates of each agent with the sets. Only paths that the agent has walked with every set count.
 #[must_use]
-pub fn of_agents(followed: &[Followed], drawing: Drawing) -> Vec<OfAgent> {
+pub fn agent_success_rates(followed: &[FollowResult], drawing: BootstrapOptions) -> Vec<AgentSuccess> {
     let sets: Vec<&str> = followed.iter().map(|one| one.set.as_str()).collect::<BTreeSet<_>>().into_iter().collect();
     let agents: BTreeSet<&str> = followed.iter().map(|one| one.agent.as_str()).collect();
     let of_agent = |agent: &str| {
-        let table = table(followed, agent, &sets);
+        let table = success_table(followed, agent, &sets);
         let rows: Vec<&Vec<f64>> = table.iter().flatten().collect();
         let mean = |at: usize| rows.iter().map(|row| row[at]).sum::<f64>() / rows.len().max(1) as f64;
         let means: Vec<f64> = (0..sets.len()).map(mean).collect();
         let all = means.iter().sum::<f64>() / means.len().max(1) as f64;
         let squares: f64 = means.iter().map(|one| (one - all) * (one - all)).sum();
-        OfAgent {
+        AgentSuccess {
             agent: agent.to_owned(),
             of_set: sets.iter().map(|set| (*set).to_owned()).zip(means.iter().copied()).collect(),
             mean: all,
             spread: (means.len() > 1).then(|| (squares / (means.len() - 1) as f64).sqrt()),
             paths: rows.len(),
-            shares: shares(&table, drawing),
+            shares: variance_shares(&table, drawing),
         }
     };
     agents.into_iter().map(of_agent).filter(|found| found.paths > 0).collect()
 }
 
-fn table(followed: &[Followed], agent: &str, sets: &[&str]) -> Table {
-    let mut sums = Sums::new();
+fn success_table(followed: &[FollowResult], agent: &str, sets: &[&str]) -> SuccessTable {
+    let mut sums = SuccessSums::new();
     for one in followed.iter().filter(|one| one.agent == agent) {
         let Ok(at) = sets.binary_search(&one.set.as_str()) else { continue };
         let row = sums.entry(&one.scene).or_default().entry(&one.path).or_insert_with(|| vec![(0.0, 0); sets.len()]);
@@ -116,14 +116,14 @@ fn table(followed: &[Followed], agent: &str, sets: &[&str]) -> Table {
 }
 
 /// The shares of variance with their intervals; `None` without two sets, two scenes, and a scene with two paths.
-fn shares(table: &Table, drawing: Drawing) -> Option<Shares> {
+fn variance_shares(table: &SuccessTable, drawing: BootstrapOptions) -> Option<VarianceShares> {
     let all: Vec<&Vec<Vec<f64>>> = table.iter().collect();
-    let found = components(&all)?;
-    let mut dice = rng(drawing.seed, &["shares of variance"]);
+    let found = variance_components(&all)?;
+    let mut dice = seeded_rng(drawing.seed, &["shares of variance"]);
     let mut drawn: [Vec<f64>; 4] = Default::default();
     for _ in 0..drawing.resamples {
         let scenes: Vec<&Vec<Vec<f64>>> = (0..all.len()).map(|_| all[dice.random_range(0..all.len())]).collect();
-        for (values, share) in drawn.iter_mut().zip(components(&scenes).into_iter().flatten()) {
+        for (values, share) in drawn.iter_mut().zip(variance_components(&scenes).into_iter().flatten()) {
             values.push(share);
         }
     }
@@ -131,13 +131,18 @@ fn shares(table: &Table, drawing: Drawing) -> Option<Shares> {
         let [low, high] = percentile_interval(drawn[at].clone(), drawing.level).unwrap_or([found[at]; 2]);
         [found[at], low, high]
     };
-    Some(Shares { scene: with_interval(0), path: with_interval(1), set: with_interval(2), rest: with_interval(3) })
+    Some(VarianceShares {
+        scene: with_interval(0),
+        path: with_interval(1),
+        set: with_interval(2),
+        rest: with_interval(3),
+    })
 }
 
 /// The shares of scene, path, set and the rest, by a random effects model. Paths are nested in scenes and crossed with sets. The
 /// components are estimated by the method of moments: mean squares are set equal to their expected values (Searle, Casella, McCulloch,
 /// "Variance Components", 1992, ch. 4). A negative component counts as 0.
-fn components(scenes: &[&Vec<Vec<f64>>]) -> Option<[f64; 4]> {
+fn variance_components(scenes: &[&Vec<Vec<f64>>]) -> Option<[f64; 4]> {
     let rows: Vec<&Vec<f64>> = scenes.iter().flat_map(|scene| scene.iter()).collect();
     let (paths, sets) = (rows.len(), rows.first()?.len());
     if sets < 2 || scenes.len() < 2 || paths == scenes.len() {
@@ -180,14 +185,14 @@ fn components(scenes: &[&Vec<Vec<f64>>]) -> Option<[f64; 4]> {
 
 /// Computes for each pair of sets whether they rank the agents alike, over the paths that every agent has walked with every set.
 #[must_use]
-pub fn rankings(followed: &[Followed], drawing: Drawing) -> Vec<Ranking> {
+pub fn compare_rankings(followed: &[FollowResult], drawing: BootstrapOptions) -> Vec<RankingAgreement> {
     let sets: Vec<&str> = followed.iter().map(|one| one.set.as_str()).collect::<BTreeSet<_>>().into_iter().collect();
     let agents: BTreeSet<&str> = followed.iter().map(|one| one.agent.as_str()).collect();
-    let tables: Vec<Table> = agents.iter().map(|agent| table(followed, agent, &sets)).collect();
+    let tables: Vec<SuccessTable> = agents.iter().map(|agent| success_table(followed, agent, &sets)).collect();
     let scenes = tables.iter().map(Vec::len).min().unwrap_or(0);
     let is_whole = tables.iter().all(|table| table.len() == scenes);
     let tau = |one: usize, other: usize, drawn: &[usize]| {
-        let rate = |table: &Table, set: usize| {
+        let rate = |table: &SuccessTable, set: usize| {
             let rows: Vec<f64> = drawn.iter().flat_map(|at| table[*at].iter().map(|row| row[set])).collect();
             rows.iter().sum::<f64>() / rows.len().max(1) as f64
         };
@@ -197,12 +202,12 @@ pub fn rankings(followed: &[Followed], drawing: Drawing) -> Vec<Ranking> {
     let pairs = (0..sets.len()).flat_map(|one| (one + 1..sets.len()).map(move |other| (one, other)));
     let of_pair = |(one, other): (usize, usize)| {
         let whole: Vec<usize> = (0..scenes).collect();
-        let mut dice = rng(drawing.seed, &["rankings", sets[one], sets[other]]);
+        let mut dice = seeded_rng(drawing.seed, &["rankings", sets[one], sets[other]]);
         let draw = |_| (0..scenes).map(|_| dice.random_range(0..scenes)).collect::<Vec<usize>>();
         let drawn: Vec<Vec<usize>> = (0..drawing.resamples).map(draw).collect();
         let taus: Vec<f64> = drawn.iter().filter_map(|drawn| tau(one, other, drawn)).collect();
         let tau_b = tau(one, other, &whole).filter(|_| is_whole);
-        Ranking {
+        RankingAgreement {
             one: sets[one].to_owned(),
             other: sets[other].to_owned(),
             interval: tau_b.and_then(|_| percentile_interval(taus, drawing.level)),
@@ -216,15 +221,15 @@ pub fn rankings(followed: &[Followed], drawing: Drawing) -> Vec<Ranking> {
 mod tests {
     use super::*;
 
-    const DRAWING: Drawing = Drawing { resamples: 100, level: 0.95, seed: 3 };
+    const DRAWING: BootstrapOptions = BootstrapOptions { resamples: 100, level: 0.95, seed: 3 };
 
     /// A number from -1 to 1 that depends on words alone.
     fn noise(words: &[&str]) -> f64 {
-        rng(1, words).random_range(-1.0..1.0)
+        seeded_rng(1, words).random_range(-1.0..1.0)
     }
 
     /// Success as a sum of effects: of the scene, of the path, of the set, and of chance.
-    fn made(effects: [f64; 4]) -> Vec<Followed> {
+    fn made(effects: [f64; 4]) -> Vec<FollowResult> {
         let mut all = Vec::new();
         for scene in 0..40 {
             for path in 0..6 {
@@ -238,7 +243,7 @@ mod tests {
                     ];
                     let success = terms.iter().zip(effects).map(|(term, effect)| term * effect).sum();
                     let path = format!("{scene}-{path}");
-                    all.push(Followed {
+                    all.push(FollowResult {
                         agent: "a".into(),
                         set,
                         scene,
@@ -256,14 +261,14 @@ mod tests {
     #[test]
     fn shares_of_variance_match_the_effects_of_generated_data() {
         // Effects of 1, 2 and 1 have variances as 1 to 4 to 1; of five sets no share is known well, so they have none.
-        let shares = of_agents(&made([1.0, 2.0, 0.0, 1.0]), DRAWING)[0].shares.unwrap();
+        let shares = agent_success_rates(&made([1.0, 2.0, 0.0, 1.0]), DRAWING)[0].shares.unwrap();
         let found = [shares.scene[0], shares.path[0], shares.set[0], shares.rest[0]];
         for (found, expected) in found.iter().zip([1.0 / 6.0, 4.0 / 6.0, 0.0, 1.0 / 6.0]) {
             assert!((found - expected).abs() < 0.07, "{found} {expected}");
         }
         assert!((found.iter().sum::<f64>() - 1.0).abs() < 1e-12);
         assert!(shares.path[1] < shares.path[0] && shares.path[0] < shares.path[2]);
-        let sets = of_agents(&made([0.0, 0.0, 1.0, 0.0]), DRAWING)[0].shares.unwrap();
+        let sets = agent_success_rates(&made([0.0, 0.0, 1.0, 0.0]), DRAWING)[0].shares.unwrap();
         assert!((sets.set[0] - 1.0).abs() < 1e-9);
     }
 
@@ -272,7 +277,7 @@ mod tests {
         // Two scenes of two paths, two sets: mean squares of 8 (scenes), 1 (paths), 2 (sets) and 0 (rest).
         let scenes = [vec![vec![0.0, 1.0], vec![1.0, 2.0]], vec![vec![2.0, 3.0], vec![3.0, 4.0]]];
         let all: Vec<&Vec<Vec<f64>>> = scenes.iter().collect();
-        let [scene, path, set, rest] = components(&all).unwrap();
+        let [scene, path, set, rest] = variance_components(&all).unwrap();
         let parts = [(8.0 - 1.0) / 4.0, 1.0 / 2.0, 2.0 / 4.0, 0.0];
         let sum: f64 = parts.iter().sum();
         for (found, part) in [scene, path, set, rest].iter().zip(parts) {
@@ -284,9 +289,9 @@ mod tests {
     fn only_paths_of_all_sets_count_and_one_set_has_no_spread() {
         let mut all = made([1.0, 1.0, 1.0, 1.0]);
         all.retain(|one| one.path != "0-0" || one.set == "1");
-        assert_eq!(of_agents(&all, DRAWING)[0].paths, 239);
+        assert_eq!(agent_success_rates(&all, DRAWING)[0].paths, 239);
         all.retain(|one| one.set == "1");
-        let alone = &of_agents(&all, DRAWING)[0];
+        let alone = &agent_success_rates(&all, DRAWING)[0];
         assert_eq!((alone.spread, alone.shares, alone.paths), (None, None, 240));
     }
 
@@ -300,16 +305,16 @@ mod tests {
                     let success = f64::from(u8::from(noise(&[&path]).abs() < rate));
                     let scene = (number % 6).to_string();
                     let (agent, set) = (agent.to_owned(), (*set).to_owned());
-                    all.push(Followed { agent, set, scene, item: path.clone(), text_index: 0, path, success });
+                    all.push(FollowResult { agent, set, scene, item: path.clone(), text_index: 0, path, success });
                 }
             }
         }
-        let found = &rankings(&all, DRAWING)[0];
+        let found = &compare_rankings(&all, DRAWING)[0];
         // By the second set "poor" is better than "fair".
         assert!((found.tau_b.unwrap() - 1.0 / 3.0).abs() < 1e-12, "{found:?}");
         all.retain(|one| one.agent != "poor");
-        assert_eq!(rankings(&all, DRAWING)[0].tau_b, Some(1.0));
+        assert_eq!(compare_rankings(&all, DRAWING)[0].tau_b, Some(1.0));
         all.retain(|one| one.agent == "good");
-        assert_eq!(rankings(&all, DRAWING)[0].tau_b, None);
+        assert_eq!(compare_rankings(&all, DRAWING)[0].tau_b, None);
     }
 }

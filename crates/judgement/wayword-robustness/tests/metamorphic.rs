@@ -11,27 +11,33 @@ use std::{
     collections::{BTreeMap, BTreeSet},
     sync::{Arc, Mutex},
 };
-use wayword_checks::{Evidence, Memory};
+use wayword_checks::{Evidence, WalkMemory};
 use wayword_core::{
-    Frame, Gaze, Heading, Instruction, Label, Mention, MentionKind, ObjectId, Path, PathRequest, Platform,
-    PlatformError, SceneId, Style, View, ViewpointGraph, ViewpointId, path::Stop,
+    Frame, Heading, Instruction, InstructionStyle, MentionKind, ObjectId, ObjectLabel, Path, PathRequest, Platform,
+    PlatformError, SceneId, TextMention, View, ViewGaze, ViewpointGraph, ViewpointId, path::PathStop,
 };
 use wayword_house::{HouseOptions, HousePlatform};
 use wayword_language::{
-    lexicon::agree,
-    reading::{What, read},
+    lexicon::names_agree,
+    reading::{EventContent, read_instruction},
 };
 use wayword_robustness::{
-    metamorphic::{Gone, Outcome, Written, add, material, mirror, remove, reverse, turn},
-    worlds::{Added, Alter, Altered, Mirror, QuarterTurn, Recoloured, Removed, can_go},
+    metamorphic::{
+        AnnotatedText, ChangedThing, ExpectationOutcome, check_added_thing, check_changed_material,
+        check_mirrored_world, check_removed_thing, check_reversed_path, check_turned_world,
+    },
+    worlds::{
+        AlteredPlatform, QuarterTurn, ThingAddition, ThingRecolouring, ThingRemoval, WorldAlteration, WorldMirror,
+        can_go,
+    },
 };
 use wayword_synthesis::{
-    dialogue::{Mode, QUESTIONS, RulesAsker, RulesSummariser},
-    observe::{Observers, gazes_around, observe},
-    offline::{Labels, around, describe},
-    repair::{Order, Outcome as Item, Writers, write_and_repair},
-    style::{Profile, built_in},
-    walk::{FrameSelection, Walk},
+    dialogue::{DEFAULT_MAX_QUESTIONS, DialogueMode, RulesAsker, RulesSummariser},
+    observe::{ObservationRoles, gazes_around, observe_path},
+    offline::{LabelAnswerer, describe_target, list_around_frame},
+    repair::{InstructionOrder, WriterPair, WritingOutcome as Item, write_and_repair},
+    style::{StyleProfile, built_in},
+    walk::{FrameSelection, ObservedWalk},
     writer::RulesWriter,
 };
 
@@ -50,12 +56,12 @@ impl Platform for Drawn {
         self.platform.name()
     }
 
-    fn scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
-        self.platform.scenes()
+    fn list_scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
+        self.platform.list_scenes()
     }
 
-    fn graph(&self, scene: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {
-        self.platform.graph(scene)
+    fn graph_for_scene(&self, scene: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {
+        self.platform.graph_for_scene(scene)
     }
 
     fn sample_path(&self, scene: &SceneId, request: &PathRequest, seed: u64) -> Result<Path, PlatformError> {
@@ -63,7 +69,7 @@ impl Platform for Drawn {
     }
 
     /// A change of place and back again is off by the last bits, which would draw each view anew.
-    fn look(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
+    fn look_from(&self, scene: &SceneId, from: &Frame, gaze: ViewGaze) -> Result<View, PlatformError> {
         let micro = |value: f64| (value * 1e6).round() as i64;
         let turn = micro(Heading::NORTH.turn_to(gaze.heading).rem_euclid(std::f64::consts::TAU - 1e-7));
         let [x, y, z] = from.pose.position.to_array().map(micro);
@@ -71,14 +77,14 @@ impl Platform for Drawn {
         if let Some(view) = self.views.lock().unwrap().get(&key) {
             return Ok(view.clone());
         }
-        let view = self.platform.look(scene, from, gaze)?;
+        let view = self.platform.look_from(scene, from, gaze)?;
         let view = View::new(view.pose, view.horizontal_fov_rad, None, view.ground_truth().cloned());
         self.views.lock().unwrap().insert(key, view.clone());
         Ok(view)
     }
 
-    fn look_without_picture(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
-        self.look(scene, from, gaze)
+    fn look_without_picture(&self, scene: &SceneId, from: &Frame, gaze: ViewGaze) -> Result<View, PlatformError> {
+        self.look_from(scene, from, gaze)
     }
 
     fn object_name(&self, scene: &SceneId, near: &Frame, object: &ObjectId) -> Result<Option<String>, PlatformError> {
@@ -92,8 +98,8 @@ impl Platform for Drawn {
 
 /// A walk in some world, with everything that a writer gets.
 struct Known {
-    walk: Walk,
-    memory: Memory,
+    walk: ObservedWalk,
+    memory: WalkMemory,
     evidence: Evidence,
 }
 
@@ -108,33 +114,34 @@ fn know(platform: &dyn Platform, mut path: Path) -> Known {
     };
     let views: Vec<Vec<View>> = path.frames.iter().map(all_around).collect();
     if let (Some(target), Some(last), Some(at_end)) = (&mut path.target, path.frames.last(), views.last()) {
-        let seen = around(last, at_end);
-        if seen.knows(last) {
-            describe(target, last, &seen);
+        let seen = list_around_frame(last, at_end);
+        if seen.knows_frame(last) {
+            describe_target(target, last, &seen);
         }
     }
-    let observations = observe(platform, &path, FrameSelection::Central, observers(&RulesAsker::default())).unwrap();
-    let walk = Walk::new(path, observations);
+    let observations =
+        observe_path(platform, &path, FrameSelection::Central, observers(&RulesAsker::default())).unwrap();
+    let walk = ObservedWalk::new(path, observations);
     let evidence = Evidence::from_labels(&walk.path, &views).unwrap();
-    let memory = Memory::of(&evidence, &walk.path);
+    let memory = WalkMemory::from_path(&evidence, &walk.path);
     Known { walk, memory, evidence }
 }
 
-static LABELS: Labels = Labels { list_everything: false, calibration: None };
+static LABELS: LabelAnswerer = LabelAnswerer { list_everything: false, calibration: None };
 
-fn observers(asker: &RulesAsker) -> Observers<'_> {
-    Observers {
+fn observers(asker: &RulesAsker) -> ObservationRoles<'_> {
+    ObservationRoles {
         asker,
         answerer: &LABELS,
         summariser: &RulesSummariser,
-        mode: Mode::Dialogue { questions: QUESTIONS },
+        mode: DialogueMode::Dialogue { questions: DEFAULT_MAX_QUESTIONS },
         prompts_hash: None,
         detector: None,
     }
 }
 
-fn write(known: &Known, (style, profile): &(Style, Profile)) -> Instruction {
-    let order = Order {
+fn write(known: &Known, (style, profile): &(InstructionStyle, StyleProfile)) -> Instruction {
+    let order = InstructionOrder {
         walk: &known.walk,
         memory: &known.memory,
         evidence: &known.evidence,
@@ -149,7 +156,7 @@ fn write(known: &Known, (style, profile): &(Style, Profile)) -> Instruction {
         earlier: &[],
         pictures: &[],
     };
-    let writers = Writers { writer: &RulesWriter, finisher: None };
+    let writers = WriterPair { writer: &RulesWriter, finisher: None };
     match write_and_repair(writers, observers(&RulesAsker::default()), order).unwrap() {
         Item::Accepted(instruction) | Item::Rejected { last: Some(instruction), .. } => instruction,
         Item::Rejected { last: None, reason } => {
@@ -158,17 +165,17 @@ fn write(known: &Known, (style, profile): &(Style, Profile)) -> Instruction {
     }
 }
 
-fn said<'a>(instruction: &'a Instruction, path: &Path) -> Written<'a> {
-    Written { text: &instruction.text, mentions: &instruction.mentions, last_frame: path.frames.len() - 1 }
+fn said<'a>(instruction: &'a Instruction, path: &Path) -> AnnotatedText<'a> {
+    AnnotatedText { text: &instruction.text, mentions: &instruction.mentions, last_frame: path.frames.len() - 1 }
 }
 
 /// The outcomes of each test and style.
-type Outcomes = BTreeMap<(&'static str, &'static str), Vec<Outcome>>;
+type Outcomes = BTreeMap<(&'static str, &'static str), Vec<ExpectationOutcome>>;
 
 /// All tests on one path.
 struct Trial<'a> {
     platform: &'a Drawn,
-    styles: &'a [(Style, Profile)],
+    styles: &'a [(InstructionStyle, StyleProfile)],
     outcomes: Outcomes,
 }
 
@@ -176,8 +183,8 @@ impl Trial<'_> {
     fn path(&mut self, path: &Path) {
         let base = know(self.platform, path.clone());
         let texts: Vec<Instruction> = self.styles.iter().map(|style| write(&base, style)).collect();
-        self.space(path, &texts, "mirror", Mirror, mirror);
-        self.space(path, &texts, "turn", QuarterTurn, turn);
+        self.space(path, &texts, "mirror", WorldMirror, check_mirrored_world);
+        self.space(path, &texts, "turn", QuarterTurn, check_turned_world);
         self.back(path);
         for (at, text) in texts.iter().enumerate() {
             for (object, colour) in told_colours(text) {
@@ -190,7 +197,7 @@ impl Trial<'_> {
         self.add(path, &base, &texts);
     }
 
-    fn judge(&mut self, test: &'static str, style: usize, outcome: Outcome) {
+    fn judge(&mut self, test: &'static str, style: usize, outcome: ExpectationOutcome) {
         self.outcomes.entry((test, STYLES[style])).or_default().push(outcome);
     }
 
@@ -199,10 +206,10 @@ impl Trial<'_> {
         path: &Path,
         texts: &[Instruction],
         test: &'static str,
-        alter: impl Alter + Copy,
-        judge: fn(Written<'_>, Written<'_>) -> Outcome,
+        alter: impl WorldAlteration + Copy,
+        judge: fn(AnnotatedText<'_>, AnnotatedText<'_>) -> ExpectationOutcome,
     ) {
-        let changed = know(&Altered::new(self.platform.clone(), alter), alter.path_after(path.clone()));
+        let changed = know(&AlteredPlatform::new(self.platform.clone(), alter), alter.path_after(path.clone()));
         for (at, text) in texts.iter().enumerate() {
             let other = write(&changed, &self.styles[at]);
             self.judge(test, at, judge(said(text, path), said(&other, path)));
@@ -212,10 +219,10 @@ impl Trial<'_> {
     /// Checks the path in both directions, without a target, which is at one end only, and without a turn before the first step.
     fn back(&mut self, path: &Path) {
         let along = |reversed: bool| {
-            let mut stops: Vec<Stop> = path
+            let mut stops: Vec<PathStop> = path
                 .frames
                 .iter()
-                .map(|frame| Stop {
+                .map(|frame| PathStop {
                     position: frame.pose.position,
                     viewpoint: frame.viewpoint.clone(),
                     level: frame.level,
@@ -229,54 +236,59 @@ impl Trial<'_> {
         let (there, back) = (know(self.platform, along(false)), know(self.platform, along(true)));
         for at in 0..self.styles.len() {
             let (there, back) = (write(&there, &self.styles[at]), write(&back, &self.styles[at]));
-            self.judge("reverse", at, reverse(said(&there, path), said(&back, path)));
+            self.judge("reverse", at, check_reversed_path(said(&there, path), said(&back, path)));
         }
     }
 
     fn recolour(&mut self, path: &Path, base: &Known, at: usize, text: &Instruction, name: &str, colour: &str) {
         let things = || base.evidence.frames.iter().flat_map(|frame| &frame.things);
-        let is_it =
-            |thing: &&wayword_checks::SeenThing| agree(&thing.name, name) && thing.colour.as_deref() == Some(colour);
+        let is_it = |thing: &&wayword_checks::SeenThing| {
+            names_agree(&thing.name, name) && thing.colour.as_deref() == Some(colour)
+        };
         let objects: BTreeSet<ObjectId> = things().filter(is_it).filter_map(|thing| thing.object.clone()).collect();
         let is_free = |new: &&str| things().all(|thing| thing.colour.as_deref() != Some(new));
         // Of as many words, for a text has its length.
         let shade = if colour.contains(' ') { "light " } else { "" };
         let others = ["purple", "orange", "pink", "turquoise"].map(|other| format!("{shade}{other}"));
         let new = others.iter().map(String::as_str).find(is_free).unwrap();
-        let alter = Recoloured { objects, colour: new.to_owned() };
-        let changed = know(&Altered::new(self.platform.clone(), alter.clone()), alter.path_after(path.clone()));
+        let alter = ThingRecolouring { objects, colour: new.to_owned() };
+        let changed = know(&AlteredPlatform::new(self.platform.clone(), alter.clone()), alter.path_after(path.clone()));
         let other = write(&changed, &self.styles[at]);
-        self.judge("material", at, material(said(text, path), said(&other, path), colour, new));
+        self.judge("material", at, check_changed_material(said(text, path), said(&other, path), colour, new));
     }
 
     fn remove(&mut self, path: &Path, base: &Known, at: usize, text: &Instruction, name: &str) {
         // The target is given with the path.
-        if path.target.as_ref().is_some_and(|target| agree(&target.name, name)) {
+        if path.target.as_ref().is_some_and(|target| names_agree(&target.name, name)) {
             return;
         }
-        let is_it = |thing: &&wayword_checks::SeenThing| agree(&thing.name, name);
+        let is_it = |thing: &&wayword_checks::SeenThing| names_agree(&thing.name, name);
         let frames = base.evidence.frames.iter().enumerate();
         let seen_from: Vec<usize> =
             frames.filter(|(_, frame)| frame.things.iter().any(|t| is_it(&t))).map(|(at, _)| at).collect();
         let things = base.evidence.frames.iter().flat_map(|frame| &frame.things);
         let objects: BTreeSet<ObjectId> = things.filter(is_it).filter_map(|thing| thing.object.clone()).collect();
-        let alter = Removed { objects };
-        let changed = know(&Altered::new(self.platform.clone(), alter.clone()), alter.path_after(path.clone()));
+        let alter = ThingRemoval { objects };
+        let changed = know(&AlteredPlatform::new(self.platform.clone(), alter.clone()), alter.path_after(path.clone()));
         let other = write(&changed, &self.styles[at]);
-        self.judge("remove", at, remove(said(text, path), said(&other, path), Gone { name, seen_from: &seen_from }));
+        self.judge(
+            "remove",
+            at,
+            check_removed_thing(said(text, path), said(&other, path), ChangedThing { name, seen_from: &seen_from }),
+        );
     }
 
     /// Adds a thing that no home has, near the middle of the path and near its end.
     fn add(&mut self, path: &Path, base: &Known, texts: &[Instruction]) {
         let last = path.frames.len() - 1;
         let things = || base.evidence.frames.iter().flat_map(|frame| &frame.things);
-        let is_new = |name: &&str| things().all(|thing| !agree(&thing.name, name));
+        let is_new = |name: &&str| things().all(|thing| !names_agree(&thing.name, name));
         let Some(name) = ["piano", "fireplace", "statue"].into_iter().find(is_new) else { return };
         for by in BTreeSet::from([last / 2, last]) {
             let seen_from: Vec<usize> = (by.saturating_sub(1)..=(by + 1).min(last)).collect();
             let frame = &path.frames[by];
-            let beside = frame.pose.heading.turned(0.7).direction() * 1.2;
-            let object = Label {
+            let beside = frame.pose.heading.turned_by(0.7).unit_vector() * 1.2;
+            let object = ObjectLabel {
                 object: ObjectId::new("added").unwrap(),
                 name: name.to_owned(),
                 heading: Heading::NORTH,
@@ -287,11 +299,20 @@ impl Trial<'_> {
                 colour: None,
             };
             let frames = seen_from.iter().map(|at| path.frames[*at].clone()).collect();
-            let alter = Added { scene: path.scene.clone(), object, seen_from: frames };
-            let changed = know(&Altered::new(self.platform.clone(), alter.clone()), alter.path_after(path.clone()));
+            let alter = ThingAddition { scene: path.scene.clone(), object, seen_from: frames };
+            let changed =
+                know(&AlteredPlatform::new(self.platform.clone(), alter.clone()), alter.path_after(path.clone()));
             for (at, text) in texts.iter().enumerate() {
                 let other = write(&changed, &self.styles[at]);
-                self.judge("add", at, add(said(text, path), said(&other, path), Gone { name, seen_from: &seen_from }));
+                self.judge(
+                    "add",
+                    at,
+                    check_added_thing(
+                        said(text, path),
+                        said(&other, path),
+                        ChangedThing { name, seen_from: &seen_from },
+                    ),
+                );
             }
         }
     }
@@ -299,7 +320,7 @@ impl Trial<'_> {
 
 /// The things on the way that a text names and that can be taken away.
 fn told_things(text: &Instruction) -> BTreeSet<String> {
-    let is_thing = |mention: &&Mention| mention.kind == MentionKind::Landmark;
+    let is_thing = |mention: &&TextMention| mention.kind == MentionKind::Landmark;
     text.mentions
         .iter()
         .filter(is_thing)
@@ -310,9 +331,9 @@ fn told_things(text: &Instruction) -> BTreeSet<String> {
 
 /// The things of a text that have a colour in it, with the colour.
 fn told_colours(text: &Instruction) -> BTreeSet<(String, String)> {
-    let events = read(&text.text, &BTreeSet::new()).events;
+    let events = read_instruction(&text.text, &BTreeSet::new()).events;
     let coloured = events.into_iter().filter_map(|event| match event.what {
-        What::Place(place) if place.is_thing => Some((place.name.clone(), place.colour?)),
+        EventContent::Place(place) if place.is_thing => Some((place.name.clone(), place.colour?)),
         _ => None,
     });
     coloured.collect()
@@ -323,11 +344,11 @@ fn name_in(text: &Instruction, span: [usize; 2]) -> String {
 }
 
 fn outcomes(paths: usize) -> Outcomes {
-    let styles: Vec<(Style, Profile)> = STYLES
+    let styles: Vec<(InstructionStyle, StyleProfile)> = STYLES
         .iter()
         .map(|name| {
             let style = built_in(name).unwrap();
-            let profile = Profile::of(&style);
+            let profile = StyleProfile::for_style(&style);
             (style, profile)
         })
         .collect();
@@ -371,12 +392,12 @@ fn texts_of_changed_worlds_are_what_the_change_makes_of_them() {
     for test in TESTS {
         for style in STYLES {
             let found = all.get(&(test, style)).map_or(&[][..], Vec::as_slice);
-            let told = found.iter().filter(|outcome| **outcome != Outcome::NotTold).count();
-            let holds = found.iter().filter(|outcome| **outcome == Outcome::Holds).count();
+            let told = found.iter().filter(|outcome| **outcome != ExpectationOutcome::NotTold).count();
+            let holds = found.iter().filter(|outcome| **outcome == ExpectationOutcome::Holds).count();
             let share = if told == 0 { 1.0 } else { holds as f64 / told as f64 };
             eprintln!("{test:9} {style:8} {holds:4} of {told:4} told ({:.1} %), {} tried", share * 100.0, found.len());
             let differs = found.iter().filter_map(|outcome| match outcome {
-                Outcome::Differs(why) => Some(why),
+                ExpectationOutcome::Differs(why) => Some(why),
                 _ => None,
             });
             differs.take(show).for_each(|why| eprintln!("    {why}"));

@@ -2,8 +2,8 @@
 //! site is being served.
 
 use crate::{
-    store::{Book, Forgotten, Invited, Progress, Reconciliation, Store, now_ms},
-    study::{Data, Recruiter, Study, StudyError},
+    store::{ErasureReport, InviteTokens, Reconciliation, StudyProgress, StudyStore, StudyTransaction, now_ms},
+    study::{RecruiterSettings, Study, StudyData, StudyError},
 };
 use std::path::{Path, PathBuf};
 
@@ -15,31 +15,34 @@ impl Study {
     ///
     /// # Errors
     /// When the database cannot be read.
-    pub fn data(self) -> Result<Data, StudyError> {
-        Store::open(&self.database())?.data(self, now_ms())
+    pub fn into_data(self) -> Result<StudyData, StudyError> {
+        StudyStore::open(&self.database_file())?.into_data(self, now_ms())
     }
 
     /// Counts how many answers the study has and how many it still needs.
     ///
     /// # Errors
     /// When the database cannot be read.
-    pub fn progress(&self) -> Result<Progress, StudyError> {
-        Store::open(&self.database())?.read(self, now_ms(), |book| book.progress())
+    pub fn read_progress(&self) -> Result<StudyProgress, StudyError> {
+        StudyStore::open(&self.database_file())?.read_transaction(self, now_ms(), |book| book.read_progress())
     }
 
     /// Makes personal links. Each is for one participant.
     ///
     /// # Errors
     /// When participants come from a recruiter, or the database cannot be written.
-    pub fn invite(&self, count: u32) -> Result<Invited, StudyError> {
-        if self.settings.recruiter != Recruiter::Links {
+    pub fn invite_participants(&self, count: u32) -> Result<InviteTokens, StudyError> {
+        if self.settings.recruiter != RecruiterSettings::Links {
             let problem = "study.toml: participants come from a recruiter, whose links name them";
-            return Err(StudyError::refused(problem, "for personal links set [recruiter] kind = \"links\""));
+            return Err(StudyError::refused_request(problem, "for personal links set [recruiter] kind = \"links\""));
         }
         if count > MOST_LINKS {
-            return Err(StudyError::refused(format!("{count} links at once"), format!("give at most {MOST_LINKS}")));
+            return Err(StudyError::refused_request(
+                format!("{count} links at once"),
+                format!("give at most {MOST_LINKS}"),
+            ));
         }
-        self.transact(|book| book.invite(count))
+        self.run_transaction(|book| book.invite_participants(count))
     }
 
     /// Closes the study: it accepts no more answers, and the participants' ids at the recruiter are deleted.
@@ -47,12 +50,12 @@ impl Study {
     /// # Errors
     /// When people are still answering and `even_if_live` is not set, or the database cannot be written.
     pub fn close(&self, even_if_live: bool) -> Result<(), StudyError> {
-        let live = self.transact(|book| book.close(even_if_live))?;
+        let live = self.run_transaction(|book| book.close_study(even_if_live))?;
         if live > 0 && !even_if_live {
             let problem = format!("{live} participants are in the middle of it, and could not go on");
-            return Err(StudyError::refused(problem, "wait until they are done, or give --even-if-live"));
+            return Err(StudyError::refused_request(problem, "wait until they are done, or give --even-if-live"));
         }
-        Store::open(&self.database())?.sweep();
+        StudyStore::open(&self.database_file())?.empty_log();
         Ok(())
     }
 
@@ -60,9 +63,9 @@ impl Study {
     ///
     /// # Errors
     /// When the participant does not exist, or the database cannot be written.
-    pub fn forget(&self, participant: &str, is_dry: bool) -> Result<Forgotten, StudyError> {
-        let forgotten = self.transact(|book| book.forget(participant, is_dry))?;
-        Store::open(&self.database())?.sweep();
+    pub fn forget_participant(&self, participant: &str, is_dry: bool) -> Result<ErasureReport, StudyError> {
+        let forgotten = self.run_transaction(|book| book.forget_participant(participant, is_dry))?;
+        StudyStore::open(&self.database_file())?.empty_log();
         Ok(forgotten)
     }
 
@@ -70,8 +73,8 @@ impl Study {
     ///
     /// # Errors
     /// When the file cannot be read, or no participant has a recruiter's id.
-    pub fn reconcile(&self, file: &Path) -> Result<Reconciliation, StudyError> {
-        self.transact(|book| book.reconcile(file))
+    pub fn reconcile_recruiter_list(&self, file: &Path) -> Result<Reconciliation, StudyError> {
+        self.run_transaction(|book| book.reconcile_recruiter_list(file))
     }
 
     /// Remembers a folder to which results are written. It contains answers, which have to go too when somebody wants to be forgotten.
@@ -79,21 +82,24 @@ impl Study {
     /// # Errors
     /// When the database cannot be written.
     pub fn note_export(&self, folder: &Path) -> Result<(), StudyError> {
-        let folder = std::path::absolute(folder).map_err(StudyError::io(folder, "find"))?;
-        self.transact(|book| book.note_export(&folder))
+        let folder = std::path::absolute(folder).map_err(StudyError::io_error(folder, "find"))?;
+        self.run_transaction(|book| book.note_export(&folder))
     }
 
     /// The folders to which results were written and which are still there.
     ///
     /// # Errors
     /// When the database cannot be read.
-    pub fn exports(&self) -> Result<Vec<PathBuf>, StudyError> {
-        let mut folders = self.transact(|book| book.exports())?;
+    pub fn list_exports(&self) -> Result<Vec<PathBuf>, StudyError> {
+        let mut folders = self.run_transaction(|book| book.list_exports())?;
         folders.retain(|folder| folder.exists());
         Ok(folders)
     }
 
-    fn transact<T>(&self, work: impl FnOnce(&Book<'_>) -> Result<T, StudyError>) -> Result<T, StudyError> {
-        Store::open(&self.database())?.write(self, now_ms(), work)
+    fn run_transaction<T>(
+        &self,
+        work: impl FnOnce(&StudyTransaction<'_>) -> Result<T, StudyError>,
+    ) -> Result<T, StudyError> {
+        StudyStore::open(&self.database_file())?.write_transaction(self, now_ms(), work)
     }
 }

@@ -2,7 +2,7 @@
 
 /// A question with the words of its five levels, from 1 to 5.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
-pub struct Scale {
+pub struct RatingScale {
     /// Its short name in tables and files.
     pub name: &'static str,
     /// The question or statement.
@@ -12,34 +12,38 @@ pub struct Scale {
 }
 
 /// Levels of agreement with a statement; attention checks use them too.
-pub(crate) const AGREEMENT: [&str; 5] =
+pub(crate) const AGREEMENT_LEVELS: [&str; 5] =
     ["Strongly disagree", "Disagree", "Neither agree nor disagree", "Agree", "Strongly agree"];
 
 /// After a walk: the three statements of HEAR's study (Zhao et al. 2024), in our words.
-pub const STATEMENTS: [Scale; 3] = [
-    Scale { name: "easy", text: "The text was easy to follow.", levels: AGREEMENT },
-    Scale { name: "confident", text: "I am confident that I went the way that the text describes.", levels: AGREEMENT },
-    Scale { name: "demanding", text: "Following the text was mentally demanding.", levels: AGREEMENT },
+pub const FOLLOW_STATEMENTS: [RatingScale; 3] = [
+    RatingScale { name: "easy", text: "The text was easy to follow.", levels: AGREEMENT_LEVELS },
+    RatingScale {
+        name: "confident",
+        text: "I am confident that I went the way that the text describes.",
+        levels: AGREEMENT_LEVELS,
+    },
+    RatingScale { name: "demanding", text: "Following the text was mentally demanding.", levels: AGREEMENT_LEVELS },
 ];
 
 /// About a text: the four questions of arXiv 2403.11487. Its wording and scale are lost; these words are ours.
-pub const QUESTIONS: [Scale; 4] = [
-    Scale {
+pub const RATE_QUESTIONS: [RatingScale; 4] = [
+    RatingScale {
         name: "similar",
         text: "How similar is this text to one that you would write?",
         levels: ["Very different", "Minor overlaps", "Partly similar", "Mostly similar", "Almost the same"],
     },
-    Scale {
+    RatingScale {
         name: "accurate",
         text: "How accurately does the text describe the walk?",
         levels: ["Not at all", "A little", "Decently", "Well", "Very well"],
     },
-    Scale {
+    RatingScale {
         name: "ghosts",
         text: "Does the text name things that you did not see in the walk?",
         levels: ["None", "One", "Two", "Three", "More than three"],
     },
-    Scale {
+    RatingScale {
         name: "reachable",
         text: "Could a robot reach the end of the walk by this text?",
         levels: ["Certainly not", "Probably not", "Perhaps", "Probably", "Certainly"],

@@ -16,18 +16,19 @@ use std::{
     time::Duration,
 };
 use tempfile::TempDir;
-use wayword_core::{Grade, Heading, SceneId, ViewpointId};
+use wayword_core::{DoubtGrade, Heading, SceneId, ViewpointId};
 use wayword_study::{
-    Condition, Item, Kind, Listen, Mark, Mode, Picture, Place, Plan, Recruiter, Route, Scene, Security, Settings,
-    Started, Study, Told, serve,
+    ConditionKind, FilmPicture, ListenOptions, RecruiterSettings, SiteAddress, SiteSecurity, Study, StudyCondition,
+    StudyDesign, StudyItem, StudyRoute, StudyScene, StudySettings, StudyTask, StudyText, StudyViewpoint, TextMark,
+    serve_study,
 };
 
 /// Words that no page may have: the conditions, the scene, the route, the goal.
 const SECRETS: [&str; 5] = ["condition-x", "condition-y", "scene-s", "route-r", "goal-g"];
 
-fn study(folder: &Path, mode: Mode) -> Study {
+fn study(folder: &Path, mode: StudyTask) -> Study {
     let viewpoint = |name: &str| ViewpointId::new(name).unwrap();
-    let place = |at: f64, neighbours: &[&str]| Place {
+    let place = |at: f64, neighbours: &[&str]| StudyViewpoint {
         position: [at, 0.0, 1.5],
         level: None,
         neighbours: neighbours.iter().map(|name| viewpoint(name)).collect(),
@@ -35,42 +36,45 @@ fn study(folder: &Path, mode: Mode) -> Study {
     };
     let places = [("start", place(0.0, &["goal-g"])), ("goal-g", place(2.0, &["start"]))];
     let scene = SceneId::new("scene-s").unwrap();
-    let route = |id| Route {
+    let route = |id| StudyRoute {
         id,
         name: format!("route-r{id}"),
         scene: scene.clone(),
         viewpoints: ["start", "goal-g"].map(viewpoint).to_vec(),
         start_heading: Heading::NORTH,
-        film: vec![Picture { file: "picture.jpg".into(), alt: "The walk begins.".into() }],
+        film: vec![FilmPicture { file: "picture.jpg".into(), alt: "The walk begins.".into() }],
     };
-    let told =
-        |name: &str| Told { condition: name.into(), text: "Go to the <b>door</b> & stop.".into(), ..Told::default() };
+    let told = |name: &str| StudyText {
+        condition: name.into(),
+        text: "Go to the <b>door</b> & stop.".into(),
+        ..StudyText::default()
+    };
     let texts = match mode {
-        Mode::Pair => vec![told("condition-x"), told("condition-y")],
+        StudyTask::Pair => vec![told("condition-x"), told("condition-y")],
         _ => vec![told("condition-x")],
     };
-    let item = |id, is_practice| Item { id, route: id, is_practice, texts: texts.clone() };
-    let plan = Plan {
+    let item = |id, is_practice| StudyItem { id, route: id, is_practice, texts: texts.clone() };
+    let plan = StudyDesign {
         mode,
         seed: 1,
         per_item: 2,
         per_participant: 1,
-        conditions: vec![Condition {
+        conditions: vec![StudyCondition {
             name: "condition-x".into(),
-            kind: Kind::Run,
+            kind: ConditionKind::Run,
             source: String::new(),
             shows_doubts: false,
         }],
         style: String::new(),
     };
-    let settings = Settings {
+    let settings = StudySettings {
         questions: Vec::new(),
         attention_checks: 0,
         contact: "A. Person, a@example.org".into(),
-        ..Settings::of_mode(mode, 1)
+        ..StudySettings::for_mode(mode, 1)
     };
     let scenes =
-        vec![Scene { scene: scene.clone(), places: places.map(|(name, place)| (viewpoint(name), place)).into() }];
+        vec![StudyScene { scene: scene.clone(), places: places.map(|(name, place)| (viewpoint(name), place)).into() }];
     Study {
         folder: folder.to_owned(),
         plan,
@@ -90,27 +94,27 @@ struct Site {
     _folder: TempDir,
 }
 
-fn listen(security: Security) -> Listen {
-    Listen { address: "127.0.0.1:0".parse().unwrap(), security, public: None }
+fn listen(security: SiteSecurity) -> ListenOptions {
+    ListenOptions { address: "127.0.0.1:0".parse().unwrap(), security, public: None }
 }
 
 impl Site {
-    fn new(mode: Mode, set: impl FnOnce(&mut Settings)) -> Self {
+    fn new(mode: StudyTask, set: impl FnOnce(&mut StudySettings)) -> Self {
         Self::with(mode, |study| set(&mut study.settings))
     }
 
-    fn with(mode: Mode, set: impl FnOnce(&mut Study)) -> Self {
+    fn with(mode: StudyTask, set: impl FnOnce(&mut Study)) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let mut study = study(folder.path(), mode);
         set(&mut study);
         study.create().unwrap();
-        std::fs::write(study.pictures().join("picture.jpg"), b"a picture").unwrap();
+        std::fs::write(study.pictures_folder().join("picture.jpg"), b"a picture").unwrap();
         let (told, started) = mpsc::channel();
         let stop = Arc::new(AtomicBool::new(false));
         let (served, ending) = (study.clone(), Arc::clone(&stop));
         let thread = thread::spawn(move || {
-            let tell = |started: &Started| told.send(started.address).unwrap();
-            serve(served, &listen(Security::Loopback), tell, || ending.load(Ordering::Relaxed)).unwrap();
+            let tell = |started: &SiteAddress| told.send(started.address).unwrap();
+            serve_study(served, &listen(SiteSecurity::Loopback), tell, || ending.load(Ordering::Relaxed)).unwrap();
         });
         let address = started.recv().unwrap();
         Self { study, address, stop, thread: Some(thread), _folder: folder }
@@ -122,7 +126,7 @@ impl Site {
 
     /// The browser of a participant who has consented.
     fn participant(&self) -> Browser {
-        let token = self.study.invite(1).unwrap().tokens.remove(0);
+        let token = self.study.invite_participants(1).unwrap().tokens.remove(0);
         let mut browser = self.browser();
         browser.get(&format!("/t/{token}"));
         assert_eq!(browser.post("/consent", "agree=yes").status, 303);
@@ -217,7 +221,7 @@ fn raw(address: SocketAddr, bytes: &[u8]) -> Answer {
 
 #[test]
 fn every_answer_has_its_headers() {
-    let site = Site::new(Mode::Rate, |_| {});
+    let site = Site::new(StudyTask::Rate, |_| {});
     let mut browser = site.participant();
     let mut all = ["/", "/style.css", "/nowhere", "/withdraw", "/t/x"].map(|path| browser.get(path)).to_vec();
     all.push(browser.send("POST", "/consent", "agree=yes", "X-Forwarded-Proto: https\r\n"));
@@ -234,9 +238,9 @@ fn every_answer_has_its_headers() {
 
 #[test]
 fn marks_are_shown_with_their_alternatives_and_escaped() {
-    let mark = |span, words: &[Option<&str>]| Mark {
+    let mark = |span, words: &[Option<&str>]| TextMark {
         span,
-        grade: Grade::Likely,
+        grade: DoubtGrade::Likely,
         alternatives: words.iter().map(|words| words.map(str::to_owned)).collect(),
     };
     let marks = vec![
@@ -246,7 +250,7 @@ fn marks_are_shown_with_their_alternatives_and_escaped() {
         mark([7, 900], &[]),
         mark([21, 25], &[]),
     ];
-    let site = Site::with(Mode::Follow, |study| {
+    let site = Site::with(StudyTask::Follow, |study| {
         study.plan.conditions[0].shows_doubts = true;
         study.items.iter_mut().for_each(|item| item.texts[0].marks.clone_from(&marks));
     });
@@ -259,7 +263,7 @@ fn marks_are_shown_with_their_alternatives_and_escaped() {
 
 #[test]
 fn no_page_names_a_condition_a_path_or_a_goal() {
-    for mode in [Mode::Rate, Mode::Pair, Mode::Follow] {
+    for mode in [StudyTask::Rate, StudyTask::Pair, StudyTask::Follow] {
         let site = Site::new(mode, |settings| settings.write_first = false);
         let mut browser = site.participant();
         let mut pages = 0;
@@ -289,13 +293,13 @@ fn no_page_names_a_condition_a_path_or_a_goal() {
             assert_eq!(browser.post(path, &body).status, 303);
         }
         assert!(pages >= 3);
-        assert_eq!(site.study.progress().unwrap().rows[0].answered, 1);
+        assert_eq!(site.study.read_progress().unwrap().rows[0].answered, 1);
     }
 }
 
 #[test]
 fn free_text_stays_text() {
-    let site = Site::new(Mode::Rate, |_| {});
+    let site = Site::new(StudyTask::Rate, |_| {});
     let mut browser = site.participant();
     let page = browser.get("/");
     assert!(page.is_page("watch"), "{page:?}");
@@ -309,19 +313,19 @@ fn free_text_stays_text() {
 
 #[test]
 fn an_incomplete_form_comes_back_with_the_filled_in_fields() {
-    let site = Site::new(Mode::Rate, |settings| settings.write_first = false);
+    let site = Site::new(StudyTask::Rate, |settings| settings.write_first = false);
     let mut browser = site.participant();
     let slot = browser.get("/").field("slot");
     let page = browser.post("/answer", &format!("slot={slot}&q0=3&q1=4"));
     assert_eq!(page.status, 422);
     assert!(page.body.contains("role=\"alert\"") && page.body.contains("checked"), "{page:?}");
-    assert_eq!(site.study.progress().unwrap().rows[0].answered, 0);
+    assert_eq!(site.study.read_progress().unwrap().rows[0].answered, 0);
 }
 
 #[test]
 fn a_recruiters_id_leaves_the_address() {
-    let site = Site::new(Mode::Pair, |settings| {
-        settings.recruiter = Recruiter::Parameters {
+    let site = Site::new(StudyTask::Pair, |settings| {
+        settings.recruiter = RecruiterSettings::Parameters {
             person: "PROLIFIC_PID".into(),
             session: "SESSION_ID".into(),
             study: "STUDY_ID".into(),
@@ -352,18 +356,18 @@ fn a_recruiters_id_leaves_the_address() {
 
 #[test]
 fn declining_the_consent_leaves_no_data_behind() {
-    let site = Site::new(Mode::Pair, |settings| settings.codes.no_consent = "N0".into());
-    let token = site.study.invite(1).unwrap().tokens.remove(0);
+    let site = Site::new(StudyTask::Pair, |settings| settings.codes.no_consent = "N0".into());
+    let token = site.study.invite_participants(1).unwrap().tokens.remove(0);
     let mut browser = site.browser();
     browser.get(&format!("/t/{token}"));
     let page = browser.post("/consent", "agree=no");
     assert!(page.is_page("done") && page.body.contains("N0"), "{page:?}");
-    assert!(site.study.clone().data().unwrap().participants.is_empty());
+    assert!(site.study.clone().into_data().unwrap().participants.is_empty());
 }
 
 #[test]
 fn forms_of_other_sites_and_old_tabs_have_no_effect() {
-    let site = Site::new(Mode::Pair, |_| {});
+    let site = Site::new(StudyTask::Pair, |_| {});
     let mut browser = site.participant();
     let slot = browser.get("/").field("slot");
     let answer = format!("slot={slot}&choice=a");
@@ -378,8 +382,8 @@ fn forms_of_other_sites_and_old_tabs_have_no_effect() {
 
 #[test]
 fn an_old_page_still_counts_after_the_link_was_opened_again() {
-    let site = Site::new(Mode::Pair, |_| {});
-    let token = site.study.invite(1).unwrap().tokens.remove(0);
+    let site = Site::new(StudyTask::Pair, |_| {});
+    let token = site.study.invite_participants(1).unwrap().tokens.remove(0);
     let mut browser = site.browser();
     browser.get(&format!("/t/{token}"));
     browser.post("/consent", "agree=yes");
@@ -392,8 +396,8 @@ fn an_old_page_still_counts_after_the_link_was_opened_again() {
 
 #[test]
 fn consent_to_a_changed_page_is_asked_for_again() {
-    let site = Site::new(Mode::Pair, |_| {});
-    let token = site.study.invite(1).unwrap().tokens.remove(0);
+    let site = Site::new(StudyTask::Pair, |_| {});
+    let token = site.study.invite_participants(1).unwrap().tokens.remove(0);
     let mut browser = site.browser();
     browser.get(&format!("/t/{token}"));
     let version = browser.get("/").field("version");
@@ -403,8 +407,8 @@ fn consent_to_a_changed_page_is_asked_for_again() {
 
 #[test]
 fn a_participant_with_deleted_answers_cannot_come_in_again() {
-    let site = Site::new(Mode::Pair, |_| {});
-    let token = site.study.invite(1).unwrap().tokens.remove(0);
+    let site = Site::new(StudyTask::Pair, |_| {});
+    let token = site.study.invite_participants(1).unwrap().tokens.remove(0);
     let mut browser = site.browser();
     browser.get(&format!("/t/{token}"));
     browser.post("/consent", "agree=yes");
@@ -416,14 +420,14 @@ fn a_participant_with_deleted_answers_cannot_come_in_again() {
         assert!(gone.is_page("done") && gone.body.contains("deleted"), "{gone:?}");
     }
     assert_eq!(site.browser().get(&format!("/t/{token}")).status, 403);
-    assert!(site.study.clone().data().unwrap().participants.is_empty());
+    assert!(site.study.clone().into_data().unwrap().participants.is_empty());
     let log = site.study.folder.join("study.db-wal");
     assert!(std::fs::metadata(log).map_or(0, |log| log.len()) < 100_000);
 }
 
 #[test]
 fn no_path_leads_out() {
-    let site = Site::new(Mode::Follow, |_| {});
+    let site = Site::new(StudyTask::Follow, |_| {});
     let mut browser = site.participant();
     let slot = browser.get("/").field("slot");
     assert_eq!(browser.get(&format!("/look/{slot}/0.jpg")).body, "a picture");
@@ -448,7 +452,7 @@ fn no_path_leads_out() {
 
 #[test]
 fn oversized_requests_are_refused() {
-    let site = Site::new(Mode::Rate, |_| {});
+    let site = Site::new(StudyTask::Rate, |_| {});
     let mut browser = site.participant();
     let slot = browser.get("/").field("slot");
     assert_eq!(browser.post("/write", &format!("slot={slot}&own_text={}", "a".repeat(1001))).status, 422);
@@ -461,20 +465,21 @@ fn oversized_requests_are_refused() {
 #[test]
 fn an_open_address_needs_tls() {
     let folder = tempfile::tempdir().unwrap();
-    let study = study(folder.path(), Mode::Pair);
+    let study = study(folder.path(), StudyTask::Pair);
     study.create().unwrap();
-    let open = |security| Listen { address: "0.0.0.0:0".parse().unwrap(), ..listen(security) };
+    let open = |security| ListenOptions { address: "0.0.0.0:0".parse().unwrap(), ..listen(security) };
     let refused =
-        |study: &Study, security| serve(study.clone(), &open(security), |_| (), || true).unwrap_err().to_string();
-    assert!(refused(&study, Security::Loopback).contains("--insecure-lan"));
+        |study: &Study, security| serve_study(study.clone(), &open(security), |_| (), || true).unwrap_err().to_string();
+    assert!(refused(&study, SiteSecurity::Loopback).contains("--insecure-lan"));
     let mut nobody = study.clone();
     nobody.settings.contact = " ".into();
-    assert!(refused(&nobody, Security::InsecureLan).contains("contact"));
+    assert!(refused(&nobody, SiteSecurity::InsecureLan).contains("contact"));
     let mut url = String::new();
-    serve(study.clone(), &open(Security::SelfSigned), |started| url.clone_from(&started.url), || true).unwrap();
+    serve_study(study.clone(), &open(SiteSecurity::SelfSigned), |started| url.clone_from(&started.url), || true)
+        .unwrap();
     assert!(url.starts_with("https://"), "{url}");
     let key = std::fs::read_to_string(folder.path().join("self-signed.key")).unwrap();
     // The certificate stays the same, because browsers were set to trust it.
-    serve(study, &open(Security::SelfSigned), |_| (), || true).unwrap();
+    serve_study(study, &open(SiteSecurity::SelfSigned), |_| (), || true).unwrap();
     assert_eq!(std::fs::read_to_string(folder.path().join("self-signed.key")).unwrap(), key);
 }

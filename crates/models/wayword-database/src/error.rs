@@ -89,11 +89,11 @@ impl DatabaseError {
         matches!(self, Self::Server { is_lost: true, .. })
     }
 
-    pub(crate) fn server(database: &str, doing: &'static str, error: &postgres::Error) -> Self {
+    pub(crate) fn from_server(database: &str, doing: &'static str, error: &postgres::Error) -> Self {
         let is_lost = is_lost(error);
         let told = error.as_db_error().map(|told| format!("{} ({})", told.message(), told.code().code()));
         let reason = told.unwrap_or_else(|| with_causes(error));
-        Self::Server { database: database.to_owned(), doing, reason, hint: hint(error, is_lost), is_lost }
+        Self::Server { database: database.to_owned(), doing, reason, hint: error_hint(error, is_lost), is_lost }
     }
 }
 
@@ -132,7 +132,7 @@ fn with_causes(error: &postgres::Error) -> String {
     told
 }
 
-fn hint(error: &postgres::Error, is_lost: bool) -> &'static str {
+fn error_hint(error: &postgres::Error, is_lost: bool) -> &'static str {
     match error.code() {
         Some(code) if *code == SqlState::INVALID_PASSWORD || *code == SqlState::INVALID_AUTHORIZATION_SPECIFICATION => {
             "check the user's name, and the password in PGPASSFILE or in the variable of --password-env"

@@ -1,7 +1,7 @@
 //! Connections to PostgreSQL (15 or later), blocking.
 //!
-//! The name of a database contains no password ([`Database::named`]); the password comes from a password file or from an
-//! environment variable that the user names. A [`Pool`] survives a restart of the server. [`prepare`] brings the tables of
+//! The name of a database contains no password ([`PostgresDatabase::from_name`]); the password comes from a password file or from an
+//! environment variable that the user names. A [`ConnectionPool`] survives a restart of the server. [`prepare_tables`] brings the tables of
 //! a crate to its version.
 //!
 //! Statements may be sent twice: a connection can be lost after the server has carried one out. So callers write
@@ -15,7 +15,7 @@ mod tables;
 mod tls;
 
 pub use error::DatabaseError;
-pub use name::Database;
-pub use pool::{Connection, Pool};
+pub use name::PostgresDatabase;
+pub use pool::{ConnectionPool, PooledConnection};
 pub use postgres;
-pub use tables::{Tables, prepare};
+pub use tables::{SchemaTables, prepare_tables};

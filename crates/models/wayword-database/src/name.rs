@@ -9,7 +9,7 @@ use std::{env, fmt, path::Path, str::FromStr, time::Duration};
 
 /// A database, as a user names it.
 #[derive(Clone)]
-pub struct Database {
+pub struct PostgresDatabase {
     config: Box<Config>,
     shown: String,
     password_env: Option<String>,
@@ -17,16 +17,16 @@ pub struct Database {
 
 /// Folders of the socket of a server on this machine.
 const SOCKET_FOLDERS: [&str; 2] = ["/var/run/postgresql", "/tmp"];
-const PORT: u16 = 5432;
-const PATIENCE: Duration = Duration::from_secs(10);
+const DEFAULT_PORT: u16 = 5432;
+const CONNECT_TIMEOUT: Duration = Duration::from_secs(10);
 
 /// Options of every connection: a statement or a transaction that hangs is ended, so that it does not block other workers.
-const OPTIONS: &str = "-c statement_timeout=60s -c idle_in_transaction_session_timeout=60s -c lock_timeout=60s";
+const SERVER_OPTIONS: &str = "-c statement_timeout=60s -c idle_in_transaction_session_timeout=60s -c lock_timeout=60s";
 
-const HOW: &str = "write the name of a database, or postgresql://USER@HOST:PORT/DATABASE";
+const NAME_HINT: &str = "write the name of a database, or postgresql://USER@HOST:PORT/DATABASE";
 const NO_PASSWORD: &str = "leave the password out: put it into a file (PGPASSFILE, by default ~/.pgpass), or into an environment variable that you name with --password-env";
 
-impl Database {
+impl PostgresDatabase {
     /// A database by its name: `wayword_db`, `postgresql://user@host:5432/wayword_db` or `host=... dbname=...`. Parts that
     /// the text leaves out come from PGHOST, PGPORT, PGUSER and PGSSLMODE, as with PostgreSQL's own programs.
     ///
@@ -35,10 +35,10 @@ impl Database {
     ///
     /// # Errors
     /// When the text names no database, or contains a password.
-    pub fn named(text: &str, password_env: Option<&str>) -> Result<Self, DatabaseError> {
+    pub fn from_name(text: &str, password_env: Option<&str>) -> Result<Self, DatabaseError> {
         let wrong = |problem: &str, hint| Err(DatabaseError::Name { problem: problem.to_owned(), hint });
         if text.trim().is_empty() {
-            return wrong("it is empty", HOW);
+            return wrong("it is empty", NAME_HINT);
         }
         let mut config = if text.contains("://") || text.contains('=') {
             // This program checks certificates and the server's name always, so "require" means the same.
@@ -48,7 +48,7 @@ impl Database {
             match Config::from_str(&text) {
                 Ok(config) => config,
                 // The parser's message quotes the part that it cannot read, which may be a password.
-                Err(_) => return wrong("it cannot be read", HOW),
+                Err(_) => return wrong("it cannot be read", NAME_HINT),
             }
         } else {
             let mut config = Config::new();
@@ -59,16 +59,16 @@ impl Database {
             return wrong("it holds a password, which lists of processes and logs would show", NO_PASSWORD);
         }
         if config.get_dbname().is_none() {
-            return wrong("it has no name of a database", HOW);
+            return wrong("it has no name of a database", NAME_HINT);
         }
-        complete(&mut config, text)?;
-        let shown = shown(&config);
+        complete_config(&mut config, text)?;
+        let shown = describe_config(&config);
         Ok(Self { config: Box::new(config), shown, password_env: password_env.map(str::to_owned) })
     }
 
     /// Its name for messages: user, host, port and database.
     #[must_use]
-    pub fn shown(&self) -> &str {
+    pub fn shown_name(&self) -> &str {
         &self.shown
     }
 
@@ -78,15 +78,15 @@ impl Database {
     /// When the password cannot be found out, the server does not answer or refuses, or its certificate is not trusted.
     pub fn connect(&self) -> Result<Client, DatabaseError> {
         let mut config = (*self.config).clone();
-        if let Some(password) = password::find(&config, self.password_env.as_deref())? {
+        if let Some(password) = password::find_password(&config, self.password_env.as_deref())? {
             config.password(password);
         }
         let connected = match config.get_ssl_mode() {
             SslMode::Disable => config.connect(NoTls),
-            _ => config.connect(tls::connector()?),
+            _ => config.connect(tls::tls_connector()?),
         };
         connected.map_err(|error| {
-            let told = DatabaseError::server(&self.shown, "connect", &error);
+            let told = DatabaseError::from_server(&self.shown, "connect", &error);
             // No statement was sent yet, so an error without a code comes from the connection.
             match told {
                 DatabaseError::Server { database, doing, reason, hint, .. } => DatabaseError::Server {
@@ -102,23 +102,24 @@ impl Database {
     }
 }
 
-impl PartialEq for Database {
+impl PartialEq for PostgresDatabase {
     fn eq(&self, other: &Self) -> bool {
         (&self.shown, &self.password_env) == (&other.shown, &other.password_env)
     }
 }
 
-impl fmt::Debug for Database {
+impl fmt::Debug for PostgresDatabase {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_tuple("Database").field(&self.shown).finish()
     }
 }
 
 /// Adds the settings that the text leaves out.
-fn complete(config: &mut Config, text: &str) -> Result<(), DatabaseError> {
+fn complete_config(config: &mut Config, text: &str) -> Result<(), DatabaseError> {
     let set = |name: &str| env::var(name).ok().filter(|value| !value.is_empty());
     if config.get_hosts().is_empty() && config.get_hostaddrs().is_empty() {
-        let socket = SOCKET_FOLDERS.iter().find(|folder| Path::new(folder).join(format!(".s.PGSQL.{PORT}")).exists());
+        let socket =
+            SOCKET_FOLDERS.iter().find(|folder| Path::new(folder).join(format!(".s.PGSQL.{DEFAULT_PORT}")).exists());
         config.host(set("PGHOST").as_deref().or(socket.copied()).unwrap_or("localhost"));
     }
     if config.get_ports().is_empty()
@@ -144,8 +145,9 @@ fn complete(config: &mut Config, text: &str) -> Result<(), DatabaseError> {
             None => SslMode::Require,
         });
     }
-    config.application_name("wayword").connect_timeout(PATIENCE).keepalives_idle(Duration::from_secs(30));
-    let options = config.get_options().map_or_else(|| OPTIONS.to_owned(), |asked| format!("{OPTIONS} {asked}"));
+    config.application_name("wayword").connect_timeout(CONNECT_TIMEOUT).keepalives_idle(Duration::from_secs(30));
+    let options =
+        config.get_options().map_or_else(|| SERVER_OPTIONS.to_owned(), |asked| format!("{SERVER_OPTIONS} {asked}"));
     config.options(&options);
     Ok(())
 }
@@ -159,7 +161,7 @@ fn is_here(config: &Config) -> bool {
     })
 }
 
-fn shown(config: &Config) -> String {
+fn describe_config(config: &Config) -> String {
     let user = config.get_user().map_or(String::new(), |user| format!("{user}@"));
     let host = match config.get_hosts().first() {
         Some(Host::Tcp(name)) => name.clone(),
@@ -167,7 +169,7 @@ fn shown(config: &Config) -> String {
         Some(Host::Unix(folder)) => folder.display().to_string(),
         None => String::new(),
     };
-    let port = config.get_ports().first().map_or(PORT, |port| *port);
+    let port = config.get_ports().first().map_or(DEFAULT_PORT, |port| *port);
     format!("{user}{host}:{port}/{}", config.get_dbname().unwrap_or_default())
 }
 
@@ -183,24 +185,27 @@ mod tests {
             "host=h dbname=db password=geheim",
             "host=h dbname=db passwrd=geheim",
         ] {
-            let told = Database::named(text, None).unwrap_err().to_string();
+            let told = PostgresDatabase::from_name(text, None).unwrap_err().to_string();
             assert!(!told.contains("geheim"), "{told}");
         }
     }
 
     #[test]
     fn a_word_is_the_name_of_a_database() {
-        let database = Database::named("wayword_db", None).unwrap();
-        assert!(database.shown().ends_with("/wayword_db"), "{}", database.shown());
-        assert_eq!(Database::named("postgresql://me@far:99/db", None).unwrap().shown(), "me@far:99/db");
+        let database = PostgresDatabase::from_name("wayword_db", None).unwrap();
+        assert!(database.shown_name().ends_with("/wayword_db"), "{}", database.shown_name());
+        assert_eq!(
+            PostgresDatabase::from_name("postgresql://me@far:99/db", None).unwrap().shown_name(),
+            "me@far:99/db"
+        );
         for bad in ["", " ", "postgresql://me@host", "host=h"] {
-            assert!(Database::named(bad, None).is_err(), "{bad:?}");
+            assert!(PostgresDatabase::from_name(bad, None).is_err(), "{bad:?}");
         }
     }
 
     #[test]
     fn another_machine_is_reached_by_tls_alone() {
-        let mode = |text: &str| Database::named(text, None).unwrap().config.get_ssl_mode();
+        let mode = |text: &str| PostgresDatabase::from_name(text, None).unwrap().config.get_ssl_mode();
         assert_eq!(mode("postgresql://me@far/db"), SslMode::Require);
         assert_eq!(mode("postgresql://me@far/db?sslmode=verify-full"), SslMode::Require);
         assert_eq!(mode("postgresql://me@far/db?sslmode=disable"), SslMode::Disable);

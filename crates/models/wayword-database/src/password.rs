@@ -14,7 +14,7 @@ use std::{
 const MOST_BYTES: u64 = 1 << 20;
 
 /// The password of a connection; `None` if no source has one for it.
-pub(crate) fn find(config: &Config, variable: Option<&str>) -> Result<Option<String>, DatabaseError> {
+pub(crate) fn find_password(config: &Config, variable: Option<&str>) -> Result<Option<String>, DatabaseError> {
     if let Some(name) = variable {
         let value = env::var(name).ok().filter(|value| !value.is_empty());
         return value.map(Some).ok_or_else(|| DatabaseError::Name {
@@ -41,7 +41,7 @@ fn in_file(config: &Config, path: &Path) -> Result<Option<String>, DatabaseError
         return Err(failed("others may read this password file".to_owned(), "chmod 600 the file"));
     }
     let text = fs::read_to_string(path).map_err(|error| failed(error.to_string(), "check PGPASSFILE"))?;
-    Ok(text.lines().find_map(|line| password_of(line, &wanted(config))))
+    Ok(text.lines().find_map(|line| password_of(line, &wanted_fields(config))))
 }
 
 /// Whether other users may read or write a file of this mode and owner. A file of root may be readable for its group, because
@@ -53,7 +53,7 @@ fn is_open(mode: u32, owner: u32) -> bool {
 }
 
 /// Host, port, database and user of the connection, in the order of a line of the password file.
-fn wanted(config: &Config) -> [String; 4] {
+fn wanted_fields(config: &Config) -> [String; 4] {
     let host = match config.get_hosts().first() {
         Some(Host::Tcp(name)) => name.clone(),
         _ => "localhost".to_owned(),
@@ -68,7 +68,7 @@ fn password_of(line: &str, wanted: &[String; 4]) -> Option<String> {
     if line.starts_with('#') {
         return None;
     }
-    let fields = fields(line);
+    let fields = split_fields(line);
     let [names @ .., password] = &fields[..] else { return None };
     let fits =
         names.len() == wanted.len() && names.iter().zip(wanted).all(|(name, wanted)| name == "*" || name == wanted);
@@ -76,7 +76,7 @@ fn password_of(line: &str, wanted: &[String; 4]) -> Option<String> {
 }
 
 /// The fields of a line, between colons. A backslash takes the next character as it is.
-fn fields(line: &str) -> Vec<String> {
+fn split_fields(line: &str) -> Vec<String> {
     let mut fields = vec![String::new()];
     let mut characters = line.chars();
     while let Some(character) = characters.next() {

@@ -1,6 +1,6 @@
 //! A pool of a few connections that many threads share. Lost connections are replaced after a restart of the server.
 
-use crate::{Database, DatabaseError, error::is_lost};
+use crate::{DatabaseError, PostgresDatabase, error::is_lost};
 use postgres::{Client, Row, Statement, types::ToSql};
 use std::{
     collections::BTreeMap,
@@ -11,24 +11,28 @@ use std::{
 };
 
 /// How long work is tried again while the server cannot be reached.
-const PATIENCE: Duration = Duration::from_secs(120);
+const MAX_RETRY_TIME: Duration = Duration::from_secs(120);
 /// First and longest pause between two tries. Each is twice the one before.
 const FIRST_PAUSE: Duration = Duration::from_millis(50);
 const LAST_PAUSE: Duration = Duration::from_secs(2);
 
 /// A connection, with the statements that it has prepared.
-pub struct Connection {
+pub struct PooledConnection {
     client: Client,
     prepared: BTreeMap<&'static str, Statement>,
 }
 
-impl Connection {
+impl PooledConnection {
     /// Carries out a statement and returns its rows. It is prepared once for each connection.
     ///
     /// # Errors
     /// The error of the server.
-    pub fn rows(&mut self, sql: &'static str, values: &[&(dyn ToSql + Sync)]) -> Result<Vec<Row>, postgres::Error> {
-        let statement = self.prepared(sql)?;
+    pub fn query_rows(
+        &mut self,
+        sql: &'static str,
+        values: &[&(dyn ToSql + Sync)],
+    ) -> Result<Vec<Row>, postgres::Error> {
+        let statement = self.prepare_statement(sql)?;
         self.client.query(&statement, values)
     }
 
@@ -36,7 +40,7 @@ impl Connection {
     ///
     /// # Errors
     /// The error of the server.
-    pub fn prepared(&mut self, sql: &'static str) -> Result<Statement, postgres::Error> {
+    pub fn prepare_statement(&mut self, sql: &'static str) -> Result<Statement, postgres::Error> {
         if let Some(statement) = self.prepared.get(sql) {
             return Ok(statement.clone());
         }
@@ -52,29 +56,29 @@ impl Connection {
 }
 
 /// Connections to one database. Threads take them in turn.
-pub struct Pool {
-    database: Database,
+pub struct ConnectionPool {
+    database: PostgresDatabase,
     most: usize,
-    state: Mutex<State>,
+    state: Mutex<PoolState>,
     back: Condvar,
 }
 
 #[derive(Default)]
-struct State {
-    idle: Vec<Connection>,
+struct PoolState {
+    idle: Vec<PooledConnection>,
     out: usize,
 }
 
-impl Pool {
+impl ConnectionPool {
     /// A pool of at most so many connections. Makes none yet.
     #[must_use]
-    pub fn new(database: Database, most: usize) -> Self {
+    pub fn new(database: PostgresDatabase, most: usize) -> Self {
         Self { database, most: most.max(1), state: Mutex::default(), back: Condvar::new() }
     }
 
     /// The database.
     #[must_use]
-    pub fn database(&self) -> &Database {
+    pub fn database(&self) -> &PostgresDatabase {
         &self.database
     }
 
@@ -83,15 +87,15 @@ impl Pool {
     ///
     /// # Errors
     /// The error of the server, or that it could not be reached.
-    pub fn with<T>(
+    pub fn with_connection<T>(
         &self,
         doing: &'static str,
-        mut work: impl FnMut(&mut Connection) -> Result<T, postgres::Error>,
+        mut work: impl FnMut(&mut PooledConnection) -> Result<T, postgres::Error>,
     ) -> Result<T, DatabaseError> {
-        let until = Instant::now() + PATIENCE;
+        let until = Instant::now() + MAX_RETRY_TIME;
         let mut pause = FIRST_PAUSE;
         loop {
-            let lost = match self.once(doing, &mut work) {
+            let lost = match self.run_once(doing, &mut work) {
                 Err(error) if error.is_lost() => error,
                 done => return done,
             };
@@ -103,15 +107,15 @@ impl Pool {
         }
     }
 
-    fn once<T>(
+    fn run_once<T>(
         &self,
         doing: &'static str,
-        work: &mut impl FnMut(&mut Connection) -> Result<T, postgres::Error>,
+        work: &mut impl FnMut(&mut PooledConnection) -> Result<T, postgres::Error>,
     ) -> Result<T, DatabaseError> {
-        let mut connection = self.take()?;
+        let mut connection = self.take_connection()?;
         // If the work panics, the place of this connection stays taken; the program ends in that case.
         let done = work(&mut connection);
-        let mut state = self.state();
+        let mut state = self.lock_state();
         state.out -= 1;
         if connection.client.is_closed() || done.as_ref().is_err_and(is_lost) {
             // The idle connections were lost too.
@@ -121,11 +125,11 @@ impl Pool {
         }
         drop(state);
         self.back.notify_one();
-        done.map_err(|error| DatabaseError::server(self.database.shown(), doing, &error))
+        done.map_err(|error| DatabaseError::from_server(self.database.shown_name(), doing, &error))
     }
 
-    fn take(&self) -> Result<Connection, DatabaseError> {
-        let mut state = self.state();
+    fn take_connection(&self) -> Result<PooledConnection, DatabaseError> {
+        let mut state = self.lock_state();
         while state.out >= self.most {
             state = self.back.wait(state).unwrap_or_else(PoisonError::into_inner);
         }
@@ -134,24 +138,24 @@ impl Pool {
         drop(state);
         let connection = match idle {
             Some(connection) if !connection.client.is_closed() => Ok(connection),
-            _ => self.database.connect().map(|client| Connection { client, prepared: BTreeMap::new() }),
+            _ => self.database.connect().map(|client| PooledConnection { client, prepared: BTreeMap::new() }),
         };
         match connection {
             Ok(connection) => Ok(connection),
             Err(error) => {
-                self.state().out -= 1;
+                self.lock_state().out -= 1;
                 self.back.notify_one();
                 Err(error)
             }
         }
     }
 
-    fn state(&self) -> MutexGuard<'_, State> {
+    fn lock_state(&self) -> MutexGuard<'_, PoolState> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-impl fmt::Debug for Pool {
+impl fmt::Debug for ConnectionPool {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Pool").field("database", &self.database).field("most", &self.most).finish_non_exhaustive()
     }

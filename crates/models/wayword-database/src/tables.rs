@@ -1,11 +1,11 @@
 //! Makes the tables of a crate in its schema, and brings older ones to the newest version.
 
-use crate::{Connection, DatabaseError, Pool};
+use crate::{ConnectionPool, DatabaseError, PooledConnection};
 use postgres::error::SqlState;
 
 /// The tables of a crate, in one schema.
 #[derive(Debug, Clone, Copy)]
-pub struct Tables {
+pub struct SchemaTables {
     /// The schema, which contains a table `version` too.
     pub schema: &'static str,
     /// The statements of each version: the first make version 1, the next change version 1 to 2, and so on. Published
@@ -16,27 +16,27 @@ pub struct Tables {
 }
 
 /// The oldest server, as `server_version_num` counts.
-const OLDEST: i32 = 150_000;
+const OLDEST_SERVER_VERSION: i32 = 150_000;
 
 /// The number of the advisory lock ("Wayw" in ASCII) that a program holds while it makes Wayword's tables.
-const LOCK: i64 = 0x5761_7977;
+const TABLES_LOCK_ID: i64 = 0x5761_7977;
 
-impl Tables {
+impl SchemaTables {
     /// Everything that makes the tables of a new database and, if one is named, gives a role the rights of a worker.
     #[must_use]
-    pub fn sql(&self, role: Option<&str>) -> String {
-        let grants = role.map_or(String::new(), |role| self.granted(role));
-        format!("BEGIN;\n{}{grants}COMMIT;\n", self.made(0))
+    pub fn creation_sql(&self, role: Option<&str>) -> String {
+        let grants = role.map_or(String::new(), |role| self.grants_sql(role));
+        format!("BEGIN;\n{}{grants}COMMIT;\n", self.upgrade_sql(0))
     }
 
     /// The statements that give a role the rights of a worker.
     #[must_use]
-    pub fn granted(&self, role: &str) -> String {
+    pub fn grants_sql(&self, role: &str) -> String {
         self.grants.replace("ROLE", &format!("\"{}\"", role.replace('"', "\"\"")))
     }
 
     /// The statements from a version to the newest.
-    fn made(&self, from: usize) -> String {
+    fn upgrade_sql(&self, from: usize) -> String {
         let Self { schema, steps, .. } = self;
         let begin = format!(
             "CREATE SCHEMA IF NOT EXISTS {schema};\nCREATE TABLE IF NOT EXISTS {schema}.version (version INTEGER NOT NULL);\n"
@@ -56,14 +56,14 @@ fn steps_len(steps: &[&str]) -> i32 {
 ///
 /// # Errors
 /// When the server is too old, the tables are newer than this program, or they have to be made and the role may not.
-pub fn prepare(pool: &Pool, tables: &Tables) -> Result<(), DatabaseError> {
-    let database = pool.database().shown().to_owned();
-    let about = pool.with("ask for the server's version", |connection| {
+pub fn prepare_tables(pool: &ConnectionPool, tables: &SchemaTables) -> Result<(), DatabaseError> {
+    let database = pool.database().shown_name().to_owned();
+    let about = pool.with_connection("ask for the server's version", |connection| {
         let sql = "SELECT current_setting('server_version_num')::int, version(), current_setting('server_encoding')";
         let row = connection.client().query_one(sql, &[])?;
         Ok((row.try_get::<_, i32>(0)?, row.try_get::<_, String>(1)?, row.try_get::<_, String>(2)?))
     })?;
-    if about.0 < OLDEST {
+    if about.0 < OLDEST_SERVER_VERSION {
         let version = about.1.split_whitespace().nth(1).unwrap_or_default().to_owned();
         return Err(DatabaseError::TooOld { database, version });
     }
@@ -72,7 +72,8 @@ pub fn prepare(pool: &Pool, tables: &Tables) -> Result<(), DatabaseError> {
         return Err(DatabaseError::Encoding { database, encoding: about.2 });
     }
     let newest = steps_len(tables.steps);
-    let found = pool.with("ask for the version of the tables", |connection| version(connection, tables))?;
+    let found =
+        pool.with_connection("ask for the version of the tables", |connection| read_version(connection, tables))?;
     if found == newest {
         return Ok(());
     }
@@ -81,8 +82,8 @@ pub fn prepare(pool: &Pool, tables: &Tables) -> Result<(), DatabaseError> {
     }
     // An error of missing rights gets a better hint, so its message is stored apart from the result.
     let mut refused = None;
-    let made = pool.with("make the tables", |connection| {
-        let made = make(connection, tables);
+    let made = pool.with_connection("make the tables", |connection| {
+        let made = make_tables(connection, tables);
         if let Err(error) = &made
             && error.code() == Some(&SqlState::INSUFFICIENT_PRIVILEGE)
         {
@@ -97,7 +98,7 @@ pub fn prepare(pool: &Pool, tables: &Tables) -> Result<(), DatabaseError> {
 }
 
 /// The version of the tables; 0 if there are none.
-fn version(connection: &mut Connection, tables: &Tables) -> Result<i32, postgres::Error> {
+fn read_version(connection: &mut PooledConnection, tables: &SchemaTables) -> Result<i32, postgres::Error> {
     // Queries the catalog as a table. A lookup of the name (`to_regclass`) could be answered from this connection's cache,
     // which may still know that the table does not exist.
     let sql = "SELECT EXISTS (SELECT FROM pg_catalog.pg_tables WHERE schemaname = $1 AND tablename = 'version')";
@@ -110,13 +111,13 @@ fn version(connection: &mut Connection, tables: &Tables) -> Result<i32, postgres
 }
 
 /// Makes the missing tables in one transaction. Other programs wait for it.
-fn make(connection: &mut Connection, tables: &Tables) -> Result<(), postgres::Error> {
+fn make_tables(connection: &mut PooledConnection, tables: &SchemaTables) -> Result<(), postgres::Error> {
     let client = connection.client();
     client.batch_execute("BEGIN")?;
-    let done = client.execute("SELECT pg_advisory_xact_lock($1)", &[&LOCK]).and_then(|_| {
-        let found = version(connection, tables)?;
+    let done = client.execute("SELECT pg_advisory_xact_lock($1)", &[&TABLES_LOCK_ID]).and_then(|_| {
+        let found = read_version(connection, tables)?;
         let from = usize::try_from(found).unwrap_or(0);
-        if from < tables.steps.len() { connection.client().batch_execute(&tables.made(from)) } else { Ok(()) }
+        if from < tables.steps.len() { connection.client().batch_execute(&tables.upgrade_sql(from)) } else { Ok(()) }
     });
     let end = if done.is_ok() { "COMMIT" } else { "ROLLBACK" };
     let ended = connection.client().batch_execute(end);

@@ -12,14 +12,14 @@ use std::{
     sync::atomic::{AtomicUsize, Ordering},
     thread,
 };
-use wayword_ledger::{Answer, Call, Ledger, Limits, Refused, Run};
+use wayword_ledger::{CallAnswer, Ledger, LedgerRun, ModelCall, RequestRefusedError, RunLimits};
 
-fn ask(run: &Run, number: usize) {
+fn ask(run: &LedgerRun, number: usize) {
     let request = json!({ "messages": [{ "role": "user", "text": format!("{number} {}", "word ".repeat(100)) }] });
-    let call = Call { model: "t/m".into(), base_url: "http://127.0.0.1".into(), request, replicate: 0 };
-    let answered = run.once(&call, |attempts| -> Result<Answer, Refused> {
-        attempts.begin(Some(0.001))?;
-        Ok(Answer {
+    let call = ModelCall { model: "t/m".into(), base_url: "http://127.0.0.1".into(), request, replicate: 0 };
+    let answered = run.answer_once(&call, |attempts| -> Result<CallAnswer, RequestRefusedError> {
+        attempts.begin_request(Some(0.001))?;
+        Ok(CallAnswer {
             text: "It is a lamp.".into(),
             finish: "stop".into(),
             tokens_in: 120,
@@ -34,7 +34,7 @@ fn ask(run: &Run, number: usize) {
 
 fn calls(criterion: &mut Criterion) {
     let folder = tempfile::tempdir().unwrap();
-    let run = Ledger::open(&folder.path().join("l.db")).unwrap().run("bench", Limits::default()).unwrap();
+    let run = Ledger::open(&folder.path().join("l.db")).unwrap().start_run("bench", RunLimits::default()).unwrap();
     ask(&run, 0);
     criterion.bench_function("a call that is in the ledger", |bencher| bencher.iter(|| ask(&run, 0)));
     let next = AtomicUsize::new(1);

@@ -15,9 +15,9 @@ use std::{
     thread,
     time::{Duration, Instant, SystemTime, UNIX_EPOCH},
 };
-use wayword_database::Database;
-use wayword_ledger::{Answer, Call, Ledger, Limits, Rates, Refused};
-use wayword_testkit::Postgres;
+use wayword_database::PostgresDatabase;
+use wayword_ledger::{CallAnswer, Ledger, ModelCall, ProviderRates, RequestRefusedError, RunLimits};
+use wayword_testkit::PostgresServer;
 
 const URL: &str = "WAYWORD_SHARED_RATE";
 const CALL: Duration = Duration::from_millis(200);
@@ -35,9 +35,9 @@ fn main() {
 
 /// A worker: makes its part of the calls, and prints when each leaves.
 fn work(url: &str, calls: usize, rate: f64, worker: usize, workers: usize) {
-    let ledger = Ledger::postgres(&Database::named(url, None).unwrap()).unwrap();
-    let run = ledger.run("run", Limits { max_usd: Some(USD * calls as f64), max_calls: None }).unwrap();
-    let rates = Rates { requests_per_s: Some(rate), tokens_per_s: None };
+    let ledger = Ledger::open_postgres(&PostgresDatabase::from_name(url, None).unwrap()).unwrap();
+    let run = ledger.start_run("run", RunLimits { max_usd: Some(USD * calls as f64), max_calls: None }).unwrap();
+    let rates = ProviderRates { requests_per_s: Some(rate), tokens_per_s: None };
     // Twice as many threads as the calls that are in flight at that rate.
     let threads = (2.0 * rate * CALL.as_secs_f64() / workers as f64).ceil() as usize + 1;
     let next = AtomicUsize::new(worker);
@@ -49,14 +49,14 @@ fn work(url: &str, calls: usize, rate: f64, worker: usize, workers: usize) {
                     if number >= calls {
                         break;
                     }
-                    let call = Call {
+                    let call = ModelCall {
                         model: "t/m".into(),
                         base_url: String::new(),
                         request: json!({ "messages": [{ "text": format!("{number} {}", "word ".repeat(100)) }] }),
                         replicate: 0,
                     };
-                    let made = run.once(&call, |attempts| -> Result<Answer, Refused> {
-                        attempts.begin(Some(USD))?;
+                    let made = run.answer_once(&call, |attempts| -> Result<CallAnswer, RequestRefusedError> {
+                        attempts.begin_request(Some(USD))?;
                         run.wait_turn("t", rates, 500, || false)?;
                         let at = SystemTime::now().duration_since(UNIX_EPOCH).unwrap().as_micros();
                         std::io::stdout().write_all(format!("{at}\n").as_bytes()).unwrap();
@@ -70,8 +70,8 @@ fn work(url: &str, calls: usize, rate: f64, worker: usize, workers: usize) {
     });
 }
 
-fn answer() -> Answer {
-    Answer {
+fn answer() -> CallAnswer {
+    CallAnswer {
         text: "It is a lamp.".into(),
         finish: "stop".into(),
         tokens_in: 120,
@@ -83,9 +83,9 @@ fn answer() -> Answer {
 }
 
 fn measure(calls: usize, rate: usize, workers: usize) {
-    let server = Postgres::start().expect("PostgreSQL is not installed");
+    let server = PostgresServer::start().expect("PostgreSQL is not installed");
     let url = server.new_database();
-    drop(Ledger::postgres(&Database::named(&url, None).unwrap()).unwrap());
+    drop(Ledger::open_postgres(&PostgresDatabase::from_name(&url, None).unwrap()).unwrap());
     let begun = Instant::now();
     let start = |worker: usize| {
         let mut command = Command::new(env::current_exe().unwrap());
@@ -109,8 +109,8 @@ fn measure(calls: usize, rate: usize, workers: usize) {
     let in_second = |from: usize| at[from..].iter().take_while(|time| **time < at[from] + 1_000_000).count();
     let most = (0..at.len()).map(in_second).max().unwrap();
     let sending_s = (at[at.len() - 1] - at[0]) as f64 / 1e6;
-    let ledger = Ledger::postgres(&Database::named(&url, None).unwrap()).unwrap();
-    let spending = ledger.spending("run").unwrap();
+    let ledger = Ledger::open_postgres(&PostgresDatabase::from_name(&url, None).unwrap()).unwrap();
+    let spending = ledger.run_spending("run").unwrap();
     println!("{calls} calls of {} ms by {workers} processes at {rate}/s:", CALL.as_millis());
     println!("  {took_s:.1} s in all; sent in {sending_s:.1} s, {:.1}/s", at.len() as f64 / sending_s);
     println!("  {:.1} % of what the rate allows", 100.0 * at.len() as f64 / sending_s / rate as f64);

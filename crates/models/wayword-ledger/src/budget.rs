@@ -8,7 +8,7 @@ use std::sync::{Mutex, PoisonError};
 
 /// Limits of a run as a whole, including its earlier processes.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Limits {
+pub struct RunLimits {
     /// Most US dollars.
     pub max_usd: Option<f64>,
     /// Most requests that are sent.
@@ -17,7 +17,7 @@ pub struct Limits {
 
 /// Why a request may not be sent.
 #[derive(Debug, Clone, thiserror::Error)]
-pub enum Refused {
+pub enum RequestRefusedError {
     /// The user has interrupted.
     #[error("interrupted")]
     Stopped,
@@ -47,7 +47,7 @@ pub enum Refused {
     Ledger(#[from] LedgerError),
 }
 
-impl Refused {
+impl RequestRefusedError {
     /// Whether the ledger's disk is full or gone.
     #[must_use]
     pub fn is_lost(&self) -> bool {
@@ -56,7 +56,7 @@ impl Refused {
 
     /// Splits the message into the reason and a hint at what to do.
     #[must_use]
-    pub fn told(&self) -> (String, String) {
+    pub fn reason_and_hint(&self) -> (String, String) {
         let hint = match self {
             Self::MaxUsd { .. } => "all answers are kept: to continue, run the same command with a larger --max-usd",
             Self::MaxCalls { .. } => {
@@ -75,13 +75,13 @@ impl Refused {
 
 /// A run's limits, and what it has spent against them.
 #[derive(Debug)]
-pub(crate) struct Budget {
-    limits: Limits,
-    spent: Mutex<Spent>,
+pub(crate) struct RunBudget {
+    limits: RunLimits,
+    spent: Mutex<SpentBudget>,
 }
 
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Spent {
+pub(crate) struct SpentBudget {
     /// US dollars that were paid, or that lost requests may have cost.
     pub(crate) usd: f64,
     /// Upper bounds of the requests in flight, US dollars.
@@ -91,7 +91,7 @@ pub(crate) struct Spent {
 }
 
 /// An amount of money, or `None` if it is negative or not finite, which a broken table of prices can cause.
-pub(crate) fn known(usd: Option<f64>) -> Option<f64> {
+pub(crate) fn valid_amount(usd: Option<f64>) -> Option<f64> {
     usd.filter(|usd| usd.is_finite() && *usd >= 0.0)
 }
 
@@ -99,42 +99,46 @@ pub(crate) fn known(usd: Option<f64>) -> Option<f64> {
 const ROUNDING_USD: f64 = 1e-9;
 
 /// Refuses a request that could exceed a limit.
-pub(crate) fn fits(limits: Limits, spent: Spent, most_usd: Option<f64>) -> Result<(), Refused> {
+pub(crate) fn check_limits(
+    limits: RunLimits,
+    spent: SpentBudget,
+    most_usd: Option<f64>,
+) -> Result<(), RequestRefusedError> {
     if let Some(max_calls) = limits.max_calls.filter(|max_calls| spent.calls >= *max_calls) {
-        return Err(Refused::MaxCalls { max_calls });
+        return Err(RequestRefusedError::MaxCalls { max_calls });
     }
     let Some(max_usd) = limits.max_usd else { return Ok(()) };
-    let Some(next_usd) = most_usd else { return Err(Refused::NoPrice) };
+    let Some(next_usd) = most_usd else { return Err(RequestRefusedError::NoPrice) };
     let spent_usd = spent.usd + spent.reserved_usd;
     // If the limit is not a number, the comparison is false, and every request is refused.
     let fits = spent_usd + next_usd <= max_usd + ROUNDING_USD;
-    if fits { Ok(()) } else { Err(Refused::MaxUsd { max_usd, spent_usd, next_usd }) }
+    if fits { Ok(()) } else { Err(RequestRefusedError::MaxUsd { max_usd, spent_usd, next_usd }) }
 }
 
-impl Budget {
-    pub(crate) fn new(limits: Limits, spent: Spent) -> Self {
+impl RunBudget {
+    pub(crate) fn new(limits: RunLimits, spent: SpentBudget) -> Self {
         Self { limits, spent: Mutex::new(spent) }
     }
 
     /// Reserves money for a request.
-    pub(crate) fn reserve(&self, most_usd: Option<f64>) -> Result<(), Refused> {
+    pub(crate) fn reserve_money(&self, most_usd: Option<f64>) -> Result<(), RequestRefusedError> {
         let mut spent = self.spent.lock().unwrap_or_else(PoisonError::into_inner);
-        fits(self.limits, *spent, most_usd)?;
+        check_limits(self.limits, *spent, most_usd)?;
         spent.reserved_usd += most_usd.unwrap_or(0.0);
         spent.calls += 1;
         Ok(())
     }
 
     /// Replaces a reservation with what the request cost.
-    pub(crate) fn settle(&self, most_usd: Option<f64>, usd: f64) {
+    pub(crate) fn settle_reservation(&self, most_usd: Option<f64>, usd: f64) {
         let mut spent = self.spent.lock().unwrap_or_else(PoisonError::into_inner);
         spent.reserved_usd -= most_usd.unwrap_or(0.0);
         spent.usd += usd;
     }
 
     /// Takes back the reservation of a request that was not sent.
-    pub(crate) fn cancel(&self, most_usd: Option<f64>) {
-        self.settle(most_usd, 0.0);
+    pub(crate) fn cancel_reservation(&self, most_usd: Option<f64>) {
+        self.settle_reservation(most_usd, 0.0);
         self.spent.lock().unwrap_or_else(PoisonError::into_inner).calls -= 1;
     }
 }
@@ -152,15 +156,15 @@ mod tests {
             max_calls in 0u64..30,
             asked in prop::collection::vec((0.0..0.2f64, 0.0..1.0f64, any::<bool>()), 0..60),
         ) {
-            let limits = Limits { max_usd: Some(max_usd), max_calls: Some(max_calls) };
-            let budget = Budget::new(limits, Spent::default());
+            let limits = RunLimits { max_usd: Some(max_usd), max_calls: Some(max_calls) };
+            let budget = RunBudget::new(limits, SpentBudget::default());
             let mut open = Vec::new();
             for (most_usd, share, ends) in asked {
-                if budget.reserve(Some(most_usd)).is_ok() {
+                if budget.reserve_money(Some(most_usd)).is_ok() {
                     open.push((most_usd, share));
                 }
                 if let Some((most_usd, share)) = open.pop().filter(|_| ends) {
-                    budget.settle(Some(most_usd), most_usd * share);
+                    budget.settle_reservation(Some(most_usd), most_usd * share);
                 }
                 let spent = *budget.spent.lock().unwrap();
                 prop_assert!(spent.usd + spent.reserved_usd <= max_usd + 1e-6);
@@ -171,8 +175,8 @@ mod tests {
 
     #[test]
     fn without_a_price_money_cannot_be_bounded() {
-        let bounded = Budget::new(Limits { max_usd: Some(1.0), max_calls: None }, Spent::default());
-        assert!(matches!(bounded.reserve(None), Err(Refused::NoPrice)));
-        assert!(Budget::new(Limits::default(), Spent::default()).reserve(None).is_ok());
+        let bounded = RunBudget::new(RunLimits { max_usd: Some(1.0), max_calls: None }, SpentBudget::default());
+        assert!(matches!(bounded.reserve_money(None), Err(RequestRefusedError::NoPrice)));
+        assert!(RunBudget::new(RunLimits::default(), SpentBudget::default()).reserve_money(None).is_ok());
     }
 }

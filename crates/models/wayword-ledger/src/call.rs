@@ -10,7 +10,7 @@ use std::fmt;
 /// Everything that could change a call's answer.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Call {
+pub struct ModelCall {
     /// `provider/model`.
     pub model: String,
     /// The address of the service; for a model in process, where its weights come from.
@@ -24,12 +24,12 @@ pub struct Call {
 /// The key of a call: the SHA-256 of its canonical JSON, in hexadecimal digits.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(transparent)]
-pub struct Key(String);
+pub struct CallKey(String);
 
 /// The answer of a call, and what it cost.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Answer {
+pub struct CallAnswer {
     /// The text of the answer.
     pub text: String,
     /// Why the answer ended, in the caller's words.
@@ -49,23 +49,23 @@ pub struct Answer {
 /// A call with its answer: a line of an export or a recording.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Row {
+pub struct LedgerEntry {
     /// The call's key.
-    pub key: Key,
+    pub key: CallKey,
     /// The call.
-    pub call: Call,
+    pub call: ModelCall,
     /// Its answer.
-    pub answer: Answer,
+    pub answer: CallAnswer,
     /// When it was answered, seconds since 1970.
     pub at_unix_s: i64,
     /// The run that made the call.
     pub run: String,
 }
 
-impl Call {
+impl ModelCall {
     /// The call's key. Equal calls have equal keys, for any order of the request's fields.
     #[must_use]
-    pub fn key(&self) -> Key {
+    pub fn key(&self) -> CallKey {
         let mut canonical = String::new();
         let parts = [
             Value::from(self.model.as_str()),
@@ -74,7 +74,7 @@ impl Call {
             Value::from(self.replicate),
         ];
         write_canonical(&Value::Array(parts.into()), &mut canonical);
-        Key(Sha256::digest(canonical).iter().map(|byte| format!("{byte:02x}")).collect())
+        CallKey(Sha256::digest(canonical).iter().map(|byte| format!("{byte:02x}")).collect())
     }
 }
 
@@ -103,7 +103,7 @@ fn write_canonical(value: &Value, out: &mut String) {
     }
 }
 
-impl Key {
+impl CallKey {
     /// The hexadecimal digits.
     #[must_use]
     pub fn as_str(&self) -> &str {
@@ -111,12 +111,12 @@ impl Key {
     }
 
     /// A key as the store has it.
-    pub(crate) fn stored(digits: String) -> Self {
+    pub(crate) fn from_stored(digits: String) -> Self {
         Self(digits)
     }
 }
 
-impl fmt::Display for Key {
+impl fmt::Display for CallKey {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.0)
     }
@@ -128,8 +128,8 @@ mod tests {
     use proptest::prelude::*;
     use serde_json::json;
 
-    fn call(request: Value) -> Call {
-        Call { model: "p/m".into(), base_url: "http://127.0.0.1".into(), request, replicate: 0 }
+    fn call(request: Value) -> ModelCall {
+        ModelCall { model: "p/m".into(), base_url: "http://127.0.0.1".into(), request, replicate: 0 }
     }
 
     #[test]
@@ -140,9 +140,9 @@ mod tests {
         let others = [
             call(json!({"a": [1, {"x": null, "y": "é"}], "b": {}, "c": []})),
             call(json!({"a": [{"x": null, "y": "é\n"}, 1], "b": {}, "c": []})),
-            Call { model: "p/n".into(), ..one.clone() },
-            Call { base_url: "http://127.0.0.2".into(), ..one.clone() },
-            Call { replicate: 1, ..one.clone() },
+            ModelCall { model: "p/n".into(), ..one.clone() },
+            ModelCall { base_url: "http://127.0.0.2".into(), ..one.clone() },
+            ModelCall { replicate: 1, ..one.clone() },
         ];
         for other in others {
             assert_ne!(one.key(), other.key(), "{other:?}");

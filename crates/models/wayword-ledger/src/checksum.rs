@@ -1,13 +1,13 @@
 //! Checksums, which show whether an answer is the one that was written.
 
-use crate::{Answer, Key};
+use crate::{CallAnswer, CallKey};
 use serde_json::json;
 use sha2::{Digest, Sha256};
 
 /// The checksum of an answer in the ledger, in hexadecimal digits. It covers the whole answer and the call's key, so
 /// that the answer of another call fails too.
-pub(crate) fn of(key: &Key, answer: &Answer) -> String {
-    let Answer { text, finish, tokens_in, tokens_out, usd, latency_ms, attempts } = answer;
+pub(crate) fn answer_checksum(key: &CallKey, answer: &CallAnswer) -> String {
+    let CallAnswer { text, finish, tokens_in, tokens_out, usd, latency_ms, attempts } = answer;
     // The database stores integers up to `i64::MAX`, and does not distinguish -0.0 from 0.0.
     let count = |count: &u64| (*count).min(i64::MAX.cast_unsigned());
     let counts = [count(tokens_in), count(tokens_out), count(latency_ms)];

@@ -2,8 +2,8 @@
 //! for threads of one program.
 
 use crate::{
-    Key, LedgerError,
-    store::{Claimed, Store},
+    CallKey, LedgerError,
+    store::{CallStore, ClaimState},
 };
 use std::{
     thread,
@@ -16,68 +16,68 @@ const LAST_PAUSE: Duration = Duration::from_millis(250);
 
 /// How long to wait for a program that has claimed a call and neither sends another request for it nor releases it, because it is
 /// suspended or hangs. The timeouts of all requests are shorter.
-pub(crate) const PATIENCE: Duration = Duration::from_secs(3600);
+pub(crate) const ABANDONED_CLAIM_TIMEOUT: Duration = Duration::from_secs(3600);
 
 /// The right to make a call. Other programs wait until it is dropped or the call is answered.
-pub(crate) struct Claim<'a> {
-    store: &'a dyn Store,
-    key: &'a Key,
+pub(crate) struct CallClaim<'a> {
+    store: &'a dyn CallStore,
+    key: &'a CallKey,
     is_held: bool,
 }
 
-/// The result of [`Claim::take`].
-pub(crate) enum Taken<'a> {
+/// The result of [`CallClaim::take_claim`].
+pub(crate) enum ClaimOutcome<'a> {
     /// This program has the claim.
-    Ours(Claim<'a>),
+    Ours(CallClaim<'a>),
     /// Another program has made the call meanwhile.
     Answered,
     /// The run was stopped during the wait.
     Stopped,
 }
 
-impl<'a> Claim<'a> {
+impl<'a> CallClaim<'a> {
     /// Takes the right to make a call. If another program has it, waits until that program is done, has ended, or has sent no request for
     /// as long as `patience`.
     ///
     /// # Errors
     /// When the ledger cannot be used.
-    pub(crate) fn take(
-        store: &'a dyn Store,
-        key: &'a Key,
+    pub(crate) fn take_claim(
+        store: &'a dyn CallStore,
+        key: &'a CallKey,
         patience: Duration,
         stopped: impl Fn() -> bool,
-    ) -> Result<Taken<'a>, LedgerError> {
+    ) -> Result<ClaimOutcome<'a>, LedgerError> {
         let mut from: Option<String> = None;
         loop {
-            match store.claim(key, from.as_deref())? {
-                Claimed::Ours => return Ok(Taken::Ours(Self { store, key, is_held: true })),
-                Claimed::Answered => return Ok(Taken::Answered),
-                Claimed::Others => {}
+            match store.claim_call(key, from.as_deref())? {
+                ClaimState::Ours => return Ok(ClaimOutcome::Ours(Self { store, key, is_held: true })),
+                ClaimState::Answered => return Ok(ClaimOutcome::Answered),
+                ClaimState::Others => {}
             }
-            from = match wait(store, key, patience, &stopped)? {
-                Waited::Released => None,
-                Waited::Abandoned(by) => Some(by),
-                Waited::Stopped => return Ok(Taken::Stopped),
+            from = match wait_for_holder(store, key, patience, &stopped)? {
+                WaitOutcome::Released => None,
+                WaitOutcome::Abandoned(by) => Some(by),
+                WaitOutcome::Stopped => return Ok(ClaimOutcome::Stopped),
             };
         }
     }
 
     /// Marks the call as answered: the ledger released the claim when it stored the answer.
-    pub(crate) fn fulfilled(&mut self) {
+    pub(crate) fn mark_fulfilled(&mut self) {
         self.is_held = false;
     }
 }
 
-impl Drop for Claim<'_> {
+impl Drop for CallClaim<'_> {
     fn drop(&mut self) {
         if self.is_held {
-            self.store.release(self.key);
+            self.store.release_call(self.key);
         }
     }
 }
 
 /// How a wait for another program has ended.
-enum Waited {
+enum WaitOutcome {
     /// The program has released the claim, with an answer or without.
     Released,
     /// The program of this name has ended, or has sent no request for too long.
@@ -85,19 +85,24 @@ enum Waited {
     Stopped,
 }
 
-fn wait(store: &dyn Store, key: &Key, patience: Duration, stopped: impl Fn() -> bool) -> Result<Waited, LedgerError> {
+fn wait_for_holder(
+    store: &dyn CallStore,
+    key: &CallKey,
+    patience: Duration,
+    stopped: impl Fn() -> bool,
+) -> Result<WaitOutcome, LedgerError> {
     let (mut seen, mut since, mut pause) = (None, Instant::now(), FIRST_PAUSE);
     loop {
         if stopped() {
-            return Ok(Waited::Stopped);
+            return Ok(WaitOutcome::Stopped);
         }
-        let Some(holder) = store.holder(key)? else { return Ok(Waited::Released) };
+        let Some(holder) = store.claim_holder(key)? else { return Ok(WaitOutcome::Released) };
         let sends = seen.as_ref() != Some(&holder);
         if sends {
             since = Instant::now();
         }
         if holder.is_gone || since.elapsed() >= patience {
-            return Ok(Waited::Abandoned(holder.name));
+            return Ok(WaitOutcome::Abandoned(holder.name));
         }
         seen = Some(holder);
         thread::sleep(pause);
@@ -108,28 +113,28 @@ fn wait(store: &dyn Store, key: &Key, patience: Duration, stopped: impl Fn() -> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Call, store::Sqlite};
+    use crate::{ModelCall, store::SqliteStore};
 
-    fn key() -> Key {
-        Call { model: "t/m".into(), base_url: String::new(), request: "?".into(), replicate: 0 }.key()
+    fn key() -> CallKey {
+        ModelCall { model: "t/m".into(), base_url: String::new(), request: "?".into(), replicate: 0 }.key()
     }
 
     #[test]
     fn take_claim_gives_up_waiting_for_a_program_that_hangs() {
         let folder = tempfile::tempdir().unwrap();
-        let [first, second] = [(), ()].map(|()| Sqlite::open(&folder.path().join("l.db")).unwrap());
+        let [first, second] = [(), ()].map(|()| SqliteStore::open(&folder.path().join("l.db")).unwrap());
         let key = key();
-        let taken = |store, patience| Claim::take(store, &key, patience, || false).unwrap();
-        let held = taken(&first, PATIENCE);
-        assert!(matches!(held, Taken::Ours(_)));
-        let before = first.holder(&key).unwrap().unwrap();
+        let taken = |store, patience| CallClaim::take_claim(store, &key, patience, || false).unwrap();
+        let held = taken(&first, ABANDONED_CLAIM_TIMEOUT);
+        assert!(matches!(held, ClaimOutcome::Ours(_)));
+        let before = first.claim_holder(&key).unwrap().unwrap();
         let taken_over = taken(&second, Duration::from_millis(30));
-        assert!(matches!(taken_over, Taken::Ours(_)));
+        assert!(matches!(taken_over, ClaimOutcome::Ours(_)));
         drop(held);
         first.flush().unwrap();
-        assert_ne!(second.holder(&key).unwrap().unwrap().name, before.name, "it is not the first's");
+        assert_ne!(second.claim_holder(&key).unwrap().unwrap().name, before.name, "it is not the first's");
         drop(taken_over);
         second.flush().unwrap();
-        assert_eq!(second.holder(&key).unwrap(), None);
+        assert_eq!(second.claim_holder(&key).unwrap(), None);
     }
 }

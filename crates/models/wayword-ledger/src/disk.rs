@@ -6,7 +6,7 @@
 use std::path::Path;
 
 /// The `statfs` type numbers of network and cluster file systems, with their common names.
-const NETWORKS: [(u32, &str); 20] = [
+const NETWORK_FILE_SYSTEM_TYPES: [(u32, &str); 20] = [
     (0x0000_6969, "NFS"),
     (0x0bd0_0bd0, "Lustre"),
     (0x4750_4653, "GPFS"),
@@ -31,7 +31,7 @@ const NETWORKS: [(u32, &str); 20] = [
 ];
 
 /// The number of all FUSE file systems. They are served by programs, and the type of the mount distinguishes them.
-const FUSE: u32 = 0x6573_5546;
+const FUSE_TYPE_NUMBER: u32 = 0x6573_5546;
 
 /// Mount types of FUSE network file systems, without `fuse.`. Any other type counts as local, as encrypted folders and
 /// NTFS are. 9p counts as local too, because sandboxes and virtual machines use it for the machine's own disk.
@@ -68,9 +68,9 @@ pub fn network_at(path: &Path) -> Option<&'static str> {
 }
 
 /// The name of a network file system, from its type number and, for FUSE, from the type of its mount.
-fn network(number: u32, mounted_as: Option<&str>) -> Option<&'static str> {
-    if number != FUSE {
-        return NETWORKS.iter().find(|(known, _)| *known == number).map(|(_, name)| *name);
+fn network_file_system(number: u32, mounted_as: Option<&str>) -> Option<&'static str> {
+    if number != FUSE_TYPE_NUMBER {
+        return NETWORK_FILE_SYSTEM_TYPES.iter().find(|(known, _)| *known == number).map(|(_, name)| *name);
     }
     let served = mounted_as.map(|name| name.strip_prefix("fuse.").unwrap_or(name))?;
     NETWORKS_BY_FUSE.iter().find(|known| **known == served).copied()
@@ -78,14 +78,15 @@ fn network(number: u32, mounted_as: Option<&str>) -> Option<&'static str> {
 
 #[cfg(target_os = "linux")]
 mod system {
-    use super::{FUSE, network};
+    use super::{FUSE_TYPE_NUMBER, network_file_system};
     use std::{fs, os::unix::fs::MetadataExt, path::Path};
 
     pub(super) fn network_at(path: &Path) -> Option<&'static str> {
         let number = rustix::fs::statfs(path).ok()?.f_type as u32;
-        let mounts = if number == FUSE { fs::read_to_string("/proc/self/mountinfo").ok()? } else { String::new() };
+        let mounts =
+            if number == FUSE_TYPE_NUMBER { fs::read_to_string("/proc/self/mountinfo").ok()? } else { String::new() };
         let device = fs::metadata(path).ok()?.dev();
-        network(number, mounted_as(&mounts, rustix::fs::major(device), rustix::fs::minor(device)))
+        network_file_system(number, mounted_as(&mounts, rustix::fs::major(device), rustix::fs::minor(device)))
     }
 
     /// The type of the mount of a device, as `/proc/self/mountinfo` gives it.
@@ -118,20 +119,20 @@ mod tests {
             (0x1983_0326, "BeeGFS"),
             (0xff53_4d42, "CIFS"),
         ] {
-            assert_eq!(network(number, None), Some(name));
+            assert_eq!(network_file_system(number, None), Some(name));
         }
         let (ext4, xfs, btrfs, tmpfs, overlay, p9) =
             (0xef53, 0x5846_5342, 0x9123_683e, 0x0102_1994, 0x794c_7630, 0x0102_1997);
         for local in [ext4, xfs, btrfs, tmpfs, overlay, p9] {
-            assert_eq!(network(local, None), None, "{local:x}");
+            assert_eq!(network_file_system(local, None), None, "{local:x}");
         }
     }
 
     #[test]
     fn fuse_file_systems_are_known_by_their_mounts() {
-        assert_eq!(network(FUSE, Some("fuse.sshfs")), Some("sshfs"));
+        assert_eq!(network_file_system(FUSE_TYPE_NUMBER, Some("fuse.sshfs")), Some("sshfs"));
         for local in [Some("fuse.gocryptfs"), Some("fuseblk"), Some("virtiofs"), None] {
-            assert_eq!(network(FUSE, local), None, "{local:?}");
+            assert_eq!(network_file_system(FUSE_TYPE_NUMBER, local), None, "{local:?}");
         }
     }
 

@@ -1,6 +1,6 @@
 //! Errors of the ledger.
 
-use crate::Place;
+use crate::LedgerLocation;
 use rusqlite::ErrorCode;
 use std::{io::ErrorKind, path::PathBuf, sync::Arc};
 
@@ -30,7 +30,7 @@ pub enum LedgerError {
     #[error("{place}: the answer of {model} to call {key} was changed after it was written, by a damaged disk or by hand\nhint: {} drops all changed answers; then the same command makes those calls again", place.prune_changed())]
     Changed {
         /// The file or the database.
-        place: Place,
+        place: LedgerLocation,
         /// The call.
         key: String,
         /// The model that gave the answer.
@@ -40,7 +40,7 @@ pub enum LedgerError {
     #[error("{place}: cannot {doing} the ledger: {reason}\nhint: {hint}")]
     Store {
         /// The file or the database.
-        place: Place,
+        place: LedgerLocation,
         /// The operation that failed.
         doing: &'static str,
         /// The database's message.
@@ -56,7 +56,7 @@ pub enum LedgerError {
     )]
     Io {
         /// The file, or the ledger of which a file is made.
-        place: Place,
+        place: LedgerLocation,
         /// What was tried.
         doing: &'static str,
         /// The system's error.
@@ -76,7 +76,7 @@ pub enum LedgerError {
     )]
     Slow {
         /// The database.
-        place: Place,
+        place: LedgerLocation,
     },
     /// A line of a chunk's file cannot be read.
     #[error("{}: line {line}: {reason}\nhint: put a copy of the file in its place, or move it away: then its calls are made again", path.display())]
@@ -92,7 +92,7 @@ pub enum LedgerError {
     #[error("{place}: {reason}\nhint: this is a fault of the program: please report it")]
     Misuse {
         /// The file or the database.
-        place: Place,
+        place: LedgerLocation,
         /// The wrong use.
         reason: &'static str,
     },
@@ -109,13 +109,13 @@ pub enum LedgerError {
 }
 
 impl LedgerError {
-    pub(crate) fn store(path: &std::path::Path, doing: &'static str) -> impl Fn(rusqlite::Error) -> Self {
-        let place = Place::file(path);
+    pub(crate) fn store_error(path: &std::path::Path, doing: &'static str) -> impl Fn(rusqlite::Error) -> Self {
+        let place = LedgerLocation::from_path(path);
         move |error| Self::Store {
             place: place.clone(),
             doing,
             reason: error.to_string(),
-            hint: hint(&error),
+            hint: sqlite_hint(&error),
             is_lost: matches!(error.sqlite_error_code(), Some(ErrorCode::DiskFull | ErrorCode::SystemIoFailure)),
         }
     }
@@ -130,7 +130,7 @@ impl LedgerError {
         }
     }
 
-    pub(crate) fn io(place: impl Into<Place>, doing: &'static str) -> impl Fn(std::io::Error) -> Self {
+    pub(crate) fn io_error(place: impl Into<LedgerLocation>, doing: &'static str) -> impl Fn(std::io::Error) -> Self {
         let place = place.into();
         move |source| Self::Io { place: place.clone(), doing, source: Arc::new(source) }
     }
@@ -143,7 +143,7 @@ impl From<wayword_database::DatabaseError> for LedgerError {
     }
 }
 
-fn hint(error: &rusqlite::Error) -> &'static str {
+fn sqlite_hint(error: &rusqlite::Error) -> &'static str {
     match error.sqlite_error_code() {
         Some(ErrorCode::DatabaseBusy | ErrorCode::DatabaseLocked) => {
             "another program has it locked: wait for that program, or give another --ledger"
@@ -169,7 +169,7 @@ mod tests {
     #[test]
     fn a_full_disk_is_a_loss_and_a_locked_database_is_not() {
         let error = |code| rusqlite::Error::SqliteFailure(ffi::Error::new(code), None);
-        let store = |code| LedgerError::store(Path::new("ledger.db"), "write")(error(code));
+        let store = |code| LedgerError::store_error(Path::new("ledger.db"), "write")(error(code));
         assert!(store(ffi::SQLITE_FULL).is_lost() && store(ffi::SQLITE_IOERR_WRITE).is_lost());
         assert!(!store(ffi::SQLITE_BUSY).is_lost());
     }

@@ -1,6 +1,6 @@
 //! Keeps two threads of this program from making the same call at the same time: the first one makes it, and the others wait.
 
-use crate::Key;
+use crate::CallKey;
 use std::{
     collections::BTreeMap,
     sync::{Arc, Condvar, Mutex, PoisonError},
@@ -8,29 +8,29 @@ use std::{
 
 /// The calls that threads are making at the moment.
 #[derive(Debug, Default)]
-pub(crate) struct Flights {
-    open: Mutex<BTreeMap<Key, Arc<Landed>>>,
+pub(crate) struct CallFlights {
+    open: Mutex<BTreeMap<CallKey, Arc<FlightSignal>>>,
 }
 
 #[derive(Debug, Default)]
-struct Landed {
+struct FlightSignal {
     done: Mutex<bool>,
     signal: Condvar,
 }
 
 /// The right to make a call. Other threads wait until it is dropped.
-pub(crate) struct Flight<'a> {
-    flights: &'a Flights,
-    key: Key,
+pub(crate) struct CallFlight<'a> {
+    flights: &'a CallFlights,
+    key: CallKey,
 }
 
-impl Flights {
+impl CallFlights {
     /// Takes the right to make a call. If another thread has it, waits for that thread and returns `None`.
-    pub(crate) fn take_off(&self, key: &Key) -> Option<Flight<'_>> {
+    pub(crate) fn take_off(&self, key: &CallKey) -> Option<CallFlight<'_>> {
         let mut open = self.open.lock().unwrap_or_else(PoisonError::into_inner);
         let Some(other) = open.get(key).map(Arc::clone) else {
             open.insert(key.clone(), Arc::default());
-            return Some(Flight { flights: self, key: key.clone() });
+            return Some(CallFlight { flights: self, key: key.clone() });
         };
         drop(open);
         let done = other.done.lock().unwrap_or_else(PoisonError::into_inner);
@@ -45,7 +45,7 @@ impl Flights {
     }
 }
 
-impl Drop for Flight<'_> {
+impl Drop for CallFlight<'_> {
     fn drop(&mut self) {
         let landed = self.flights.open.lock().unwrap_or_else(PoisonError::into_inner).remove(&self.key);
         if let Some(landed) = landed {

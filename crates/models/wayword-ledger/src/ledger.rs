@@ -1,12 +1,12 @@
 //! The type [`Ledger`], and the ways to open one: a file, memory, a recording, recordings of chunks, or a database.
 
 #[cfg(feature = "postgres")]
-use crate::store::{Postgres, Pulse};
+use crate::store::{LeaseTiming, PostgresStore};
 use crate::{
-    LedgerError, Spending,
-    flight::Flights,
+    LedgerError, RunSpending,
+    flight::CallFlights,
     recording,
-    store::{Chunks, Sqlite, Store, may_hold, spent_in},
+    store::{CallStore, ChunkStore, SqliteStore, may_hold, spent_in},
 };
 use std::{
     path::{Path, PathBuf},
@@ -17,13 +17,13 @@ use std::{
 /// The calls of all runs. Clones share one ledger. When the last clone is dropped, all pending writes are finished.
 #[derive(Debug, Clone)]
 pub struct Ledger {
-    inner: Arc<Inner>,
+    inner: Arc<LedgerState>,
 }
 
 #[derive(Debug)]
-struct Inner {
-    store: Box<dyn Store>,
-    flights: Flights,
+struct LedgerState {
+    store: Box<dyn CallStore>,
+    flights: CallFlights,
     /// In a replay: the recording from which all answers have to come.
     recording: Option<PathBuf>,
 }
@@ -34,7 +34,7 @@ impl Ledger {
     /// # Errors
     /// When the file is not a ledger, is on a network file system, or cannot be read and written.
     pub fn open(path: &Path) -> Result<Self, LedgerError> {
-        Ok(Self::of(Sqlite::open(path)?, None))
+        Ok(Self::from_store(SqliteStore::open(path)?, None))
     }
 
     /// Checks whether a ledger may be kept at a path. It neither opens nor creates a file.
@@ -50,18 +50,18 @@ impl Ledger {
     /// # Errors
     /// When there is not enough memory.
     pub fn in_memory() -> Result<Self, LedgerError> {
-        Ok(Self::of(Sqlite::in_memory()?, None))
+        Ok(Self::from_store(SqliteStore::in_memory()?, None))
     }
 
     /// A ledger in memory that takes all answers from a recording. A call that the recording does not have is an error.
     ///
     /// # Errors
     /// When the recording cannot be read.
-    pub fn replay(recording: &Path) -> Result<Self, LedgerError> {
-        let store = Sqlite::in_memory()?;
-        recording::read(recording, |row| store.fill(row))?;
+    pub fn replay_recording(recording: &Path) -> Result<Self, LedgerError> {
+        let store = SqliteStore::in_memory()?;
+        recording::read_recording(recording, |row| store.add_recorded_answer(row))?;
         store.flush()?;
-        Ok(Self::of(store, Some(recording.to_owned())))
+        Ok(Self::from_store(store, Some(recording.to_owned())))
     }
 
     /// A ledger of one shard of a run. The chunks of the shard are made one after the other, and each has one file, to which requests
@@ -74,7 +74,7 @@ impl Ledger {
     /// # Errors
     /// When a file cannot be read, or was changed.
     pub fn in_chunks(earlier: &[PathBuf]) -> Result<Self, LedgerError> {
-        Ok(Self::of(Chunks::open(earlier)?, None))
+        Ok(Self::from_store(ChunkStore::open(earlier)?, None))
     }
 
     /// Goes on with the file of another chunk, or makes it. The answers of the previous chunk are no longer found. An incomplete last
@@ -88,7 +88,7 @@ impl Ledger {
         let turned = self.flights().while_none(|| self.store().turn_to(file));
         turned.unwrap_or_else(|| {
             let reason = "it cannot be left for another chunk while calls are in flight";
-            Err(LedgerError::Misuse { place: self.store().place(), reason })
+            Err(LedgerError::Misuse { place: self.store().ledger_location(), reason })
         })
     }
 
@@ -97,43 +97,43 @@ impl Ledger {
     ///
     /// # Errors
     /// When the file cannot be read, or was changed.
-    pub fn spent_in(file: &Path) -> Result<Spending, LedgerError> {
+    pub fn spent_in(file: &Path) -> Result<RunSpending, LedgerError> {
         spent_in(file)
     }
 
     /// A ledger in a database, which programs on any number of machines share: each call is made once, the limits of a
-    /// run hold for all of them together, and so do rates ([`crate::Run::wait_turn`]). Makes the tables
+    /// run hold for all of them together, and so do rates ([`crate::LedgerRun::wait_turn`]). Makes the tables
     /// ([`crate::TABLES`]) if it may and they are missing.
     ///
     /// # Errors
     /// When the database cannot be used, or its tables are missing and this role may not make them.
     #[cfg(feature = "postgres")]
-    pub fn postgres(database: &wayword_database::Database) -> Result<Self, LedgerError> {
-        Self::postgres_with_lease(database, Pulse::LEASE)
+    pub fn open_postgres(database: &wayword_database::PostgresDatabase) -> Result<Self, LedgerError> {
+        Self::postgres_with_lease(database, LeaseTiming::DEFAULT_LEASE)
     }
 
     /// The same with another lease: a program without a sign of life for that long counts as ended, and others may make its calls. All
-    /// programs have to use the same lease; [`Ledger::postgres`] uses one minute.
+    /// programs have to use the same lease; [`Ledger::open_postgres`] uses one minute.
     ///
     /// # Errors
-    /// As [`Ledger::postgres`].
+    /// As [`Ledger::open_postgres`].
     #[cfg(feature = "postgres")]
     pub fn postgres_with_lease(
-        database: &wayword_database::Database,
+        database: &wayword_database::PostgresDatabase,
         lease: std::time::Duration,
     ) -> Result<Self, LedgerError> {
-        Ok(Self::of(Postgres::open(database, Pulse::of(lease))?, None))
+        Ok(Self::from_store(PostgresStore::open(database, LeaseTiming::from_lease(lease))?, None))
     }
 
-    fn of(store: impl Store + 'static, recording: Option<PathBuf>) -> Self {
-        Self { inner: Arc::new(Inner { store: Box::new(store), flights: Flights::default(), recording }) }
+    fn from_store(store: impl CallStore + 'static, recording: Option<PathBuf>) -> Self {
+        Self { inner: Arc::new(LedgerState { store: Box::new(store), flights: CallFlights::default(), recording }) }
     }
 
-    pub(crate) fn store(&self) -> &dyn Store {
+    pub(crate) fn store(&self) -> &dyn CallStore {
         &*self.inner.store
     }
 
-    pub(crate) fn flights(&self) -> &Flights {
+    pub(crate) fn flights(&self) -> &CallFlights {
         &self.inner.flights
     }
 

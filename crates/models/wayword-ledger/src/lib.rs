@@ -8,7 +8,7 @@
 //! A ledger is kept in one of three stores, and behaves the same in all of them:
 //! - a file on a disk of this machine ([`Ledger::open`]), which all runs share;
 //! - recordings of the chunks of one shard ([`Ledger::in_chunks`]), on any file system, for one program at a time;
-//! - a database of PostgreSQL (`Ledger::postgres`, with the feature `postgres`), for any number of machines. There, the
+//! - a database of PostgreSQL (`Ledger::open_postgres`, with the feature `postgres`), for any number of machines. There, the
 //!   limits of a run and the rates of providers hold for all programs together.
 //!
 //! Architecture invariant: this crate does not interpret calls, and its interface does not expose the database.
@@ -31,17 +31,17 @@ mod span;
 mod stopper;
 mod store;
 
-pub use budget::{Limits, Refused};
-pub use call::{Answer, Call, Key, Row};
+pub use budget::{RequestRefusedError, RunLimits};
+pub use call::{CallAnswer, CallKey, LedgerEntry, ModelCall};
 pub use disk::network_at;
 pub use error::LedgerError;
 pub use ledger::Ledger;
-pub use occasion::Occasion;
-pub use place::Place;
-pub use queries::{By, CostLine, Filter, Spending};
-pub use rate::Rates;
-pub use run::{Attempts, OnceError, Run, Totals};
-pub use span::TARGET;
-pub use stopper::Stopper;
+pub use occasion::CallContext;
+pub use place::LedgerLocation;
+pub use queries::{CostGrouping, CostLine, LedgerFilter, RunSpending};
+pub use rate::ProviderRates;
+pub use run::{CallAttempts, LedgerRun, OnceError, RunTotals};
+pub use span::SPAN_TARGET;
+pub use stopper::RunStopper;
 #[cfg(feature = "postgres")]
-pub use store::TABLES;
+pub use store::LEDGER_TABLES;

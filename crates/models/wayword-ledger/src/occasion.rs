@@ -10,32 +10,32 @@ thread_local! {
 
 /// The context of some work: the span that it is a part of, the subscriber that gets the spans, and the purpose of the calls.
 #[derive(Debug, Clone)]
-pub struct Occasion {
+pub struct CallContext {
     /// `None` if there is no subscriber.
     watched: Option<(Dispatch, Span)>,
     purpose: Option<&'static str>,
 }
 
 /// Restores the previous purpose of the thread when it is dropped, also after a panic.
-struct Before(Option<&'static str>);
+struct PurposeGuard(Option<&'static str>);
 
-impl Drop for Before {
+impl Drop for PurposeGuard {
     fn drop(&mut self) {
         PURPOSE.set(self.0);
     }
 }
 
-impl Occasion {
+impl CallContext {
     /// The context of this thread, for work that goes on in another one.
     #[must_use]
-    pub fn here() -> Self {
+    pub fn from_current_thread() -> Self {
         let dispatch = dispatcher::get_default(|to| (!to.is::<NoSubscriber>()).then(|| to.clone()));
-        Self { watched: dispatch.map(|to| (to, Span::current())), purpose: Self::purpose() }
+        Self { watched: dispatch.map(|to| (to, Span::current())), purpose: Self::current_purpose() }
     }
 
     /// Runs a function in this context.
-    pub fn on<T>(&self, does: impl FnOnce() -> T) -> T {
-        let _before = Before(PURPOSE.replace(self.purpose));
+    pub fn run_within<T>(&self, does: impl FnOnce() -> T) -> T {
+        let _before = PurposeGuard(PURPOSE.replace(self.purpose));
         match &self.watched {
             Some((to, span)) => dispatcher::with_default(to, || span.in_scope(does)),
             None => does(),
@@ -44,12 +44,12 @@ impl Occasion {
 
     /// Runs a function with a purpose for its calls.
     pub fn with_purpose<T>(purpose: &'static str, does: impl FnOnce() -> T) -> T {
-        let _before = Before(PURPOSE.replace(Some(purpose)));
+        let _before = PurposeGuard(PURPOSE.replace(Some(purpose)));
         does()
     }
 
     /// The purpose of this thread's calls, if it was set.
-    pub(crate) fn purpose() -> Option<&'static str> {
+    pub(crate) fn current_purpose() -> Option<&'static str> {
         PURPOSE.get()
     }
 }
@@ -61,15 +61,21 @@ mod tests {
 
     #[test]
     fn a_purpose_holds_for_its_work_alone_and_goes_along_to_other_threads() {
-        Occasion::with_purpose("write", || {
-            let occasion = Occasion::here();
+        CallContext::with_purpose("write", || {
+            let occasion = CallContext::from_current_thread();
             thread::scope(|scope| {
-                let seen = scope.spawn(|| (Occasion::purpose(), occasion.on(Occasion::purpose), Occasion::purpose()));
+                let seen = scope.spawn(|| {
+                    (
+                        CallContext::current_purpose(),
+                        occasion.run_within(CallContext::current_purpose),
+                        CallContext::current_purpose(),
+                    )
+                });
                 assert_eq!(seen.join().unwrap(), (None, Some("write"), None));
             });
-            let ended = catch_unwind(|| Occasion::with_purpose("see", || panic!("on purpose")));
-            assert!(ended.is_err() && Occasion::purpose() == Some("write"));
+            let ended = catch_unwind(|| CallContext::with_purpose("see", || panic!("on purpose")));
+            assert!(ended.is_err() && CallContext::current_purpose() == Some("write"));
         });
-        assert_eq!(Occasion::purpose(), None);
+        assert_eq!(CallContext::current_purpose(), None);
     }
 }

@@ -7,15 +7,15 @@ use std::{
 
 /// The location of a ledger. Its text names a file or a database, and never contains a password.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Place {
+pub enum LedgerLocation {
     /// A file.
     File(PathBuf),
     /// A database on a server.
     Database(String),
 }
 
-impl Place {
-    pub(crate) fn file(path: &Path) -> Self {
+impl LedgerLocation {
+    pub(crate) fn from_path(path: &Path) -> Self {
         Self::File(path.to_owned())
     }
 
@@ -28,19 +28,19 @@ impl Place {
     }
 }
 
-impl From<&Path> for Place {
+impl From<&Path> for LedgerLocation {
     fn from(path: &Path) -> Self {
-        Self::file(path)
+        Self::from_path(path)
     }
 }
 
-impl From<&PathBuf> for Place {
+impl From<&PathBuf> for LedgerLocation {
     fn from(path: &PathBuf) -> Self {
-        Self::file(path)
+        Self::from_path(path)
     }
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for LedgerLocation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::File(path) => path.display().fmt(f),

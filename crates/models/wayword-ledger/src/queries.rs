@@ -1,25 +1,25 @@
 //! Lists, exports, summarises and drops the calls of a ledger.
 
-use crate::{LedgerError, call::Row, ledger::Ledger, store::Order};
+use crate::{LedgerError, call::LedgerEntry, ledger::Ledger, store::CallOrder};
 use serde::Serialize;
 use std::{io::Write, path::Path};
 
 /// Which calls to list, export or drop.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Filter {
+pub struct LedgerFilter {
     /// Only calls of this model.
     pub model: Option<String>,
     /// Only calls that this run has used.
     pub run: Option<String>,
     /// Only calls with an answer older than this, seconds.
     pub older_than_s: Option<u64>,
-    /// At most this many, the latest ones. [`Ledger::list`] alone uses this.
+    /// At most this many, the latest ones. [`Ledger::list_calls`] alone uses this.
     pub limit: Option<usize>,
 }
 
 /// How costs are grouped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum By {
+pub enum CostGrouping {
     /// By model.
     Model,
     /// By the run that paid.
@@ -47,7 +47,7 @@ pub struct CostLine {
 
 /// The requests and the spending of a run in all its processes.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
-pub struct Spending {
+pub struct RunSpending {
     /// Requests that were sent.
     pub requests: u64,
     /// Requests that were answered.
@@ -60,7 +60,7 @@ pub struct Spending {
     pub maybe_usd: f64,
 }
 
-impl Spending {
+impl RunSpending {
     pub(crate) fn plus(self, other: Self) -> Self {
         Self {
             requests: self.requests.saturating_add(other.requests),
@@ -77,9 +77,9 @@ impl Ledger {
     ///
     /// # Errors
     /// When the ledger cannot be read.
-    pub fn list(&self, filter: &Filter) -> Result<Vec<Row>, LedgerError> {
+    pub fn list_calls(&self, filter: &LedgerFilter) -> Result<Vec<LedgerEntry>, LedgerError> {
         let mut rows = Vec::new();
-        self.store().each(filter, Order::Latest, &mut |row| {
+        self.store().for_each_call(filter, CallOrder::Latest, &mut |row| {
             rows.push(row);
             Ok(())
         })?;
@@ -90,10 +90,10 @@ impl Ledger {
     ///
     /// # Errors
     /// When the ledger cannot be read or the lines cannot be written.
-    pub fn export(&self, filter: &Filter, mut out: impl Write) -> Result<usize, LedgerError> {
-        let failed = LedgerError::io(self.store().place(), "export");
+    pub fn export_calls(&self, filter: &LedgerFilter, mut out: impl Write) -> Result<usize, LedgerError> {
+        let failed = LedgerError::io_error(self.store().ledger_location(), "export");
         let mut count = 0;
-        self.store().each(filter, Order::Key, &mut |row| {
+        self.store().for_each_call(filter, CallOrder::Key, &mut |row| {
             let mut line = serde_json::to_vec(&row).map_err(|error| failed(error.into()))?;
             line.push(b'\n');
             count += 1;
@@ -102,20 +102,20 @@ impl Ledger {
         Ok(count)
     }
 
-    /// Writes calls to a file, as [`Ledger::export`] does. The file is complete or does not exist.
+    /// Writes calls to a file, as [`Ledger::export_calls`] does. The file is complete or does not exist.
     ///
     /// # Errors
     /// When the ledger cannot be read or the file cannot be written.
-    pub fn export_to(&self, filter: &Filter, path: &Path) -> Result<usize, LedgerError> {
+    pub fn export_to(&self, filter: &LedgerFilter, path: &Path) -> Result<usize, LedgerError> {
         let mut name = path.file_name().unwrap_or_default().to_owned();
         name.push(".new");
         let unfinished = path.with_file_name(name);
-        let failed = LedgerError::io(&unfinished, "write");
+        let failed = LedgerError::io_error(&unfinished, "write");
         let mut file = std::io::BufWriter::new(std::fs::File::create(&unfinished).map_err(&failed)?);
-        let count = self.export(filter, &mut file)?;
+        let count = self.export_calls(filter, &mut file)?;
         let file = file.into_inner().map_err(|error| failed(error.into_error()))?;
         file.sync_all().map_err(&failed)?;
-        std::fs::rename(&unfinished, path).map_err(LedgerError::io(path, "write"))?;
+        std::fs::rename(&unfinished, path).map_err(LedgerError::io_error(path, "write"))?;
         Ok(count)
     }
 
@@ -123,16 +123,16 @@ impl Ledger {
     ///
     /// # Errors
     /// When the ledger cannot be written.
-    pub fn prune(&self, filter: &Filter) -> Result<usize, LedgerError> {
-        self.store().prune(filter)
+    pub fn prune_calls(&self, filter: &LedgerFilter) -> Result<usize, LedgerError> {
+        self.store().prune_calls(filter)
     }
 
     /// Whether the ledger has any answer of a model at an address.
     ///
     /// # Errors
     /// When the ledger cannot be read.
-    pub fn has_answers_of(&self, model: &str, base_url: &str) -> Result<bool, LedgerError> {
-        self.store().has_answers_of(model, base_url)
+    pub fn has_answers_from(&self, model: &str, base_url: &str) -> Result<bool, LedgerError> {
+        self.store().has_answers_from(model, base_url)
     }
 
     /// Drops the answers that were changed after they were written, and returns how many. The ledger keeps what runs
@@ -148,23 +148,23 @@ impl Ledger {
     ///
     /// # Errors
     /// When the ledger cannot be read.
-    pub fn costs(&self, by: By) -> Result<Vec<CostLine>, LedgerError> {
-        self.store().costs(by)
+    pub fn sum_costs(&self, by: CostGrouping) -> Result<Vec<CostLine>, LedgerError> {
+        self.store().sum_costs(by)
     }
 
     /// The requests and the spending of a run in all its processes, on all machines that share the ledger.
     ///
     /// # Errors
     /// When the ledger cannot be read.
-    pub fn spending(&self, run: &str) -> Result<Spending, LedgerError> {
-        self.store().spending(run)
+    pub fn run_spending(&self, run: &str) -> Result<RunSpending, LedgerError> {
+        self.store().run_spending(run)
     }
 
     /// Counts the requests that were sent and have no known answer. They may have been paid for.
     ///
     /// # Errors
     /// When the ledger cannot be read.
-    pub fn lost(&self) -> Result<u64, LedgerError> {
-        self.store().lost()
+    pub fn count_lost_requests(&self) -> Result<u64, LedgerError> {
+        self.store().count_lost_requests()
     }
 }

@@ -1,6 +1,6 @@
 //! Rates of requests and tokens that all programs with the ledger open keep together.
 
-use crate::{LedgerError, Run};
+use crate::{LedgerError, LedgerRun};
 use std::{
     thread,
     time::{Duration, Instant},
@@ -14,15 +14,15 @@ const MOST_MISSED: usize = 100;
 
 /// The rates for a provider that the user has set.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Rates {
+pub struct ProviderRates {
     /// Requests per second.
     pub requests_per_s: Option<f64>,
     /// Tokens per second, in and out.
     pub tokens_per_s: Option<f64>,
 }
 
-impl Run {
-    /// Whether the ledger keeps rates for all programs together, see [`Run::wait_turn`].
+impl LedgerRun {
+    /// Whether the ledger keeps rates for all programs together, see [`LedgerRun::wait_turn`].
     #[must_use]
     pub fn shares_rates(&self) -> bool {
         self.ledger().store().shares_rates()
@@ -39,7 +39,7 @@ impl Run {
     pub fn wait_turn(
         &self,
         provider: &str,
-        rates: Rates,
+        rates: ProviderRates,
         tokens: u64,
         stopped: impl Fn() -> bool,
     ) -> Result<bool, LedgerError> {
@@ -48,20 +48,20 @@ impl Run {
             if stopped() {
                 return Ok(false);
             }
-            let Some(slot) = store.turn(provider, rates, tokens)? else { return Ok(true) };
-            if !wait(slot.from, &stopped) {
+            let Some(slot) = store.next_slot(provider, rates, tokens)? else { return Ok(true) };
+            if !wait_until(slot.from, &stopped) {
                 return Ok(false);
             }
             if Instant::now() <= slot.until {
                 return Ok(true);
             }
         }
-        Err(LedgerError::Slow { place: store.place() })
+        Err(LedgerError::Slow { place: store.ledger_location() })
     }
 }
 
 /// Waits until the moment `from`; returns false if `stopped` became true first.
-fn wait(from: Instant, stopped: impl Fn() -> bool) -> bool {
+fn wait_until(from: Instant, stopped: impl Fn() -> bool) -> bool {
     loop {
         match from.saturating_duration_since(Instant::now()) {
             Duration::ZERO => return true,

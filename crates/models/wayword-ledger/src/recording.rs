@@ -1,6 +1,6 @@
 //! Reads a recording of calls for a replay: the lines of an export, or of a chunk's file.
 
-use crate::{LedgerError, Row, store::Entry};
+use crate::{LedgerEntry, LedgerError, store::ChunkEntry};
 use std::{
     fs::File,
     io::{BufRead, BufReader, Read},
@@ -11,8 +11,8 @@ use std::{
 pub(crate) const MOST_LINE_BYTES: u64 = 16 << 20;
 
 /// Passes every call of a recording to `take`. The lines may come from a run, an export or a worker.
-pub(crate) fn read(path: &Path, take: impl Fn(Row)) -> Result<(), LedgerError> {
-    let failed = LedgerError::io(path, "read the recording");
+pub(crate) fn read_recording(path: &Path, take: impl Fn(LedgerEntry)) -> Result<(), LedgerError> {
+    let failed = LedgerError::io_error(path, "read the recording");
     let mut reader = BufReader::new(File::open(path).map_err(&failed)?);
     let mut bytes = Vec::new();
     let mut is_chunk = false;
@@ -27,14 +27,14 @@ pub(crate) fn read(path: &Path, take: impl Fn(Row)) -> Result<(), LedgerError> {
         if bytes.len() as u64 > MOST_LINE_BYTES {
             return Err(broken(format!("it is longer than {} MiB", MOST_LINE_BYTES >> 20)));
         }
-        if Entry::is_line(&bytes) {
+        if ChunkEntry::is_line(&bytes) {
             is_chunk = true;
-            if let Entry::Answered { row, .. } = Entry::of_line(&bytes).map_err(broken)? {
+            if let ChunkEntry::Answered { row, .. } = ChunkEntry::from_line(&bytes).map_err(broken)? {
                 take(*row);
             }
             continue;
         }
-        let row: Row = serde_json::from_slice(&bytes).map_err(|error| broken(error.to_string()))?;
+        let row: LedgerEntry = serde_json::from_slice(&bytes).map_err(|error| broken(error.to_string()))?;
         if row.call.key() != row.key {
             return Err(broken("its key does not match its call, so the line was changed by hand".to_owned()));
         }

@@ -1,13 +1,13 @@
-//! A run's use of the ledger. [`Run::once`] answers a call from the ledger, or makes it, at most once over all threads and programs.
+//! A run's use of the ledger. [`LedgerRun::answer_once`] answers a call from the ledger, or makes it, at most once over all threads and programs.
 
 use crate::{
-    Answer, Call, Key, LedgerError, Limits, Refused, Row, Stopper,
-    budget::{Budget, Spent, known},
-    claim::{Claim, PATIENCE, Taken},
+    CallAnswer, CallKey, LedgerEntry, LedgerError, ModelCall, RequestRefusedError, RunLimits, RunStopper,
+    budget::{RunBudget, SpentBudget, valid_amount},
+    claim::{ABANDONED_CLAIM_TIMEOUT, CallClaim, ClaimOutcome},
     ledger::{Ledger, now_unix_s},
-    queries::Filter,
+    queries::LedgerFilter,
     span::CallSpan,
-    store::{End, Request},
+    store::{PendingRequest, RequestEnd},
 };
 use std::{
     path::{Path, PathBuf},
@@ -16,7 +16,7 @@ use std::{
 
 /// A run's use of a ledger: its limits, its spending, and whether it was stopped. Clones share one run.
 #[derive(Debug, Clone)]
-pub struct Run {
+pub struct LedgerRun {
     ledger: Ledger,
     state: Arc<RunState>,
 }
@@ -24,16 +24,16 @@ pub struct Run {
 #[derive(Debug)]
 struct RunState {
     id: String,
-    limits: Limits,
+    limits: RunLimits,
     /// Has no limits if the store keeps the budget.
-    budget: Budget,
-    stopper: Stopper,
-    totals: Mutex<Totals>,
+    budget: RunBudget,
+    stopper: RunStopper,
+    totals: Mutex<RunTotals>,
 }
 
 /// The requests and the spending of a run in this process.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Totals {
+pub struct RunTotals {
     /// Requests that were sent.
     pub calls: u64,
     /// Calls that the ledger answered.
@@ -54,14 +54,14 @@ pub struct Totals {
     pub maybe_usd: f64,
 }
 
-/// The attempts to get an answer to one call. Each attempt is a request, which has to be announced with [`Attempts::begin`] before it
+/// The attempts to get an answer to one call. Each attempt is a request, which has to be announced with [`CallAttempts::begin`] before it
 /// is sent.
-pub struct Attempts<'a> {
-    run: &'a Run,
-    key: &'a Key,
+pub struct CallAttempts<'a> {
+    run: &'a LedgerRun,
+    key: &'a CallKey,
     span: &'a CallSpan,
     /// The request in flight.
-    open: Option<Sent>,
+    open: Option<SentRequest>,
     /// How many requests were sent.
     sent: u32,
     /// The kind of failure that the span reports if the call fails.
@@ -70,7 +70,7 @@ pub struct Attempts<'a> {
 
 /// A request that the store has written down.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Sent {
+pub(crate) struct SentRequest {
     /// Its number in the store.
     pub(crate) number: i64,
     /// Its upper bound, US dollars.
@@ -85,7 +85,7 @@ pub enum OnceError<E> {
     Call(E),
     /// The call may not be made.
     #[error(transparent)]
-    Refused(Refused),
+    Refused(RequestRefusedError),
     /// The call is not in the recording from which all answers have to come.
     #[error("{}: this file of recorded calls has no call to {model} with these words: {words:?}\nhint: record the calls again with --record, with the same settings", recording.display())]
     NotRecorded {
@@ -106,23 +106,23 @@ impl Ledger {
     ///
     /// # Errors
     /// When the ledger cannot be read.
-    pub fn run(&self, id: &str, limits: Limits) -> Result<Run, LedgerError> {
+    pub fn start_run(&self, id: &str, limits: RunLimits) -> Result<LedgerRun, LedgerError> {
         let (own, spent) = match self.store().keeps_budget() {
-            true => (Limits::default(), Spent::default()),
-            false => (limits, self.store().spent(id)?),
+            true => (RunLimits::default(), SpentBudget::default()),
+            false => (limits, self.store().spent_budget(id)?),
         };
         let state = RunState {
             id: id.to_owned(),
             limits,
-            budget: Budget::new(own, spent),
-            stopper: Stopper::default(),
+            budget: RunBudget::new(own, spent),
+            stopper: RunStopper::default(),
             totals: Mutex::default(),
         };
-        Ok(Run { ledger: self.clone(), state: Arc::new(state) })
+        Ok(LedgerRun { ledger: self.clone(), state: Arc::new(state) })
     }
 }
 
-impl Run {
+impl LedgerRun {
     /// The answer of a call. If the ledger has it, returns that. If another thread or program is making the call, waits
     /// for it. Otherwise `send` makes the call, and its answer is on disk before it is returned. If another program was
     /// faster after all, returns that program's answer, so that every caller gets the same one.
@@ -130,18 +130,18 @@ impl Run {
     /// # Errors
     /// When `send` fails, a limit would be exceeded, the run is stopped while it waits, the answer was changed after it
     /// was written, or the ledger cannot be used.
-    pub fn once<E>(
+    pub fn answer_once<E>(
         &self,
-        call: &Call,
-        send: impl FnOnce(&mut Attempts<'_>) -> Result<Answer, E>,
-    ) -> Result<Answer, OnceError<E>> {
-        let span = CallSpan::begin(call);
+        call: &ModelCall,
+        send: impl FnOnce(&mut CallAttempts<'_>) -> Result<CallAnswer, E>,
+    ) -> Result<CallAnswer, OnceError<E>> {
+        let span = CallSpan::begin_call(call);
         let asked = self.once_within(&span, call, send);
         match &asked {
             Ok(_) | Err(OnceError::Call(_)) => {}
-            Err(OnceError::Refused(_)) => span.failed("refused"),
-            Err(OnceError::NotRecorded { .. }) => span.failed("not_recorded"),
-            Err(OnceError::Ledger(_)) => span.failed("ledger"),
+            Err(OnceError::Refused(_)) => span.record_error("refused"),
+            Err(OnceError::NotRecorded { .. }) => span.record_error("not_recorded"),
+            Err(OnceError::Ledger(_)) => span.record_error("ledger"),
         }
         asked
     }
@@ -149,48 +149,50 @@ impl Run {
     fn once_within<E>(
         &self,
         span: &CallSpan,
-        call: &Call,
-        send: impl FnOnce(&mut Attempts<'_>) -> Result<Answer, E>,
-    ) -> Result<Answer, OnceError<E>> {
+        call: &ModelCall,
+        send: impl FnOnce(&mut CallAttempts<'_>) -> Result<CallAnswer, E>,
+    ) -> Result<CallAnswer, OnceError<E>> {
         let key = call.key();
         loop {
-            if let Some(answer) = self.stored(&key, span)? {
+            if let Some(answer) = self.stored_answer(&key, span)? {
                 return Ok(answer);
             }
             let Some(_flight) = self.ledger.flights().take_off(&key) else { continue };
             // Another thread may have finished the call between the first look and taking the flight.
-            if let Some(answer) = self.stored(&key, span)? {
+            if let Some(answer) = self.stored_answer(&key, span)? {
                 return Ok(answer);
             }
             if let Some(recording) = self.ledger.recording() {
                 return Err(not_recorded(recording, call));
             }
-            let mut claim = match Claim::take(self.ledger.store(), &key, PATIENCE, || self.is_stopped())? {
-                Taken::Ours(claim) => claim,
-                Taken::Answered => continue,
-                Taken::Stopped => return Err(OnceError::Refused(Refused::Stopped)),
+            let mut claim = match CallClaim::take_claim(self.ledger.store(), &key, ABANDONED_CLAIM_TIMEOUT, || {
+                self.is_stopped()
+            })? {
+                ClaimOutcome::Ours(claim) => claim,
+                ClaimOutcome::Answered => continue,
+                ClaimOutcome::Stopped => return Err(OnceError::Refused(RequestRefusedError::Stopped)),
             };
-            let mut attempts = Attempts { run: self, key: &key, span, open: None, sent: 0, failure: "failed" };
+            let mut attempts = CallAttempts { run: self, key: &key, span, open: None, sent: 0, failure: "failed" };
             return match send(&mut attempts) {
                 Ok(answer) => {
-                    let stands = attempts.answered(call, answer)?;
-                    claim.fulfilled();
+                    let stands = attempts.store_answer(call, answer)?;
+                    claim.mark_fulfilled();
                     Ok(stands)
                 }
                 Err(error) => {
-                    attempts.failed("given up", true);
-                    attempts.unanswered();
+                    attempts.mark_failed("given up", true);
+                    attempts.record_failure();
                     Err(OnceError::Call(error))
                 }
             };
         }
     }
 
-    fn stored(&self, key: &Key, span: &CallSpan) -> Result<Option<Answer>, LedgerError> {
-        let answer = self.ledger.store().answer(key, &self.state.id)?;
+    fn stored_answer(&self, key: &CallKey, span: &CallSpan) -> Result<Option<CallAnswer>, LedgerError> {
+        let answer = self.ledger.store().find_answer(key, &self.state.id)?;
         if answer.is_some() {
-            span.found();
-            self.count(|totals| totals.hits += 1);
+            span.record_ledger_hit();
+            self.update_totals(|totals| totals.hits += 1);
         }
         Ok(answer)
     }
@@ -200,7 +202,7 @@ impl Run {
         self.state.stopper.stop();
     }
 
-    /// Whether [`Run::stop`] was called.
+    /// Whether [`LedgerRun::stop`] was called.
     #[must_use]
     pub fn is_stopped(&self) -> bool {
         self.state.stopper.is_stopped()
@@ -208,7 +210,7 @@ impl Run {
 
     /// A handle that stops the run and does not keep the ledger open.
     #[must_use]
-    pub fn stopper(&self) -> Stopper {
+    pub fn stopper(&self) -> RunStopper {
         self.state.stopper.clone()
     }
 
@@ -218,7 +220,7 @@ impl Run {
 
     /// The requests and the spending of the run in this process.
     #[must_use]
-    pub fn totals(&self) -> Totals {
+    pub fn totals(&self) -> RunTotals {
         *self.state.totals.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -226,73 +228,77 @@ impl Run {
     ///
     /// # Errors
     /// When the ledger cannot be read or the file cannot be written.
-    pub fn record(&self, path: &Path) -> Result<usize, LedgerError> {
-        self.ledger.export_to(&Filter { run: Some(self.state.id.clone()), ..Filter::default() }, path)
+    pub fn record_calls(&self, path: &Path) -> Result<usize, LedgerError> {
+        self.ledger.export_to(&LedgerFilter { run: Some(self.state.id.clone()), ..LedgerFilter::default() }, path)
     }
 
-    fn count(&self, change: impl FnOnce(&mut Totals)) {
+    fn update_totals(&self, change: impl FnOnce(&mut RunTotals)) {
         change(&mut self.state.totals.lock().unwrap_or_else(PoisonError::into_inner));
     }
 }
 
-impl Attempts<'_> {
+impl CallAttempts<'_> {
     /// Call this before each request, with the most that the request may cost, US dollars. When it returns, the ledger
     /// has the request on disk.
     ///
     /// # Errors
     /// When the request may not be sent: the run was stopped, a limit would be exceeded, or the ledger cannot be
     /// written.
-    pub fn begin(&mut self, most_usd: Option<f64>) -> Result<(), Refused> {
-        self.failed("followed by another", true);
-        self.reserve(most_usd).inspect_err(|_| self.failure = "refused")
+    pub fn begin_request(&mut self, most_usd: Option<f64>) -> Result<(), RequestRefusedError> {
+        self.mark_failed("followed by another", true);
+        self.reserve_request(most_usd).inspect_err(|_| self.failure = "refused")
     }
 
-    fn reserve(&mut self, most_usd: Option<f64>) -> Result<(), Refused> {
+    fn reserve_request(&mut self, most_usd: Option<f64>) -> Result<(), RequestRefusedError> {
         if self.run.is_stopped() {
-            return Err(Refused::Stopped);
+            return Err(RequestRefusedError::Stopped);
         }
-        let most_usd = known(most_usd);
-        self.run.state.budget.reserve(most_usd)?;
+        let most_usd = valid_amount(most_usd);
+        self.run.state.budget.reserve_money(most_usd)?;
         match self.keep_sent(most_usd) {
             Ok(number) => {
-                self.open = Some(Sent { number, most_usd });
+                self.open = Some(SentRequest { number, most_usd });
                 self.sent += 1;
-                self.run.count(|totals| totals.calls += 1);
+                self.run.update_totals(|totals| totals.calls += 1);
                 Ok(())
             }
             Err(refused) => {
-                self.run.state.budget.cancel(most_usd);
+                self.run.state.budget.cancel_reservation(most_usd);
                 Err(refused)
             }
         }
     }
 
-    fn keep_sent(&self, most_usd: Option<f64>) -> Result<i64, Refused> {
+    fn keep_sent(&self, most_usd: Option<f64>) -> Result<i64, RequestRefusedError> {
         let RunState { id, limits, .. } = &*self.run.state;
-        let request = Request { run: id, key: self.key, most_usd, at_unix_s: now_unix_s(), limits: *limits };
-        self.run.ledger.store().sent(&request)
+        let request = PendingRequest { run: id, key: self.key, most_usd, at_unix_s: now_unix_s(), limits: *limits };
+        self.run.ledger.store().write_request(&request)
     }
 
     /// Reports that the request was not sent after all.
-    pub fn cancelled(&mut self) {
+    pub fn mark_cancelled(&mut self) {
         let Some(sent) = self.open.take() else { return };
         self.sent = self.sent.saturating_sub(1);
-        self.run.state.budget.cancel(sent.most_usd);
-        self.run.count(|totals| totals.calls -= 1);
-        self.run.ledger.store().ended(&sent, End::Cancelled, "");
+        self.run.state.budget.cancel_reservation(sent.most_usd);
+        self.run.update_totals(|totals| totals.calls -= 1);
+        self.run.ledger.store().write_end(&sent, RequestEnd::Cancelled, "");
     }
 
     /// Reports that the request brought no answer. If it may have been paid for, its upper bound counts as spent.
-    pub fn failed(&mut self, reason: &str, maybe_paid: bool) {
+    pub fn mark_failed(&mut self, reason: &str, maybe_paid: bool) {
         let Some(sent) = self.open.take() else { return };
         let lost_usd = if maybe_paid { sent.most_usd.unwrap_or(0.0) } else { 0.0 };
-        self.run.state.budget.settle(sent.most_usd, lost_usd);
-        self.run.count(|totals| {
+        self.run.state.budget.settle_reservation(sent.most_usd, lost_usd);
+        self.run.update_totals(|totals| {
             totals.failed += 1;
             totals.lost += u64::from(maybe_paid);
             totals.maybe_usd += lost_usd;
         });
-        self.run.ledger.store().ended(&sent, if maybe_paid { End::Lost } else { End::Failed }, reason);
+        self.run.ledger.store().write_end(
+            &sent,
+            if maybe_paid { RequestEnd::Lost } else { RequestEnd::Failed },
+            reason,
+        );
     }
 
     /// Sets the kind of failure that the call's span reports if the call fails: one word, without any text from a service.
@@ -301,18 +307,18 @@ impl Attempts<'_> {
     }
 
     /// Records in the span that the call has failed.
-    fn unanswered(&self) {
-        self.span.sent(self.sent);
-        self.span.failed(self.failure);
+    fn record_failure(&self) {
+        self.span.record_attempts(self.sent);
+        self.span.record_error(self.failure);
     }
 
     /// Stores an answer. Returns the one that is kept: an answer that another program stored first, or this one.
-    fn answered(&mut self, call: &Call, answer: Answer) -> Result<Answer, LedgerError> {
+    fn store_answer(&mut self, call: &ModelCall, answer: CallAnswer) -> Result<CallAnswer, LedgerError> {
         let open = self.open.take();
         let most_usd = open.and_then(|sent| sent.most_usd);
-        let answer = Answer { usd: known(answer.usd), ..answer };
-        self.run.state.budget.settle(most_usd, answer.usd.or(most_usd).unwrap_or(0.0));
-        let row = Row {
+        let answer = CallAnswer { usd: valid_amount(answer.usd), ..answer };
+        self.run.state.budget.settle_reservation(most_usd, answer.usd.or(most_usd).unwrap_or(0.0));
+        let row = LedgerEntry {
             key: self.key.clone(),
             call: call.clone(),
             answer: answer.clone(),
@@ -320,16 +326,16 @@ impl Attempts<'_> {
             run: self.run.state.id.clone(),
         };
         let store = self.run.ledger.store();
-        let is_first = store.answered(open.as_ref(), row)?;
-        self.span.sent(self.sent);
-        self.span.answered(&answer);
-        self.run.count(|totals| {
+        let is_first = store.write_answer(open.as_ref(), row)?;
+        self.span.record_attempts(self.sent);
+        self.span.record_answer(&answer);
+        self.run.update_totals(|totals| {
             totals.answered += 1;
             totals.tokens_in = totals.tokens_in.saturating_add(answer.tokens_in);
             totals.tokens_out = totals.tokens_out.saturating_add(answer.tokens_out);
             totals.usd += answer.usd.unwrap_or(0.0);
         });
-        let stands = if is_first { None } else { store.answer(self.key, &self.run.state.id)? };
+        let stands = if is_first { None } else { store.find_answer(self.key, &self.run.state.id)? };
         Ok(stands.unwrap_or(answer))
     }
 }
@@ -337,7 +343,7 @@ impl Attempts<'_> {
 /// How many characters of a request an error quotes.
 const QUOTED_CHARS: usize = 200;
 
-fn not_recorded<E>(recording: &Path, call: &Call) -> OnceError<E> {
+fn not_recorded<E>(recording: &Path, call: &ModelCall) -> OnceError<E> {
     let words = call.request.get("messages").and_then(|messages| messages.as_array()?.last()?.get("text")?.as_str());
     OnceError::NotRecorded {
         recording: recording.to_owned(),

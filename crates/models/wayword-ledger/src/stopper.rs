@@ -7,10 +7,10 @@ use std::sync::{
 
 /// Stops a run. It does not keep the ledger open, so a signal handler may hold it until the end of the process.
 #[derive(Debug, Clone, Default)]
-pub struct Stopper(Arc<AtomicBool>);
+pub struct RunStopper(Arc<AtomicBool>);
 
-impl Stopper {
-    /// Does the same as [`crate::Run::stop`].
+impl RunStopper {
+    /// Does the same as [`crate::LedgerRun::stop`].
     pub fn stop(&self) {
         self.0.store(true, Ordering::SeqCst);
     }

@@ -6,7 +6,7 @@
 use candle_core::{Device as On, Tensor};
 use criterion::{Criterion, criterion_group, criterion_main};
 use std::{collections::HashMap, hint::black_box, path::Path};
-use wayword_local::{Device, Precision, SentenceEncoder};
+use wayword_local::{ModelDevice, SentenceEncoder, WeightPrecision};
 
 const SIZE: usize = 384;
 const INNER: usize = 1536;
@@ -55,7 +55,7 @@ fn encode(criterion: &mut Criterion) {
             made.path().to_owned()
         }
     };
-    let encoder = SentenceEncoder::load("hf/bench/minilm", &folder, &Device::cpu(), Precision::F32).unwrap();
+    let encoder = SentenceEncoder::load("hf/bench/minilm", &folder, &ModelDevice::cpu(), WeightPrecision::F32).unwrap();
     let text = |at: usize| {
         format!(
             "Go past the table and stop at the sink. Walk up the stairs to the bedroom, turn right and wait by the \
@@ -66,7 +66,7 @@ fn encode(criterion: &mut Criterion) {
     let texts: Vec<&str> = texts.iter().map(|text| &text[..]).collect();
     for count in [1, 32] {
         criterion.bench_function(&format!("minilm batch {count}"), |bencher| {
-            bencher.iter(|| encoder.vectors(black_box(&texts[..count])).unwrap());
+            bencher.iter(|| encoder.unit_vectors(black_box(&texts[..count])).unwrap());
         });
     }
 }

@@ -6,7 +6,7 @@
 use criterion::{Criterion, criterion_group, criterion_main};
 use std::{hint::black_box, path::PathBuf};
 use wayword_core::Image;
-use wayword_local::{BlipCaptioner, BlipVqa, Device, Precision};
+use wayword_local::{BlipCaptioner, BlipVqa, ModelDevice, WeightPrecision};
 
 /// Six words that the fixtures' tokenizer knows, one token each.
 const QUESTION: &str = "what is in the picture ?";
@@ -28,27 +28,30 @@ fn blip(criterion: &mut Criterion) {
     group.sample_size(10);
     {
         let captioner =
-            BlipCaptioner::load("hf/bench/blip", &folder.join("caption"), &Device::cpu(), Precision::F32).unwrap();
+            BlipCaptioner::load("hf/bench/blip", &folder.join("caption"), &ModelDevice::cpu(), WeightPrecision::F32)
+                .unwrap();
         let picture = picture(0);
-        group.bench_function("vision", |bencher| bencher.iter(|| captioner.states(black_box(&picture)).unwrap()));
+        group.bench_function("vision", |bencher| {
+            bencher.iter(|| captioner.picture_states(black_box(&picture)).unwrap())
+        });
         group.bench_function("caption of 20 tokens", |bencher| {
             bencher.iter(|| {
-                let tokens = captioner.tokens(black_box(&picture), "", 20).unwrap();
+                let tokens = captioner.description_tokens(black_box(&picture), "", 20).unwrap();
                 assert_eq!(tokens.len(), 20, "the random weights end a caption early; make them with another seed");
             });
         });
     }
-    let vqa = BlipVqa::load("hf/bench/blip", &folder.join("vqa"), &Device::cpu(), Precision::F32).unwrap();
+    let vqa = BlipVqa::load("hf/bench/blip", &folder.join("vqa"), &ModelDevice::cpu(), WeightPrecision::F32).unwrap();
     let mut seed = 0;
     group.bench_function("answer of 3 tokens, new picture", |bencher| {
         bencher.iter(|| {
             seed += 1;
-            vqa.answer(black_box(&picture(seed)), QUESTION, 3).unwrap()
+            vqa.answer_question(black_box(&picture(seed)), QUESTION, 3).unwrap()
         });
     });
     let known = picture(0);
     group.bench_function("answer of 3 tokens, known picture", |bencher| {
-        bencher.iter(|| vqa.answer(black_box(&known), QUESTION, 3).unwrap());
+        bencher.iter(|| vqa.answer_question(black_box(&known), QUESTION, 3).unwrap());
     });
 }
 

@@ -6,7 +6,7 @@ use candle_core::{Device as On, Tensor};
 use criterion::{Criterion, criterion_group, criterion_main};
 use std::{collections::HashMap, hint::black_box, path::Path};
 use wayword_core::Image;
-use wayword_local::{Clip, Device, Precision};
+use wayword_local::{ClipModel, ModelDevice, WeightPrecision};
 
 /// Writes random weights with a configuration and a tokenizer.
 fn random_model(folder: &Path) {
@@ -61,7 +61,7 @@ fn encode(criterion: &mut Criterion) {
             made.path().to_owned()
         }
     };
-    let clip = Clip::load("hf/bench/clip", &folder, &Device::cpu(), Precision::F32).unwrap();
+    let clip = ClipModel::load("hf/bench/clip", &folder, &ModelDevice::cpu(), WeightPrecision::F32).unwrap();
     let mut group = criterion.benchmark_group("clip");
     group.sample_size(10);
     let (image, large) = (picture(224, 224), picture(640, 480));

@@ -5,21 +5,21 @@ use candle_core::DType;
 
 /// The device on which models compute.
 #[derive(Debug, Clone)]
-pub struct Device(pub(crate) candle_core::Device);
+pub struct ModelDevice(pub(crate) candle_core::Device);
 
 /// The precision of a model's weights.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Precision {
+pub enum WeightPrecision {
     /// 32 bits.
     #[default]
     F32,
     /// bfloat16: 16 bits with the range of 32. Halves the memory, for models that would not fit otherwise.
     Bf16,
-    /// IEEE half precision: 16 bits with more digits than [`Precision::Bf16`] and a smaller range.
+    /// IEEE half precision: 16 bits with more digits than [`WeightPrecision::Bf16`] and a smaller range.
     F16,
 }
 
-impl Device {
+impl ModelDevice {
     /// The CPU.
     #[must_use]
     pub fn cpu() -> Self {
@@ -30,7 +30,7 @@ impl Device {
     ///
     /// # Errors
     /// When this build or machine has no device of that name.
-    pub fn named(name: &str) -> Result<Self, LocalError> {
+    pub fn from_name(name: &str) -> Result<Self, LocalError> {
         let (kind, at) = name.split_once(':').unwrap_or((name, "0"));
         let no = |problem: String| LocalError::Compute { model: format!("device {name}"), problem };
         let at: usize =
@@ -45,8 +45,8 @@ impl Device {
     }
 }
 
-impl Precision {
-    pub(crate) fn dtype(self) -> DType {
+impl WeightPrecision {
+    pub(crate) fn candle_dtype(self) -> DType {
         match self {
             Self::F32 => DType::F32,
             Self::Bf16 => DType::BF16,

@@ -80,21 +80,25 @@ pub enum LocalError {
 }
 
 impl LocalError {
-    pub(crate) fn io(file: impl Into<PathBuf>, doing: &'static str, source: std::io::Error) -> Self {
+    pub(crate) fn from_io(file: impl Into<PathBuf>, doing: &'static str, source: std::io::Error) -> Self {
         Self::Io { file: file.into(), doing, source: Arc::new(source) }
     }
 
-    pub(crate) fn download(address: impl Into<String>, problem: impl Into<String>, hint: impl Into<String>) -> Self {
+    pub(crate) fn download_failed(
+        address: impl Into<String>,
+        problem: impl Into<String>,
+        hint: impl Into<String>,
+    ) -> Self {
         Self::Download { address: address.into(), problem: problem.into(), hint: hint.into() }
     }
 
-    pub(crate) fn compute(model: &str, error: &candle_core::Error) -> Self {
+    pub(crate) fn compute_failed(model: &str, error: &candle_core::Error) -> Self {
         // candle's errors may contain a backtrace.
         let problem = error.to_string().lines().next().unwrap_or("the computation failed").to_owned();
         Self::Compute { model: model.to_owned(), problem }
     }
 
-    pub(crate) fn tensor(file: impl Into<PathBuf>, tensor: impl Into<String>, problem: impl Into<String>) -> Self {
+    pub(crate) fn bad_tensor(file: impl Into<PathBuf>, tensor: impl Into<String>, problem: impl Into<String>) -> Self {
         Self::Tensor { file: file.into(), tensor: tensor.into(), problem: problem.into() }
     }
 }

@@ -3,23 +3,23 @@
 use crate::{
     LocalError,
     blip::{BlipCaptioner, BlipVqa},
-    blip2::Blip2,
+    blip2::Blip2Model,
 };
-use wayword_core::{Image, Request};
+use wayword_core::{Image, ModelRequest};
 
 /// The most tokens of an answer. These models were trained on short answers, and repeat themselves in longer ones.
 const MOST_TOKENS: u32 = 40;
 
 /// The question that asks for a description, for a model that only answers questions.
-const DESCRIBE: &str = "what is in the picture?";
+const DESCRIBE_QUESTION: &str = "what is in the picture?";
 
 /// A model that answers a request about one picture.
-pub(crate) trait Eye: Send + Sync {
+pub(crate) trait PictureModel: Send + Sync {
     /// The form of request that it takes.
     fn kind(&self) -> EyeKind;
 
     /// The reply to a request.
-    fn reply(&self, request: &Request) -> Result<String, LocalError>;
+    fn reply_to(&self, request: &ModelRequest) -> Result<String, LocalError>;
 }
 
 /// The form of request that a model takes.
@@ -38,18 +38,18 @@ pub(crate) struct BlipEye {
     pub(crate) describes: Option<BlipCaptioner>,
 }
 
-impl Eye for BlipEye {
+impl PictureModel for BlipEye {
     fn kind(&self) -> EyeKind {
         EyeKind::Questions
     }
 
-    fn reply(&self, request: &Request) -> Result<String, LocalError> {
-        let (picture, words) = shown(&self.name, request)?;
+    fn reply_to(&self, request: &ModelRequest) -> Result<String, LocalError> {
+        let (picture, words) = picture_and_words(&self.name, request)?;
         let most = request.sampling.max_tokens.min(MOST_TOKENS) as usize;
         match (&self.answers, &self.describes, words.is_empty()) {
-            (_, Some(describes), true) => describes.caption(picture, "", most),
-            (Some(answers), _, false) => answers.answer(picture, words, most),
-            (Some(answers), None, true) => answers.answer(picture, DESCRIBE, most),
+            (_, Some(describes), true) => describes.describe_picture(picture, "", most),
+            (Some(answers), _, false) => answers.answer_question(picture, words, most),
+            (Some(answers), None, true) => answers.answer_question(picture, DESCRIBE_QUESTION, most),
             (None, _, _) => Err(self.cannot_answer()),
         }
     }
@@ -66,23 +66,23 @@ impl BlipEye {
 /// BLIP-2.
 pub(crate) struct Blip2Eye {
     pub(crate) name: String,
-    pub(crate) model: Blip2,
+    pub(crate) model: Blip2Model,
 }
 
-impl Eye for Blip2Eye {
+impl PictureModel for Blip2Eye {
     fn kind(&self) -> EyeKind {
         EyeKind::Texts
     }
 
-    fn reply(&self, request: &Request) -> Result<String, LocalError> {
-        let (picture, words) = shown(&self.name, request)?;
+    fn reply_to(&self, request: &ModelRequest) -> Result<String, LocalError> {
+        let (picture, words) = picture_and_words(&self.name, request)?;
         let most = request.sampling.max_tokens.min(MOST_TOKENS) as usize;
-        self.model.answer(picture, words, most)
+        self.model.continue_prompt(picture, words, most)
     }
 }
 
 /// The picture and the text of a request. These models take one message with one picture.
-fn shown<'a>(name: &str, request: &'a Request) -> Result<(&'a Image, &'a str), LocalError> {
+fn picture_and_words<'a>(name: &str, request: &'a ModelRequest) -> Result<(&'a Image, &'a str), LocalError> {
     let wrong = |problem: &str| LocalError::Compute { model: name.to_owned(), problem: problem.to_owned() };
     let [message] = &request.messages[..] else { return Err(wrong("it takes one message, not a conversation")) };
     let picture = match &message.images[..] {

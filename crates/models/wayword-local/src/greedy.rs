@@ -6,7 +6,11 @@ use candle_core::{D, DType, Result, Tensor};
 ///
 /// `step` takes the latest token (`None` at first) and returns the logits [.., words] of the next one. If it returns
 /// several rows, as for a whole prompt, the last row is the one that counts.
-pub(crate) fn greedy(most: usize, end: u32, mut step: impl FnMut(Option<u32>) -> Result<Tensor>) -> Result<Vec<u32>> {
+pub(crate) fn decode_greedily(
+    most: usize,
+    end: u32,
+    mut step: impl FnMut(Option<u32>) -> Result<Tensor>,
+) -> Result<Vec<u32>> {
     let mut said = Vec::new();
     while said.len() < most {
         let logits = step(said.last().copied())?.to_dtype(DType::F32)?;

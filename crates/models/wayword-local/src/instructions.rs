@@ -1,12 +1,12 @@
 //! Turns instructions into the token ids that navigation agents were trained on. The data loaders of VLN-DUET and
 //! VLN-HAMT read instructions in this form.
 
-use crate::{LocalError, text::Tokenizer};
+use crate::{LocalError, text::TextTokenizer};
 use std::path::Path;
-use wayword_core::contain::decoded;
+use wayword_core::contain::run_decoder;
 
 /// The most ids of an instruction that these agents read, with the first and the last token.
-const LONGEST: usize = 512;
+const MAX_INSTRUCTION_IDS: usize = 512;
 
 /// The family of a tokenizer. The agents' files are named after it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -19,7 +19,7 @@ pub enum TokenizerKind {
 
 /// Turns instructions into ids.
 pub struct InstructionTokenizer {
-    inner: Tokenizer,
+    inner: TextTokenizer,
     kind: TokenizerKind,
     begin: u32,
     end: u32,
@@ -31,9 +31,9 @@ impl InstructionTokenizer {
     /// # Errors
     /// When it is missing or damaged, or has the special tokens of neither family.
     pub fn load(file: &Path) -> Result<Self, LocalError> {
-        let inner = Tokenizer::load_file(file.to_owned())?;
+        let inner = TextTokenizer::load_file(file.to_owned())?;
         let families = [(TokenizerKind::Bert, "[CLS]", "[SEP]"), (TokenizerKind::XlmRoberta, "<s>", "</s>")];
-        let of = |(kind, begin, end)| Some((kind, inner.id(begin)?, inner.id(end)?));
+        let of = |(kind, begin, end)| Some((kind, inner.token_id(begin)?, inner.token_id(end)?));
         let (kind, begin, end) = families.into_iter().find_map(of).ok_or_else(|| LocalError::File {
             file: file.to_owned(),
             problem: "it has neither [CLS] and [SEP] nor <s> and </s>, one of which these agents need".to_owned(),
@@ -53,10 +53,10 @@ impl InstructionTokenizer {
     ///
     /// # Errors
     /// When the tokenizer fails on the text.
-    pub fn ids(&self, text: &str) -> Result<Vec<u32>, LocalError> {
+    pub fn instruction_ids(&self, text: &str) -> Result<Vec<u32>, LocalError> {
         let read = || self.inner.inner_ids(text).map_err(|error| error.to_string());
-        let words = decoded(read).map_err(|problem| self.inner.wrong(&format!("on {text:?}: {problem}")))?;
-        let words = words.into_iter().take(LONGEST - 2);
+        let words = run_decoder(read).map_err(|problem| self.inner.file_error(&format!("on {text:?}: {problem}")))?;
+        let words = words.into_iter().take(MAX_INSTRUCTION_IDS - 2);
         Ok([self.begin].into_iter().chain(words).chain([self.end]).collect())
     }
 }
@@ -92,8 +92,8 @@ mod tests {
             let tokenizer = InstructionTokenizer::load(&file).unwrap();
             assert_eq!(tokenizer.kind(), kind);
             // The file's own truncation, to 3, does not count.
-            assert_eq!(tokenizer.ids("Walk onward, w\u{e1}lk").unwrap(), [0, 3, 4, 5, 2, 3, 1]);
-            assert_eq!(tokenizer.ids("").unwrap(), [0, 1]);
+            assert_eq!(tokenizer.instruction_ids("Walk onward, w\u{e1}lk").unwrap(), [0, 3, 4, 5, 2, 3, 1]);
+            assert_eq!(tokenizer.instruction_ids("").unwrap(), [0, 1]);
         }
     }
 
@@ -102,7 +102,7 @@ mod tests {
         let (_folder, file) = tokenizer("[CLS]", "[SEP]");
         let tokenizer = InstructionTokenizer::load(&file).unwrap();
         for (words, length) in [(509, 511), (510, 512), (511, 512), (2000, 512)] {
-            let ids = tokenizer.ids(&"walk ".repeat(words)).unwrap();
+            let ids = tokenizer.instruction_ids(&"walk ".repeat(words)).unwrap();
             assert_eq!((ids.len(), ids[0], ids[length - 2], ids[length - 1]), (length, 0, 3, 1), "{words}");
         }
     }

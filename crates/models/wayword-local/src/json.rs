@@ -5,10 +5,14 @@ use serde::de::DeserializeOwned;
 use std::path::Path;
 
 /// The longest file that is read, bytes.
-const LONGEST: u64 = 4 << 20;
+const MAX_JSON_BYTES: u64 = 4 << 20;
 
 /// Reads a required file.
-pub(crate) fn read<T: DeserializeOwned>(folder: &Path, name: &str, what: &'static str) -> Result<T, LocalError> {
+pub(crate) fn read_required<T: DeserializeOwned>(
+    folder: &Path,
+    name: &str,
+    what: &'static str,
+) -> Result<T, LocalError> {
     let file = folder.join(name);
     read_if_there(folder, name)?.ok_or_else(|| LocalError::Missing {
         file,
@@ -22,10 +26,10 @@ pub(crate) fn read_if_there<T: DeserializeOwned>(folder: &Path, name: &str) -> R
     let file = folder.join(name);
     let Ok(about) = std::fs::metadata(&file) else { return Ok(None) };
     let wrong = |problem: String| LocalError::File { file: file.clone(), problem, hint: FETCH_AGAIN };
-    if about.len() > LONGEST {
+    if about.len() > MAX_JSON_BYTES {
         return Err(wrong(format!("it is too long: {} bytes", about.len())));
     }
-    let text = std::fs::read_to_string(&file).map_err(|error| LocalError::io(&file, "read", error))?;
+    let text = std::fs::read_to_string(&file).map_err(|error| LocalError::from_io(&file, "read", error))?;
     let mut parser = serde_json::Deserializer::from_str(&text);
     let read = serde_path_to_error::deserialize(&mut parser).map_err(|error| wrong(error.to_string()))?;
     parser.end().map_err(|error| wrong(error.to_string()))?;
@@ -63,7 +67,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let told = |text: &str| {
             std::fs::write(folder.path().join("config.json"), text).unwrap();
-            read::<Outer>(folder.path(), "config.json", "a model").unwrap_err().to_string()
+            read_required::<Outer>(folder.path(), "config.json", "a model").unwrap_err().to_string()
         };
         let wrong = told("{\"layers\": [{\"width\": 1},\n{\"width\": \"two\"}]}");
         assert!(

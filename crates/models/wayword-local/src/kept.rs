@@ -1,44 +1,44 @@
 //! Makes each call of an in-process model once, and keeps its answer in the ledger. A call costs no money, but it may
 //! cost minutes.
 
-use crate::{EyeKind, eyes::Eye, picture::digest};
+use crate::{EyeKind, eyes::PictureModel, picture::picture_digest};
 use serde_json::{Value, json};
 use std::{
     sync::{Arc, Mutex, PoisonError},
     time::Instant,
 };
-use wayword_core::{Finish, Image, LanguageModel, Message, ModelError, Reply, Request};
-use wayword_ledger::{Answer, Call, OnceError, Refused, Run};
+use wayword_core::{ChatMessage, FinishReason, Image, LanguageModel, ModelError, ModelReply, ModelRequest};
+use wayword_ledger::{CallAnswer, LedgerRun, ModelCall, OnceError, RequestRefusedError};
 
 /// An in-process model behind the ledger: a request that was answered before gets the answer from there.
 pub struct LocalModel {
-    kept: Kept,
-    eye: Arc<dyn Eye>,
+    kept: CallLedger,
+    eye: Arc<dyn PictureModel>,
 }
 
 /// Makes the calls of one in-process model, each once, through the ledger.
-pub(crate) struct Kept {
+pub(crate) struct CallLedger {
     /// `hf/ORG/NAME`.
     pub(crate) name: String,
     /// The identity of the weights and their precision. It is part of a call's key, because it may change the answer.
     pub(crate) origin: String,
     /// Held during a call: each call uses all threads, and two at once would need twice the memory.
     turn: Mutex<()>,
-    run: Run,
+    run: LedgerRun,
 }
 
 /// The reason why a call was not answered.
 #[derive(Debug, thiserror::Error)]
-enum Unanswered {
+enum LocalCallError {
     #[error(transparent)]
     Failed(ModelError),
     #[error(transparent)]
-    Refused(Refused),
+    Refused(RequestRefusedError),
 }
 
 impl LocalModel {
-    pub(crate) fn new(name: &str, origin: String, eye: Arc<dyn Eye>, run: Run) -> Self {
-        Self { kept: Kept::new(name, origin, run), eye }
+    pub(crate) fn new(name: &str, origin: String, eye: Arc<dyn PictureModel>, run: LedgerRun) -> Self {
+        Self { kept: CallLedger::new(name, origin, run), eye }
     }
 
     /// The form of request that it takes.
@@ -53,19 +53,19 @@ impl LocalModel {
         &self.kept.origin
     }
 
-    fn one(&self, request: &Request) -> Result<Reply, ModelError> {
-        let answer = self.kept.once(asked(request), request.replicate, || {
+    fn complete_one(&self, request: &ModelRequest) -> Result<ModelReply, ModelError> {
+        let answer = self.kept.answer_once(request_json(request), request.replicate, || {
             let failed = |reason| ModelError::Failed { model: self.kept.name.clone(), reason };
-            self.eye.reply(request).map_err(|error| failed(error.to_string()))
+            self.eye.reply_to(request).map_err(|error| failed(error.to_string()))
         });
-        answer.map(reply)
+        answer.map(reply_from_answer)
     }
 }
 
 /// The parts of a request that may change the reply. They are the key under which the ledger keeps the answer.
-fn asked(request: &Request) -> Value {
-    let message = |message: &Message| {
-        let picture = message.images.first().map(|image| hash(image));
+fn request_json(request: &ModelRequest) -> Value {
+    let message = |message: &ChatMessage| {
+        let picture = message.images.first().map(|image| picture_hash(image));
         json!({ "role": message.role, "text": message.text, "image_sha256": picture })
     };
     let messages: Vec<Value> = request.messages.iter().map(message).collect();
@@ -78,41 +78,41 @@ fn asked(request: &Request) -> Value {
     })
 }
 
-impl Kept {
-    pub(crate) fn new(name: &str, origin: String, run: Run) -> Self {
+impl CallLedger {
+    pub(crate) fn new(name: &str, origin: String, run: LedgerRun) -> Self {
         Self { name: name.to_owned(), origin, turn: Mutex::new(()), run }
     }
 
     /// The answer to a request: the one in the ledger, or else a computed one, which the ledger then keeps.
-    pub(crate) fn once(
+    pub(crate) fn answer_once(
         &self,
         request: Value,
         replicate: u32,
         compute: impl FnOnce() -> Result<String, ModelError>,
-    ) -> Result<Answer, ModelError> {
-        let call = Call { model: self.name.clone(), base_url: self.origin.clone(), request, replicate };
-        let asked = self.run.once(&call, |attempts| {
+    ) -> Result<CallAnswer, ModelError> {
+        let call = ModelCall { model: self.name.clone(), base_url: self.origin.clone(), request, replicate };
+        let asked = self.run.answer_once(&call, |attempts| {
             let _turn = self.turn.lock().unwrap_or_else(PoisonError::into_inner);
-            attempts.begin(Some(0.0)).map_err(Unanswered::Refused)?;
+            attempts.begin_request(Some(0.0)).map_err(LocalCallError::Refused)?;
             let begun = Instant::now();
-            Ok(answer(compute().map_err(Unanswered::Failed)?, begun))
+            Ok(ledger_answer(compute().map_err(LocalCallError::Failed)?, begun))
         });
-        asked.map_err(|error| self.error(error))
+        asked.map_err(|error| self.to_model_error(error))
     }
 
-    fn error(&self, error: OnceError<Unanswered>) -> ModelError {
+    fn to_model_error(&self, error: OnceError<LocalCallError>) -> ModelError {
         let failed = |reason: String| ModelError::Failed { model: self.name.clone(), reason };
         let refused = match error {
-            OnceError::Call(Unanswered::Failed(error)) => return error,
-            OnceError::Call(Unanswered::Refused(refused)) | OnceError::Refused(refused) => refused,
-            OnceError::Ledger(error) => Refused::Ledger(error),
+            OnceError::Call(LocalCallError::Failed(error)) => return error,
+            OnceError::Call(LocalCallError::Refused(refused)) | OnceError::Refused(refused) => refused,
+            OnceError::Ledger(error) => RequestRefusedError::Ledger(error),
             // The item also failed when the recording was made.
             missing @ OnceError::NotRecorded { .. } => {
                 return failed(missing.to_string().lines().next().unwrap_or("not recorded").to_owned());
             }
         };
         let is_lost = refused.is_lost();
-        let (reason, hint) = refused.told();
+        let (reason, hint) = refused.reason_and_hint();
         ModelError::Stopped { reason, hint, is_lost }
     }
 }
@@ -122,14 +122,14 @@ impl LanguageModel for LocalModel {
         &self.kept.name
     }
 
-    fn complete(&self, requests: &[Request]) -> Vec<Result<Reply, ModelError>> {
-        requests.iter().map(|request| self.one(request)).collect()
+    fn complete_requests(&self, requests: &[ModelRequest]) -> Vec<Result<ModelReply, ModelError>> {
+        requests.iter().map(|request| self.complete_one(request)).collect()
     }
 }
 
 /// A new answer for the ledger. Tokens are not counted, because they are free here.
-fn answer(text: String, begun: Instant) -> Answer {
-    Answer {
+fn ledger_answer(text: String, begun: Instant) -> CallAnswer {
+    CallAnswer {
         text,
         finish: "stop".to_owned(),
         tokens_in: 0,
@@ -140,12 +140,12 @@ fn answer(text: String, begun: Instant) -> Answer {
     }
 }
 
-fn reply(answer: Answer) -> Reply {
-    let finish = if answer.finish == "length" { Finish::Length } else { Finish::Stop };
-    Reply { text: answer.text, finish, usage: None }
+fn reply_from_answer(answer: CallAnswer) -> ModelReply {
+    let finish = if answer.finish == "length" { FinishReason::Length } else { FinishReason::Stop };
+    ModelReply { text: answer.text, finish, usage: None }
 }
 
 /// The hash by which the ledger refers to a picture, as hex digits.
-pub(crate) fn hash(image: &Image) -> String {
-    digest(image).iter().map(|byte| format!("{byte:02x}")).collect()
+pub(crate) fn picture_hash(image: &Image) -> String {
+    picture_digest(image).iter().map(|byte| format!("{byte:02x}")).collect()
 }

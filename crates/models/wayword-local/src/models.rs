@@ -1,15 +1,15 @@
 //! Finds in-process models by their names (`hf/ORG/NAME`), and loads each of them once.
 
 use crate::{
-    Device, LocalError, Precision,
+    LocalError, ModelDevice, WeightPrecision,
     blip::{BlipCaptioner, BlipVqa},
-    blip2::Blip2,
-    detectors::{Checkpoint, LocalDetector},
-    eyes::{Blip2Eye, BlipEye, Eye},
-    hub::{Hub, ModelFolder, ModelName, Needs, Progress},
+    blip2::Blip2Model,
+    detectors::{DetectorCheckpoint, LocalDetector},
+    eyes::{Blip2Eye, BlipEye, PictureModel},
+    hub::{DownloadProgress, ModelFolder, ModelHub, ModelName, NeededFiles},
     json,
     kept::LocalModel,
-    memory::{self, Budget},
+    memory::{self, MemoryBudget},
 };
 use serde::Deserialize;
 use std::{
@@ -17,40 +17,40 @@ use std::{
     path::Path,
     sync::{Arc, Mutex, PoisonError},
 };
-use wayword_ledger::Run;
+use wayword_ledger::LedgerRun;
 
 /// Gives access to in-process models by their names.
-pub struct Models {
-    hub: Hub,
-    device: Device,
-    precision: Option<Precision>,
-    progress: Box<dyn Progress + Send + Sync>,
-    run: Run,
-    loaded: Mutex<Loaded>,
+pub struct LocalModels {
+    hub: ModelHub,
+    device: ModelDevice,
+    precision: Option<WeightPrecision>,
+    progress: Box<dyn DownloadProgress + Send + Sync>,
+    run: LedgerRun,
+    loaded: Mutex<LoadedModels>,
 }
 
 /// The models that are loaded so far, and the memory that they take.
 #[derive(Default)]
-struct Loaded {
+struct LoadedModels {
     models: BTreeMap<String, Arc<LocalModel>>,
     detectors: BTreeMap<String, Arc<LocalDetector>>,
-    budget: Budget,
+    budget: MemoryBudget,
 }
 
 /// The settings for loading models.
 #[derive(Debug, Clone)]
-pub struct Loading {
+pub struct LoadingOptions {
     /// The device on which they compute.
-    pub device: Device,
+    pub device: ModelDevice,
     /// The precision of their weights. The default is 32 bits, and 16 bits for BLIP-2.
-    pub precision: Option<Precision>,
+    pub precision: Option<WeightPrecision>,
     /// The most memory for all models together, bytes. The default is the free memory of the machine.
     pub memory_bytes: Option<u64>,
 }
 
 /// The architecture and the task of a checkpoint. BLIP has one checkpoint for answers and another for descriptions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Architecture {
+enum EyeArchitecture {
     BlipAnswers,
     BlipDescribes,
     Blip2,
@@ -58,17 +58,22 @@ enum Architecture {
 
 /// The fields of `config.json` that identify the architecture.
 #[derive(Deserialize)]
-struct Config {
+struct ArchitectureConfig {
     model_type: Option<String>,
     architectures: Option<Vec<String>>,
 }
 
-impl Models {
+impl LocalModels {
     /// Models from a hub. `run` is the part of the ledger that keeps their answers.
     #[must_use]
-    pub fn new(hub: Hub, loading: Loading, progress: Box<dyn Progress + Send + Sync>, run: Run) -> Self {
-        let Loading { device, precision, memory_bytes } = loading;
-        let loaded = Loaded { budget: Budget::new(memory_bytes), ..Loaded::default() };
+    pub fn new(
+        hub: ModelHub,
+        loading: LoadingOptions,
+        progress: Box<dyn DownloadProgress + Send + Sync>,
+        run: LedgerRun,
+    ) -> Self {
+        let LoadingOptions { device, precision, memory_bytes } = loading;
+        let loaded = LoadedModels { budget: MemoryBudget::new(memory_bytes), ..LoadedModels::default() };
         Self { hub, device, precision, progress, run, loaded: Mutex::new(loaded) }
     }
 
@@ -77,7 +82,7 @@ impl Models {
     /// # Errors
     /// When it could not.
     pub fn check_name(name: &str) -> Result<(), LocalError> {
-        parts(name).map(drop)
+        parse_parts(name).map(drop)
     }
 
     /// Checks that a model's files are on this machine and of the right kind, and fetches missing ones. Does
@@ -86,9 +91,9 @@ impl Models {
     /// # Errors
     /// When the files cannot be fetched, or the model does not take pictures.
     pub fn at_hand(&self, name: &str) -> Result<(), LocalError> {
-        for part in &parts(name)? {
-            let folder = self.hub.folder(part, &Needs::of_any(part), &*self.progress)?;
-            Architecture::read(&folder.path)?;
+        for part in &parse_parts(name)? {
+            let folder = self.hub.model_folder(part, &NeededFiles::for_any_architecture(part), &*self.progress)?;
+            EyeArchitecture::from_folder(&folder.path)?;
         }
         Ok(())
     }
@@ -98,12 +103,12 @@ impl Models {
     ///
     /// # Errors
     /// When the model cannot be fetched, is damaged, or does not take pictures.
-    pub fn model(&self, name: &str) -> Result<Arc<LocalModel>, LocalError> {
+    pub fn get_model(&self, name: &str) -> Result<Arc<LocalModel>, LocalError> {
         let mut loaded = self.loaded.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(model) = loaded.models.get(name) {
             return Ok(Arc::clone(model));
         }
-        let (eye, origin) = self.load(name, &mut loaded.budget)?;
+        let (eye, origin) = self.load_eye(name, &mut loaded.budget)?;
         let model = Arc::new(LocalModel::new(name, origin, eye, self.run.clone()));
         loaded.models.insert(name.to_owned(), Arc::clone(&model));
         Ok(model)
@@ -124,58 +129,58 @@ impl Models {
     /// When the files cannot be fetched, or the model does not detect.
     pub fn detector_at_hand(&self, name: &str) -> Result<(), LocalError> {
         let part = detector_name(name)?;
-        Checkpoint::find(&self.hub, &part, &*self.progress).map(drop)
+        DetectorCheckpoint::find_files(&self.hub, &part, &*self.progress).map(drop)
     }
 
     /// A detector by its name, `hf/ORG/NAME`. The first call fetches it, if it is not on this machine, and loads it.
     ///
     /// # Errors
     /// When the model cannot be fetched, is damaged, does not fit into the memory, or does not detect.
-    pub fn detector(&self, name: &str) -> Result<Arc<LocalDetector>, LocalError> {
+    pub fn get_detector(&self, name: &str) -> Result<Arc<LocalDetector>, LocalError> {
         let mut loaded = self.loaded.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(detector) = loaded.detectors.get(name) {
             return Ok(Arc::clone(detector));
         }
         let part = detector_name(name)?;
-        let checkpoint = Checkpoint::find(&self.hub, &part, &*self.progress)?;
+        let checkpoint = DetectorCheckpoint::find_files(&self.hub, &part, &*self.progress)?;
         let precision = self.precision.unwrap_or_default();
-        loaded.budget.take(name, checkpoint.bytes(precision)?)?;
+        loaded.budget.reserve_weights(name, checkpoint.memory_bytes(precision)?)?;
         let ready = checkpoint.load(name, &self.device, precision)?;
-        let origin = origin(&[checkpoint.identity()], precision);
+        let origin = format_origin(&[checkpoint.identity()], precision);
         let detector = Arc::new(LocalDetector::new(name, origin, ready, self.run.clone()));
         loaded.detectors.insert(name.to_owned(), Arc::clone(&detector));
         Ok(detector)
     }
 
-    fn load(&self, name: &str, budget: &mut Budget) -> Result<(Arc<dyn Eye>, String), LocalError> {
-        let parts = parts(name)?;
-        let get = |part| self.hub.folder(part, &Needs::of_any(part), &*self.progress);
+    fn load_eye(&self, name: &str, budget: &mut MemoryBudget) -> Result<(Arc<dyn PictureModel>, String), LocalError> {
+        let parts = parse_parts(name)?;
+        let get = |part| self.hub.model_folder(part, &NeededFiles::for_any_architecture(part), &*self.progress);
         let folders: Vec<ModelFolder> = parts.iter().map(get).collect::<Result<_, _>>()?;
-        let roles = folders.iter().map(|folder| Architecture::read(&folder.path));
-        let roles: Vec<Architecture> = roles.collect::<Result<_, _>>()?;
-        let usual = if roles.contains(&Architecture::Blip2) { Precision::Bf16 } else { Precision::F32 };
+        let roles = folders.iter().map(|folder| EyeArchitecture::from_folder(&folder.path));
+        let roles: Vec<EyeArchitecture> = roles.collect::<Result<_, _>>()?;
+        let usual = if roles.contains(&EyeArchitecture::Blip2) { WeightPrecision::Bf16 } else { WeightPrecision::F32 };
         let precision = self.precision.unwrap_or(usual);
         for folder in &folders {
-            budget.take(name, memory::of_checkpoint(&folder.path, precision)?)?;
+            budget.reserve_weights(name, memory::checkpoint_bytes(&folder.path, precision)?)?;
         }
         let paths: Vec<&Path> = folders.iter().map(|folder| folder.path.as_path()).collect();
         let identities: Vec<&str> = folders.iter().map(|folder| folder.identity.as_str()).collect();
-        Ok((self.eye(name, &paths, &roles, precision)?, origin(&identities, precision)))
+        Ok((self.build_eye(name, &paths, &roles, precision)?, format_origin(&identities, precision)))
     }
 
-    fn eye(
+    fn build_eye(
         &self,
         name: &str,
         paths: &[&Path],
-        roles: &[Architecture],
-        precision: Precision,
-    ) -> Result<Arc<dyn Eye>, LocalError> {
-        use Architecture::{Blip2 as Both, BlipAnswers as Answers, BlipDescribes as Describes};
+        roles: &[EyeArchitecture],
+        precision: WeightPrecision,
+    ) -> Result<Arc<dyn PictureModel>, LocalError> {
+        use EyeArchitecture::{Blip2 as Both, BlipAnswers as Answers, BlipDescribes as Describes};
         let answers = |path: &Path| BlipVqa::load(name, path, &self.device, precision).map(Some);
         let describes = |path: &Path| BlipCaptioner::load(name, path, &self.device, precision).map(Some);
         let (answers, describes) = match (roles, paths) {
             ([Both], [path]) => {
-                let model = Blip2::load(name, path, &self.device, precision)?;
+                let model = Blip2Model::load(name, path, &self.device, precision)?;
                 return Ok(Arc::new(Blip2Eye { name: name.to_owned(), model }));
             }
             ([Answers], [path]) => (answers(path)?, None),
@@ -188,9 +193,9 @@ impl Models {
     }
 }
 
-impl Architecture {
-    fn read(folder: &Path) -> Result<Self, LocalError> {
-        let config: Config = json::read(folder, "config.json", "the configuration")?;
+impl EyeArchitecture {
+    fn from_folder(folder: &Path) -> Result<Self, LocalError> {
+        let config: ArchitectureConfig = json::read_required(folder, "config.json", "the configuration")?;
         let architectures = config.architectures.unwrap_or_default();
         let has = |name: &str| architectures.iter().any(|architecture| architecture == name);
         match config.model_type.as_deref() {
@@ -211,7 +216,7 @@ impl Architecture {
 }
 
 /// The one or two models of a name.
-fn parts(name: &str) -> Result<Vec<ModelName>, LocalError> {
+fn parse_parts(name: &str) -> Result<Vec<ModelName>, LocalError> {
     let rest = name.strip_prefix("hf/").ok_or_else(|| no_name(name, "it does not begin with hf/"))?;
     let parts = rest.split('+').map(|part| ModelName::parse(&format!("hf/{part}")));
     let parts: Vec<ModelName> = parts.collect::<Result<_, _>>()?;
@@ -245,6 +250,6 @@ fn no_name(name: &str, problem: &str) -> LocalError {
 }
 
 /// A text that identifies what determines a model's answers: its weights and their precision.
-fn origin(identities: &[&str], precision: Precision) -> String {
+fn format_origin(identities: &[&str], precision: WeightPrecision) -> String {
     format!("in process: {} ({})", identities.join("+"), format!("{precision:?}").to_lowercase())
 }

@@ -7,30 +7,30 @@ mod config;
 mod edges;
 pub(crate) mod resample;
 
-pub(crate) use edges::Edges;
+pub(crate) use edges::PaddedPictureProcessor;
 
-use crate::{Device, LocalError};
+use crate::{LocalError, ModelDevice};
 use candle_core::Tensor;
-use config::Config;
+use config::PictureConfig;
 use rayon::prelude::*;
-use resample::{Axis, Filter, resample};
+use resample::{ResampleAxis, ResampleFilter, resample_picture};
 use sha2::{Digest, Sha256};
 use std::path::Path;
 use wayword_core::{Image, ModelError, View};
 
 /// Prepares pictures for a model.
-pub(crate) struct Processor {
-    size: Size,
+pub(crate) struct PictureProcessor {
+    size: ResizeRule,
     height_px: usize,
     width_px: usize,
-    filter: Filter,
+    filter: ResampleFilter,
     /// The model's input for each value of a byte, for each colour.
     numbers: [[f32; 256]; 3],
 }
 
 /// The rule by which a picture is resized, pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Size {
+enum ResizeRule {
     /// The whole picture to the output size. Its proportions may change.
     Whole,
     /// The shorter edge to this length, with the same proportions. Then the middle is cut out.
@@ -39,13 +39,13 @@ enum Size {
     Cropped(usize, usize),
 }
 
-impl Processor {
+impl PictureProcessor {
     /// Reads `preprocessor_config.json` of a model's folder.
     ///
     /// # Errors
     /// When it is missing, damaged, or for a processor that is not supported.
     pub(crate) fn load(folder: &Path) -> Result<Self, LocalError> {
-        Config::read(folder)?.processor(folder)
+        PictureConfig::from_folder(folder)?.to_processor(folder)
     }
 
     /// Height and width of the output, pixels.
@@ -57,31 +57,31 @@ impl Processor {
     ///
     /// # Errors
     /// When a picture has no pixels, or the device has no memory left.
-    pub(crate) fn tensor(&self, images: &[&Image], device: &Device) -> Result<Tensor, LocalError> {
+    pub(crate) fn to_tensor(&self, images: &[&Image], device: &ModelDevice) -> Result<Tensor, LocalError> {
         let wrong = |problem: String| LocalError::Compute { model: "pictures".to_owned(), problem };
         if let Some(empty) = images.iter().find(|image| image.width_px() == 0 || image.height_px() == 0) {
             return Err(wrong(format!("{empty:?} has no pixels")));
         }
         let mut numbers = vec![0.0; images.len() * 3 * self.height_px * self.width_px];
         let each = numbers.par_chunks_mut(3 * self.height_px * self.width_px);
-        each.zip(images).for_each(|(numbers, image)| self.one(image, numbers));
+        each.zip(images).for_each(|(numbers, image)| self.fill_picture(image, numbers));
         let shape = (images.len(), 3, self.height_px, self.width_px);
         Tensor::from_vec(numbers, shape, &device.0).map_err(|error| wrong(error.to_string()))
     }
 
-    fn one(&self, image: &Image, numbers: &mut [f32]) {
+    fn fill_picture(&self, image: &Image, numbers: &mut [f32]) {
         let (height, width) = (image.height_px() as usize, image.width_px() as usize);
         let (to_height, to_width) = match self.size {
-            Size::Whole => (self.height_px, self.width_px),
-            Size::Cropped(height, width) => (height, width),
-            Size::ShortestEdge(edge) => match width <= height {
-                true => (longer(edge, height, width), edge),
-                false => (edge, longer(edge, width, height)),
+            ResizeRule::Whole => (self.height_px, self.width_px),
+            ResizeRule::Cropped(height, width) => (height, width),
+            ResizeRule::ShortestEdge(edge) => match width <= height {
+                true => (longer_edge(edge, height, width), edge),
+                false => (edge, longer_edge(edge, width, height)),
             },
         };
-        let down = Axis::middle(self.filter, height, to_height, self.height_px);
-        let across = Axis::middle(self.filter, width, to_width, self.width_px);
-        let rgb = resample(image.rgb(), &down, &across);
+        let down = ResampleAxis::keep_middle(self.filter, height, to_height, self.height_px);
+        let across = ResampleAxis::keep_middle(self.filter, width, to_width, self.width_px);
+        let rgb = resample_picture(image.rgb_bytes(), &down, &across);
         for (numbers, (at, table)) in
             numbers.chunks_mut(self.height_px * self.width_px).zip(self.numbers.iter().enumerate())
         {
@@ -93,13 +93,13 @@ impl Processor {
 }
 
 /// The length of the longer edge when the shorter one becomes `edge`, rounded as Python rounds it.
-fn longer(edge: usize, long: usize, short: usize) -> usize {
+fn longer_edge(edge: usize, long: usize, short: usize) -> usize {
     ((edge * long) as f64 / short as f64) as usize
 }
 
 /// The picture of a view. The error names the model `by`, which needs it.
-pub(crate) fn of_view<'a>(view: &'a View, by: &str) -> Result<&'a Image, ModelError> {
-    let image = view.image.as_deref().filter(|image| !image.rgb().is_empty());
+pub(crate) fn picture_of_view<'a>(view: &'a View, by: &str) -> Result<&'a Image, ModelError> {
+    let image = view.image.as_deref().filter(|image| !image.rgb_bytes().is_empty());
     image.ok_or_else(|| ModelError::NothingToSee {
         name: by.to_owned(),
         needs: "a picture",
@@ -108,11 +108,11 @@ pub(crate) fn of_view<'a>(view: &'a View, by: &str) -> Result<&'a Image, ModelEr
 }
 
 /// A hash of a picture's size and pixels.
-pub(crate) fn digest(picture: &Image) -> [u8; 32] {
+pub(crate) fn picture_digest(picture: &Image) -> [u8; 32] {
     let mut hash = Sha256::new();
     hash.update(picture.width_px().to_le_bytes());
     hash.update(picture.height_px().to_le_bytes());
-    hash.update(picture.rgb());
+    hash.update(picture.rgb_bytes());
     hash.finalize().into()
 }
 

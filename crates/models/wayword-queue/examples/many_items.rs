@@ -17,12 +17,12 @@ use std::{
     thread,
     time::{Instant, SystemTime, UNIX_EPOCH},
 };
-use wayword_database::Database;
+use wayword_database::PostgresDatabase;
 use wayword_queue::{
-    Beat, Board, Done, Ended, FRESH, Heart, Part, Plan, Queue, Shard, chunk_folder, done_of, sync_tree, work,
-    worker_name,
+    ChunkBoard, ChunkOutcome, ChunkPlan, ChunkQueue, ChunkRecord, HEARTBEAT_LEASE, HeartbeatThread, ShardBoard,
+    ShardPart, WorkerHeartbeat, chunk_folder, done_of, sync_tree, work_chunks, worker_name,
 };
-use wayword_testkit::Postgres;
+use wayword_testkit::PostgresServer;
 
 /// Where the workers' database is.
 const URL: &str = "WAYWORD_MANY_ITEMS_URL";
@@ -42,37 +42,48 @@ fn main() {
     }
 }
 
-fn be_worker(folder: &Path, part: Part) {
-    let plan = Plan::of(folder).unwrap();
+fn be_worker(folder: &Path, part: ShardPart) {
+    let plan = ChunkPlan::for_folder(folder).unwrap();
     let worker = worker_name();
     match env::var(URL) {
         Ok(url) => {
-            let database = Database::named(&url, None).unwrap();
-            make_chunks(folder, &plan, &Queue::open(database, folder, &plan).unwrap().join(&worker, FRESH).unwrap());
+            let database = PostgresDatabase::from_name(&url, None).unwrap();
+            make_chunks(
+                folder,
+                &plan,
+                &ChunkQueue::open(database, folder, &plan).unwrap().join_as(&worker, HEARTBEAT_LEASE).unwrap(),
+            );
         }
         Err(_) => {
-            let beat = Beat { worker: worker.clone(), token: worker, part: part.to_string() };
-            let heart = Heart::start(folder, &part.name(), beat, FRESH, |_| false).unwrap();
-            make_chunks(folder, &plan, &Shard::new(folder, &plan, part, &heart));
+            let beat = WorkerHeartbeat { worker: worker.clone(), token: worker, part: part.to_string() };
+            let heart =
+                HeartbeatThread::start(folder, &part.heartbeat_name(), beat, HEARTBEAT_LEASE, |_| false).unwrap();
+            make_chunks(folder, &plan, &ShardBoard::new(folder, &plan, part, &heart));
         }
     }
 }
 
 /// Makes chunks until none is left, and prints when each is made.
-fn make_chunks(folder: &Path, plan: &Plan, board: &dyn Board) {
-    let finished = work::<Infallible, wayword_queue::QueueError>(
+fn make_chunks(folder: &Path, plan: &ChunkPlan, board: &dyn ChunkBoard) {
+    let finished = work_chunks::<Infallible, wayword_queue::QueueError>(
         board,
         |claimed| {
             let results = chunk_folder(folder, claimed.chunk, claimed.epoch);
             fs::create_dir_all(&results).unwrap();
-            let range = plan.range(claimed.chunk);
+            let range = plan.chunk_range(claimed.chunk);
             let made = range.len();
             let lines: String = plan.items[range].iter().map(|item| format!("{{\"item\":\"{item}\"}}\n")).collect();
             fs::write(results.join("instructions.jsonl"), lines).unwrap();
             sync_tree(&results)?;
             let at = SystemTime::now().duration_since(UNIX_EPOCH).unwrap().as_micros();
             std::io::stdout().write_all(format!("{at} {made}\n").as_bytes()).unwrap();
-            Ok(Ended::Done(Done { chunk: claimed.chunk, epoch: claimed.epoch, made, written: made, ..Done::default() }))
+            Ok(ChunkOutcome::Done(ChunkRecord {
+                chunk: claimed.chunk,
+                epoch: claimed.epoch,
+                made,
+                written: made,
+                ..ChunkRecord::default()
+            }))
         },
         || None,
     );
@@ -83,14 +94,14 @@ fn measure(by_queue: bool, items: usize, workers: usize, chunk: usize) {
     // In the program's folder, because the system's folder for temporary files may be in memory.
     let beside = env::current_exe().unwrap().parent().unwrap().to_owned();
     let folder = tempfile::Builder::new().prefix("many-items").tempdir_in(beside).unwrap();
-    let server = by_queue.then(|| Postgres::start().expect("PostgreSQL is not installed"));
+    let server = by_queue.then(|| PostgresServer::start().expect("PostgreSQL is not installed"));
     let begun = Instant::now();
     fs::create_dir_all(folder.path().join("chunks")).unwrap();
     let names = (0..items).map(|number| format!("path-{number:08}")).collect();
-    let plan = Plan::new("many".into(), chunk, String::new(), names);
-    plan.put(folder.path()).unwrap();
+    let plan = ChunkPlan::new("many".into(), chunk, String::new(), names);
+    plan.write_plan(folder.path()).unwrap();
     println!("the plan of {items} items took {:.1} s", begun.elapsed().as_secs_f64());
-    let url = server.as_ref().map(Postgres::new_database);
+    let url = server.as_ref().map(PostgresServer::new_database);
     let begun = Instant::now();
     let start = |k: usize| {
         let mut command = Command::new(env::current_exe().unwrap());
@@ -117,11 +128,15 @@ fn measure(by_queue: bool, items: usize, workers: usize, chunk: usize) {
     let took_s = begun.elapsed().as_secs_f64();
     println!("{all} items in {} chunks by {workers} workers: {took_s:.1} s, {:.0}/s", made.len(), all as f64 / took_s);
     tell_tenths(&made);
-    let marked = (0..plan.chunks()).filter(|chunk| done_of(folder.path(), *chunk).unwrap().is_some()).count();
-    assert_eq!((all, made.len(), marked), (items, plan.chunks(), plan.chunks()), "something is lost or made twice");
+    let marked = (0..plan.chunk_count()).filter(|chunk| done_of(folder.path(), *chunk).unwrap().is_some()).count();
+    assert_eq!(
+        (all, made.len(), marked),
+        (items, plan.chunk_count(), plan.chunk_count()),
+        "something is lost or made twice"
+    );
     if let Some(url) = url {
-        let queue = Queue::open(Database::named(&url, None).unwrap(), folder.path(), &plan).unwrap();
-        assert_eq!(queue.look().unwrap().done, plan.chunks());
+        let queue = ChunkQueue::open(PostgresDatabase::from_name(&url, None).unwrap(), folder.path(), &plan).unwrap();
+        assert_eq!(queue.read_status().unwrap().done, plan.chunk_count());
     }
     println!("every chunk has its mark, and was made once");
 }

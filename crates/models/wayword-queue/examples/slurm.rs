@@ -10,8 +10,8 @@ use std::{
     io::{self, Write as _},
 };
 use wayword_queue::launch::{
-    Worker,
-    slurm::{SlurmJob, script},
+    LaunchWorker,
+    slurm::{SlurmJob, write_script},
 };
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -19,8 +19,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut next = |what: &str| given.next().ok_or_else(|| format!("{what} is missing"));
     let workers = next("WORKERS")?.parse()?;
     let (time, logs, variable, program) = (next("TIME")?, next("LOGS")?, next("VARIABLE")?, next("PROGRAM")?);
-    let worker = Worker { program, arguments: given.collect(), workers };
+    let worker = LaunchWorker { program, arguments: given.collect(), workers };
     let job = SlurmJob { logs, export: vec![variable], ..SlurmJob::new(worker, &time) };
-    io::stdout().write_all(script(&job)?.as_bytes())?;
+    io::stdout().write_all(write_script(&job)?.as_bytes())?;
     Ok(())
 }

@@ -1,10 +1,10 @@
 //! The interface through which workers get chunks and report their outcome.
 
-use crate::{Done, QueueError};
+use crate::{ChunkRecord, QueueError};
 
 /// A worker's claim of a chunk.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Claimed {
+pub struct ChunkClaim {
     /// Its number.
     pub chunk: usize,
     /// The number of the claim. Every report must name it, so that reports of an older claim are recognised. 0 in a shard,
@@ -14,7 +14,7 @@ pub struct Claimed {
 
 /// How many chunks are not finished.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Left {
+pub struct RemainingChunks {
     /// Chunks without a worker.
     pub open: usize,
     /// Chunks that workers have.
@@ -22,35 +22,35 @@ pub struct Left {
 }
 
 /// Hands chunks to one worker.
-pub trait Board {
+pub trait ChunkBoard {
     /// A chunk to make; `None` if none is open.
     ///
     /// # Errors
     /// When the board cannot be reached.
-    fn take(&self) -> Result<Option<Claimed>, QueueError>;
+    fn take_chunk(&self) -> Result<Option<ChunkClaim>, QueueError>;
 
     /// Records a finished chunk. Its results must be synced before. Returns `false` if the claim is no longer valid: another
     /// worker then has the chunk, and these results are dropped.
     ///
     /// # Errors
     /// When the board cannot be reached.
-    fn complete(&self, claimed: Claimed, done: &Done) -> Result<bool, QueueError>;
+    fn complete_chunk(&self, claimed: ChunkClaim, done: &ChunkRecord) -> Result<bool, QueueError>;
 
     /// Gives a chunk back that was not finished because the worker has to stop.
     ///
     /// # Errors
     /// When the board cannot be reached.
-    fn hand_back(&self, claimed: Claimed) -> Result<(), QueueError>;
+    fn hand_back(&self, claimed: ChunkClaim) -> Result<(), QueueError>;
 
     /// Reports that a chunk could not be made. It is tried again, and given up after [`crate::TRIES`] tries.
     ///
     /// # Errors
     /// When the board cannot be reached.
-    fn give_up(&self, claimed: Claimed, reason: &str) -> Result<(), QueueError>;
+    fn give_up(&self, claimed: ChunkClaim, reason: &str) -> Result<(), QueueError>;
 
     /// How many chunks are not finished, for this worker or for others.
     ///
     /// # Errors
     /// When the board cannot be reached.
-    fn left(&self) -> Result<Left, QueueError>;
+    fn count_remaining(&self) -> Result<RemainingChunks, QueueError>;
 }

@@ -1,6 +1,6 @@
 //! The marks of chunks in the run folder: `000012.done` records a finished chunk, `000012.dead` one that was given up.
 
-use crate::{Plan, QueueError, folder::remove, put_new};
+use crate::{ChunkPlan, QueueError, folder::remove_if_there, put_new};
 use serde::{Deserialize, Serialize};
 use std::{
     collections::BTreeMap,
@@ -10,7 +10,7 @@ use std::{
 };
 
 /// The folder of chunks and their marks in a run folder.
-pub(crate) const CHUNKS: &str = "chunks";
+pub(crate) const CHUNKS_FOLDER: &str = "chunks";
 /// Largest mark that is read, bytes.
 const MOST_BYTES: u64 = 1 << 20;
 
@@ -18,7 +18,7 @@ const MOST_BYTES: u64 = 1 << 20;
 /// results do not depend on the worker that made them.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Done {
+pub struct ChunkRecord {
     /// Its number.
     pub chunk: usize,
     /// The claim under which it was made; 0 in a shard.
@@ -45,35 +45,35 @@ pub struct Done {
 /// The mark of a finished chunk.
 #[must_use]
 pub fn done_path(folder: &Path, chunk: usize) -> PathBuf {
-    folder.join(CHUNKS).join(format!("{chunk:06}.done"))
+    folder.join(CHUNKS_FOLDER).join(format!("{chunk:06}.done"))
 }
 
 /// The mark of a chunk that was given up.
 #[must_use]
 pub fn dead_path(folder: &Path, chunk: usize) -> PathBuf {
-    folder.join(CHUNKS).join(format!("{chunk:06}.dead"))
+    folder.join(CHUNKS_FOLDER).join(format!("{chunk:06}.dead"))
 }
 
 /// The folder of a chunk's results, by the claim under which they are made: two workers never write into one.
 #[must_use]
 pub fn chunk_folder(folder: &Path, chunk: usize, epoch: i64) -> PathBuf {
     let name = if epoch == 0 { format!("{chunk:06}") } else { format!("{chunk:06}.{epoch}") };
-    folder.join(CHUNKS).join(name)
+    folder.join(CHUNKS_FOLDER).join(name)
 }
 
-impl Done {
+impl ChunkRecord {
     /// Writes the mark, unless there is one. Returns whether this one was written. The results have to be synced before.
     ///
     /// # Errors
     /// When it cannot be written.
-    pub fn put(&self, folder: &Path) -> Result<bool, QueueError> {
+    pub fn write_mark(&self, folder: &Path) -> Result<bool, QueueError> {
         let path = done_path(folder, self.chunk);
         put_new(&path, &to_bytes(&path, self)?)
     }
 
     /// How many items failed.
     #[must_use]
-    pub fn failures(&self) -> usize {
+    pub fn failed_items(&self) -> usize {
         self.failed.values().sum()
     }
 }
@@ -106,7 +106,7 @@ pub(crate) fn from_file<T: serde::de::DeserializeOwned>(path: &Path) -> Result<O
 ///
 /// # Errors
 /// When its mark cannot be read.
-pub fn done_of(folder: &Path, chunk: usize) -> Result<Option<Done>, QueueError> {
+pub fn done_of(folder: &Path, chunk: usize) -> Result<Option<ChunkRecord>, QueueError> {
     from_file(&done_path(folder, chunk))
 }
 
@@ -122,9 +122,9 @@ pub fn dead_of(folder: &Path, chunk: usize) -> Result<Option<String>, QueueError
 ///
 /// # Errors
 /// When a mark cannot be read.
-pub fn failing(folder: &Path, plan: &Plan, reason: &str) -> Result<Vec<usize>, QueueError> {
+pub fn failing_chunks(folder: &Path, plan: &ChunkPlan, reason: &str) -> Result<Vec<usize>, QueueError> {
     let mut failing = Vec::new();
-    for chunk in 0..plan.chunks() {
+    for chunk in 0..plan.chunk_count() {
         let failed = done_of(folder, chunk)?.is_some_and(|done| done.failed.keys().any(|why| why.contains(reason)));
         if failed || dead_of(folder, chunk)?.is_some_and(|why| why.contains(reason)) {
             failing.push(chunk);
@@ -137,10 +137,10 @@ pub fn failing(folder: &Path, plan: &Plan, reason: &str) -> Result<Vec<usize>, Q
 ///
 /// # Errors
 /// When a mark cannot be removed.
-pub fn reopen(folder: &Path, chunks: &[usize]) -> Result<(), QueueError> {
+pub fn reopen_chunks(folder: &Path, chunks: &[usize]) -> Result<(), QueueError> {
     for chunk in chunks {
         for mark in [done_path(folder, *chunk), dead_path(folder, *chunk), crate::shard::tries_path(folder, *chunk)] {
-            remove(&mark)?;
+            remove_if_there(&mark)?;
         }
     }
     Ok(())

@@ -12,16 +12,16 @@ use std::{
 };
 
 /// A name in the file's folder that no other process uses, on any machine.
-fn beside(path: &Path) -> PathBuf {
-    static NUMBER: AtomicU64 = AtomicU64::new(0);
+fn unfinished_path(path: &Path) -> PathBuf {
+    static NEXT_NUMBER: AtomicU64 = AtomicU64::new(0);
     let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_nanos();
-    let number = NUMBER.fetch_add(1, Ordering::Relaxed);
+    let number = NEXT_NUMBER.fetch_add(1, Ordering::Relaxed);
     let mut name = path.as_os_str().to_owned();
     name.push(format!(".new-{:x}-{since:x}-{number:x}", std::process::id()));
     name.into()
 }
 
-fn written(path: &Path, bytes: &[u8]) -> io::Result<()> {
+fn write_synced(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let mut file = File::options().create_new(true).write(true).open(path)?;
     file.write_all(bytes)?;
     file.sync_all()
@@ -33,8 +33,8 @@ fn written(path: &Path, bytes: &[u8]) -> io::Result<()> {
 /// # Errors
 /// When it cannot be written.
 pub fn put_new(path: &Path, bytes: &[u8]) -> Result<bool, QueueError> {
-    let unfinished = beside(path);
-    let done = written(&unfinished, bytes).and_then(|()| match fs::hard_link(&unfinished, path) {
+    let unfinished = unfinished_path(path);
+    let done = write_synced(&unfinished, bytes).and_then(|()| match fs::hard_link(&unfinished, path) {
         Ok(()) => Ok(true),
         Err(error) if error.kind() == ErrorKind::AlreadyExists => Ok(false),
         // A file server's answer can be lost after it made the link. Two links show that it did.
@@ -48,9 +48,9 @@ pub fn put_new(path: &Path, bytes: &[u8]) -> Result<bool, QueueError> {
     });
     // If this fails, the extra name does no harm.
     let _ = fs::remove_file(&unfinished);
-    let is_new = done.map_err(QueueError::io(path, "write"))?;
+    let is_new = done.map_err(QueueError::for_file(path, "write"))?;
     if is_new {
-        sync_folder_of(path).map_err(QueueError::io(path, "sync the folder of"))?;
+        sync_folder_of(path).map_err(QueueError::for_file(path, "sync the folder of"))?;
     }
     Ok(is_new)
 }
@@ -70,18 +70,18 @@ fn has_two_links(_: &Path) -> bool {
 /// # Errors
 /// When it cannot be written.
 pub fn put_whole(path: &Path, bytes: &[u8]) -> Result<(), QueueError> {
-    let unfinished = beside(path);
-    let done = written(&unfinished, bytes).and_then(|()| fs::rename(&unfinished, path));
+    let unfinished = unfinished_path(path);
+    let done = write_synced(&unfinished, bytes).and_then(|()| fs::rename(&unfinished, path));
     if done.is_err() {
         let _ = fs::remove_file(&unfinished);
     }
-    done.map_err(QueueError::io(path, "write"))
+    done.map_err(QueueError::for_file(path, "write"))
 }
 
 /// Removes a file, if it is there.
-pub(crate) fn remove(path: &Path) -> Result<(), QueueError> {
+pub(crate) fn remove_if_there(path: &Path) -> Result<(), QueueError> {
     match fs::remove_file(path) {
-        Err(error) if error.kind() != ErrorKind::NotFound => Err(QueueError::io(path, "remove")(error)),
+        Err(error) if error.kind() != ErrorKind::NotFound => Err(QueueError::for_file(path, "remove")(error)),
         _ => Ok(()),
     }
 }
@@ -107,17 +107,17 @@ fn sync_folder(folder: &Path) -> io::Result<()> {
 /// # Errors
 /// When a file cannot be synced.
 pub fn sync_tree(folder: &Path) -> Result<(), QueueError> {
-    for entry in fs::read_dir(folder).map_err(QueueError::io(folder, "list"))? {
-        let entry = entry.map_err(QueueError::io(folder, "list"))?;
+    for entry in fs::read_dir(folder).map_err(QueueError::for_file(folder, "list"))? {
+        let entry = entry.map_err(QueueError::for_file(folder, "list"))?;
         let path = entry.path();
-        let kind = entry.file_type().map_err(QueueError::io(&path, "look at"))?;
+        let kind = entry.file_type().map_err(QueueError::for_file(&path, "look at"))?;
         if kind.is_dir() {
             sync_tree(&path)?;
         } else if kind.is_file() {
-            File::open(&path).and_then(|file| file.sync_all()).map_err(QueueError::io(&path, "sync"))?;
+            File::open(&path).and_then(|file| file.sync_all()).map_err(QueueError::for_file(&path, "sync"))?;
         }
     }
-    sync_folder(folder).map_err(QueueError::io(folder, "sync"))
+    sync_folder(folder).map_err(QueueError::for_file(folder, "sync"))
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@
 use crate::{
     QueueError,
     done::{from_file, to_bytes},
-    folder::remove,
+    folder::remove_if_there,
     put_new, put_whole,
 };
 use serde::{Deserialize, Serialize};
@@ -25,16 +25,16 @@ use std::{
 };
 
 /// How long a heartbeat counts.
-pub const FRESH: Duration = Duration::from_secs(60);
+pub const HEARTBEAT_LEASE: Duration = Duration::from_secs(60);
 /// How many heartbeats there are in that time.
-const BEATS: u32 = 6;
+const BEATS_PER_LEASE: u32 = 6;
 
 /// The folder of the heartbeat files, in a run folder.
-const WORKERS: &str = "workers";
+const WORKERS_FOLDER: &str = "workers";
 
 /// The content of a heartbeat file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Beat {
+pub struct WorkerHeartbeat {
     /// The worker, for people: machine and process.
     pub worker: String,
     /// A token that no other worker has.
@@ -45,11 +45,11 @@ pub struct Beat {
 
 /// A heartbeat file of a run folder, with its age.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Alive {
+pub struct HeartbeatEntry {
     /// The name of its file.
     pub file: String,
     /// Its content.
-    pub beat: Beat,
+    pub beat: WorkerHeartbeat,
     /// Time since it was written, by the clock of the file system.
     pub age: Duration,
 }
@@ -66,7 +66,7 @@ pub fn worker_name() -> String {
 
 /// A thread that renews a worker's heartbeat file until it is dropped.
 #[derive(Debug)]
-pub struct Heart {
+pub struct HeartbeatThread {
     path: PathBuf,
     token: String,
     is_lost: Arc<AtomicBool>,
@@ -74,7 +74,7 @@ pub struct Heart {
     thread: Option<JoinHandle<()>>,
 }
 
-impl Heart {
+impl HeartbeatThread {
     /// Starts a heartbeat in a file of this name.
     ///
     /// # Errors
@@ -82,14 +82,14 @@ impl Heart {
     pub fn start(
         folder: &Path,
         name: &str,
-        beat: Beat,
+        beat: WorkerHeartbeat,
         fresh: Duration,
         excludes: impl Fn(&str) -> bool,
     ) -> Result<Self, QueueError> {
-        let workers = folder.join(WORKERS);
-        fs::create_dir_all(&workers).map_err(QueueError::io(&workers, "make the folder"))?;
+        let workers = folder.join(WORKERS_FOLDER);
+        fs::create_dir_all(&workers).map_err(QueueError::for_file(&workers, "make the folder"))?;
         let path = workers.join(name);
-        for Alive { file, beat: told, age } in beats(folder)? {
+        for HeartbeatEntry { file, beat: told, age } in read_heartbeats(folder)? {
             if age < fresh && told.token != beat.token && (file == name || excludes(&file)) {
                 return Err(QueueError::Busy {
                     path: workers.join(file),
@@ -100,17 +100,18 @@ impl Heart {
             }
         }
         // The file of a dead worker is removed. If several workers do this at the same moment, one of them writes first.
-        remove(&path)?;
+        remove_if_there(&path)?;
         let bytes = to_bytes(&path, &beat)?;
         if !put_new(&path, &bytes)? {
-            let who = from_file::<Beat>(&path)?.map_or_else(|| "another worker".to_owned(), |other| other.worker);
+            let who =
+                from_file::<WorkerHeartbeat>(&path)?.map_or_else(|| "another worker".to_owned(), |other| other.worker);
             return Err(QueueError::Busy { path, who, seconds: 0, fresh: fresh.as_secs() });
         }
         let (end, ended) = mpsc::channel();
         let is_lost = Arc::new(AtomicBool::new(false));
         let thread = {
             let (path, is_lost, token) = (path.clone(), Arc::clone(&is_lost), beat.token.clone());
-            let every = fresh / BEATS;
+            let every = fresh / BEATS_PER_LEASE;
             thread::Builder::new().name("heartbeat".to_owned()).spawn(move || {
                 while ended.recv_timeout(every) == Err(mpsc::RecvTimeoutError::Timeout) {
                     if !is_ours(&path, &token) {
@@ -122,7 +123,7 @@ impl Heart {
                 }
             })
         };
-        let thread = thread.map_err(QueueError::io(&path, "start the thread that writes"))?;
+        let thread = thread.map_err(QueueError::for_file(&path, "start the thread that writes"))?;
         Ok(Self { path, token: beat.token, is_lost, end: Some(end), thread: Some(thread) })
     }
 
@@ -130,7 +131,7 @@ impl Heart {
     ///
     /// # Errors
     /// [`QueueError::TakenOver`].
-    pub fn check(&self) -> Result<(), QueueError> {
+    pub fn check_ours(&self) -> Result<(), QueueError> {
         if self.is_lost.load(Ordering::SeqCst) || !is_ours(&self.path, &self.token) {
             return Err(QueueError::TakenOver(self.path.clone()));
         }
@@ -138,7 +139,7 @@ impl Heart {
     }
 }
 
-impl Drop for Heart {
+impl Drop for HeartbeatThread {
     fn drop(&mut self) {
         self.end = None;
         if let Some(thread) = self.thread.take() {
@@ -152,7 +153,7 @@ impl Drop for Heart {
 
 /// Whether a file is still this worker's. A file that cannot be read for a moment counts as this worker's.
 fn is_ours(path: &Path, token: &str) -> bool {
-    match from_file::<Beat>(path) {
+    match from_file::<WorkerHeartbeat>(path) {
         Ok(Some(beat)) => beat.token == token,
         Ok(None) => false,
         Err(_) => true,
@@ -163,8 +164,8 @@ fn is_ours(path: &Path, token: &str) -> bool {
 ///
 /// # Errors
 /// When the folder cannot be read.
-pub fn beats(folder: &Path) -> Result<Vec<Alive>, QueueError> {
-    let workers = folder.join(WORKERS);
+pub fn read_heartbeats(folder: &Path) -> Result<Vec<HeartbeatEntry>, QueueError> {
+    let workers = folder.join(WORKERS_FOLDER);
     let entries = match fs::read_dir(&workers) {
         Ok(entries) => entries,
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
@@ -178,9 +179,11 @@ pub fn beats(folder: &Path) -> Result<Vec<Alive>, QueueError> {
         if name.contains('.') {
             continue;
         }
-        let (Ok(Some(beat)), Ok(about)) = (from_file::<Beat>(&entry.path()), entry.metadata()) else { continue };
+        let (Ok(Some(beat)), Ok(about)) = (from_file::<WorkerHeartbeat>(&entry.path()), entry.metadata()) else {
+            continue;
+        };
         let age = about.modified().ok().and_then(|at| now.duration_since(at).ok()).unwrap_or_default();
-        beats.push(Alive { file: name, beat, age });
+        beats.push(HeartbeatEntry { file: name, beat, age });
     }
     beats.sort_by(|a, b| a.file.cmp(&b.file));
     Ok(beats)
@@ -189,7 +192,7 @@ pub fn beats(folder: &Path) -> Result<Vec<Alive>, QueueError> {
 /// The time by the clock of the file system.
 fn now_of(folder: &Path) -> Result<SystemTime, QueueError> {
     let path = folder.join(format!(".clock-{}-{:?}", std::process::id(), thread::current().id()));
-    let failed = || QueueError::io(&path, "ask the file system for the time by");
+    let failed = || QueueError::for_file(&path, "ask the file system for the time by");
     put_whole(&path, b"now")?;
     let now = fs::metadata(&path).and_then(|about| about.modified()).map_err(failed())?;
     fs::remove_file(&path).map_err(failed())?;
@@ -200,30 +203,31 @@ fn now_of(folder: &Path) -> Result<SystemTime, QueueError> {
 mod tests {
     use super::*;
 
-    fn beat(token: &str) -> Beat {
-        Beat { worker: format!("host {token}"), token: token.to_owned(), part: "shard 0 of 2".to_owned() }
+    fn beat(token: &str) -> WorkerHeartbeat {
+        WorkerHeartbeat { worker: format!("host {token}"), token: token.to_owned(), part: "shard 0 of 2".to_owned() }
     }
 
     #[test]
     fn start_refuses_a_second_worker_while_the_first_lives() {
         let folder = tempfile::tempdir().unwrap();
-        let start = |token: &str, fresh| Heart::start(folder.path(), "shard", beat(token), fresh, |_| false);
-        let first = start("a", FRESH).unwrap();
-        let refused = start("b", FRESH).unwrap_err();
+        let start = |token: &str, fresh| HeartbeatThread::start(folder.path(), "shard", beat(token), fresh, |_| false);
+        let first = start("a", HEARTBEAT_LEASE).unwrap();
+        let refused = start("b", HEARTBEAT_LEASE).unwrap_err();
         assert!(matches!(refused, QueueError::Busy { .. }) && refused.to_string().contains("host a"), "{refused}");
         drop(first);
-        assert!(start("b", FRESH).is_ok());
+        assert!(start("b", HEARTBEAT_LEASE).is_ok());
     }
 
     #[test]
     fn check_fails_after_a_suspended_worker_was_taken_over() {
         let folder = tempfile::tempdir().unwrap();
         // The first beats too seldom for the second's patience, as a suspended one does.
-        let first = Heart::start(folder.path(), "shard", beat("a"), FRESH, |_| false).unwrap();
+        let first = HeartbeatThread::start(folder.path(), "shard", beat("a"), HEARTBEAT_LEASE, |_| false).unwrap();
         thread::sleep(Duration::from_millis(60));
-        let second = Heart::start(folder.path(), "shard", beat("b"), Duration::from_millis(50), |_| false).unwrap();
-        assert!(matches!(first.check(), Err(QueueError::TakenOver(_))));
+        let second =
+            HeartbeatThread::start(folder.path(), "shard", beat("b"), Duration::from_millis(50), |_| false).unwrap();
+        assert!(matches!(first.check_ours(), Err(QueueError::TakenOver(_))));
         drop(first);
-        assert!(second.check().is_ok(), "the first does not remove the second's file");
+        assert!(second.check_ours().is_ok(), "the first does not remove the second's file");
     }
 }

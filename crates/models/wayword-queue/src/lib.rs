@@ -1,9 +1,9 @@
 //! A run that many workers make: its plan, chunks, claims and completion, and the scripts that launch workers.
 //!
-//! The plan ([`Plan`]) is written once and contains everything that all workers must agree on. It cuts the items into
-//! chunks. A [`Board`] hands chunks to workers. There are two: [`Shard`] needs only a shared folder and gives each worker a
+//! The plan ([`ChunkPlan`]) is written once and contains everything that all workers must agree on. It cuts the items into
+//! chunks. A [`ChunkBoard`] hands chunks to workers. There are two: [`ShardBoard`] needs only a shared folder and gives each worker a
 //! fixed part; a queue in PostgreSQL (feature `postgres`) gives the next open chunk to the worker that asks. The result of
-//! a chunk is recorded once, in its mark ([`Done`]), a small file.
+//! a chunk is recorded once, in its mark ([`ChunkRecord`]), a small file.
 //!
 //! This crate knows chunks by their numbers. The caller defines the items and makes them.
 
@@ -22,14 +22,14 @@ mod queue;
 mod shard;
 mod work;
 
-pub use board::{Board, Claimed, Left};
-pub use done::{Done, chunk_folder, dead_of, dead_path, done_of, done_path, failing, reopen};
+pub use board::{ChunkBoard, ChunkClaim, RemainingChunks};
+pub use done::{ChunkRecord, chunk_folder, dead_of, dead_path, done_of, done_path, failing_chunks, reopen_chunks};
 pub use error::QueueError;
 pub use folder::{put_new, put_whole, sync_tree};
-pub use heartbeat::{Alive, Beat, FRESH, Heart, beats, worker_name};
-pub use plan::{FILE as PLAN, Plan, WAY};
-pub use protocol::{Row, State, TRIES};
+pub use heartbeat::{HEARTBEAT_LEASE, HeartbeatEntry, HeartbeatThread, WorkerHeartbeat, read_heartbeats, worker_name};
+pub use plan::{ChunkPlan, PLAN_FILE as PLAN, WORKERS_FILE};
+pub use protocol::{ChunkRow, ChunkState, MAX_CHUNK_TRIES};
 #[cfg(feature = "postgres")]
-pub use queue::{Queue, Seen, TABLES, Worker};
-pub use shard::{Part, Shard};
-pub use work::{Ended, Finished, work};
+pub use queue::{ChunkQueue, QUEUE_TABLES, QueueStatus, QueueWorker};
+pub use shard::{ShardBoard, ShardPart};
+pub use work::{ChunkOutcome, WorkSummary, work_chunks};

@@ -4,27 +4,27 @@
 use serde::{Deserialize, Serialize};
 
 /// How often a chunk is begun in vain before it is given up.
-pub const TRIES: i32 = 3;
+pub const MAX_CHUNK_TRIES: i32 = 3;
 
 /// The state of a chunk.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum State {
+pub enum ChunkState {
     /// The next worker that asks gets it.
     Open,
     /// A worker has it.
     Running,
     /// Finished.
     Done,
-    /// Given up after [`TRIES`] tries.
+    /// Given up after [`MAX_CHUNK_TRIES`] tries.
     Dead,
 }
 
 /// A chunk on a board. `W` names workers.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
-pub struct Row<W> {
+pub struct ChunkRow<W> {
     /// Its state.
-    pub state: State,
+    pub state: ChunkState,
     /// The number of the latest claim. It only goes up.
     pub epoch: i64,
     /// Claims that ended without a report, or in a failure.
@@ -33,24 +33,24 @@ pub struct Row<W> {
     pub worker: Option<W>,
 }
 
-impl<W> Default for Row<W> {
+impl<W> Default for ChunkRow<W> {
     fn default() -> Self {
-        Self { state: State::Open, epoch: 0, tries: 0, worker: None }
+        Self { state: ChunkState::Open, epoch: 0, tries: 0, worker: None }
     }
 }
 
-impl<W: Clone + PartialEq> Row<W> {
+impl<W: Clone + PartialEq> ChunkRow<W> {
     /// Gives the chunk to a worker, and returns its epoch. A chunk that runs is taken from a worker that is gone; after too
     /// many tries it is given up instead.
-    pub fn claim(&mut self, by: &W, is_gone: impl Fn(&W) -> bool) -> Option<i64> {
-        let abandoned = self.state == State::Running && self.worker.as_ref().is_none_or(is_gone);
-        if abandoned && self.tries >= TRIES {
-            self.state = State::Dead;
+    pub fn claim_chunk(&mut self, by: &W, is_gone: impl Fn(&W) -> bool) -> Option<i64> {
+        let abandoned = self.state == ChunkState::Running && self.worker.as_ref().is_none_or(is_gone);
+        if abandoned && self.tries >= MAX_CHUNK_TRIES {
+            self.state = ChunkState::Dead;
         }
-        if self.state != State::Open && !(self.state == State::Running && abandoned) {
+        if self.state != ChunkState::Open && !(self.state == ChunkState::Running && abandoned) {
             return None;
         }
-        self.state = State::Running;
+        self.state = ChunkState::Running;
         self.epoch += 1;
         self.tries += 1;
         self.worker = Some(by.clone());
@@ -58,19 +58,19 @@ impl<W: Clone + PartialEq> Row<W> {
     }
 
     /// Records a result if it belongs to the latest claim. A result of any other claim is dropped.
-    pub fn complete(&mut self, epoch: i64) -> bool {
-        let holds = self.state == State::Running && self.epoch == epoch;
+    pub fn complete_claim(&mut self, epoch: i64) -> bool {
+        let holds = self.state == ChunkState::Running && self.epoch == epoch;
         if holds {
-            self.state = State::Done;
+            self.state = ChunkState::Done;
         }
         holds
     }
 
     /// A worker gives the chunk back, unfinished and through no fault of the chunk. It does not count as a try.
     pub fn hand_back(&mut self, epoch: i64) -> bool {
-        let holds = self.state == State::Running && self.epoch == epoch;
+        let holds = self.state == ChunkState::Running && self.epoch == epoch;
         if holds {
-            self.state = State::Open;
+            self.state = ChunkState::Open;
             self.tries -= 1;
         }
         holds
@@ -78,9 +78,9 @@ impl<W: Clone + PartialEq> Row<W> {
 
     /// A worker could not make the chunk.
     pub fn give_up(&mut self, epoch: i64) -> bool {
-        let holds = self.state == State::Running && self.epoch == epoch;
+        let holds = self.state == ChunkState::Running && self.epoch == epoch;
         if holds {
-            self.state = if self.tries >= TRIES { State::Dead } else { State::Open };
+            self.state = if self.tries >= MAX_CHUNK_TRIES { ChunkState::Dead } else { ChunkState::Open };
         }
         holds
     }

@@ -1,24 +1,28 @@
-//! A board in PostgreSQL: a worker that asks gets the first open chunk. The rules are those of [`crate::Row`], in SQL.
+//! A board in PostgreSQL: a worker that asks gets the first open chunk. The rules are those of [`crate::ChunkRow`], in SQL.
 //!
 //! Each claim of a chunk has a number, its epoch, which goes up. A worker that was suspended and taken over still has the
 //! old epoch, so its late result changes no row.
 
-use crate::{Board, Claimed, Done, Left, Plan, QueueError, TRIES, failing, reopen};
+use crate::{
+    ChunkBoard, ChunkClaim, ChunkPlan, ChunkRecord, MAX_CHUNK_TRIES, QueueError, RemainingChunks, failing_chunks,
+    reopen_chunks,
+};
 use std::{
     path::{Path, PathBuf},
     sync::{Arc, mpsc},
     thread::{self, JoinHandle},
     time::Duration,
 };
-use wayword_database::{Database, Pool, Tables, prepare};
+use wayword_database::{ConnectionPool, PostgresDatabase, SchemaTables, prepare_tables};
 
 /// The tables of the queue.
 ///
 /// `chunks` changes only when a chunk changes hands, and results are not in it, so its rows stay few and short. A worker's
 /// heartbeat is one row of `workers`.
-pub const TABLES: Tables = Tables { schema: "wayword_queue", steps: &[FIRST], grants: GRANTS };
+pub const QUEUE_TABLES: SchemaTables =
+    SchemaTables { schema: "wayword_queue", steps: &[CREATE_TABLES_SQL], grants: GRANTS_SQL };
 
-const FIRST: &str = "
+const CREATE_TABLES_SQL: &str = "
 CREATE TABLE wayword_queue.runs (
     run TEXT PRIMARY KEY, plan TEXT NOT NULL, chunks INTEGER NOT NULL, at TIMESTAMPTZ NOT NULL DEFAULT now()
 );
@@ -36,7 +40,7 @@ CREATE TABLE wayword_queue.workers (
 ) WITH (fillfactor = 50);
 ";
 
-const GRANTS: &str = "
+const GRANTS_SQL: &str = "
 GRANT USAGE ON SCHEMA wayword_queue TO ROLE;
 GRANT SELECT ON wayword_queue.version TO ROLE;
 GRANT SELECT, INSERT ON wayword_queue.runs TO ROLE;
@@ -45,7 +49,7 @@ GRANT SELECT, INSERT, UPDATE, DELETE ON wayword_queue.workers TO ROLE;
 ";
 
 /// Gives up chunks that were begun too often by workers that are gone.
-const BURY: &str = "
+const BURY_SQL: &str = "
 UPDATE wayword_queue.chunks AS c SET state = 'dead', reason = 'begun ' || tries || ' times without a result: its worker ended each time'
 WHERE run = $1 AND state = 'running' AND tries >= $2 AND pg_postmaster_start_time() < now() - make_interval(secs => $3) AND NOT EXISTS (
     SELECT 1 FROM wayword_queue.workers AS w WHERE w.run = c.run AND w.worker = c.worker AND w.beat > now() - make_interval(secs => $3)
@@ -55,7 +59,7 @@ WHERE run = $1 AND state = 'running' AND tries >= $2 AND pg_postmaster_start_tim
 /// up for a whole lease, because while it was down no heartbeat could arrive. `SKIP LOCKED` gives different chunks to two
 /// workers that ask at once. The two kinds are looked up separately, each in a small index, so that the finished chunks are
 /// never scanned.
-const CLAIM: &str = "
+const CLAIM_SQL: &str = "
 WITH lost AS (
     SELECT c.chunk FROM wayword_queue.chunks AS c
     WHERE c.run = $1 AND c.state = 'running' AND c.tries < $4 AND pg_postmaster_start_time() < now() - make_interval(secs => $3) AND NOT EXISTS (
@@ -71,9 +75,10 @@ UPDATE wayword_queue.chunks AS c SET state = 'running', epoch = c.epoch + 1, tri
 FROM next WHERE c.run = $1 AND c.chunk = next.chunk RETURNING c.chunk, c.epoch";
 
 /// The chunk that a worker already has, although the answer to its claim was lost.
-const MINE: &str = "SELECT chunk, epoch FROM wayword_queue.chunks WHERE run = $1 AND worker = $2 AND state = 'running'";
+const OWN_CLAIM_SQL: &str =
+    "SELECT chunk, epoch FROM wayword_queue.chunks WHERE run = $1 AND worker = $2 AND state = 'running'";
 
-const COMPLETE: &str = "
+const COMPLETE_SQL: &str = "
 UPDATE wayword_queue.chunks SET state = 'done', done = $4, since = now()
 WHERE run = $1 AND chunk = $2 AND epoch = $3 AND state = 'running'";
 
@@ -88,14 +93,14 @@ const GIVE_UP: &str = "
 UPDATE wayword_queue.chunks SET state = CASE WHEN tries >= $4 THEN 'dead' ELSE 'open' END, reason = $5, retries = retries + 1
 WHERE run = $1 AND chunk = $2 AND epoch = $3 AND state = 'running'";
 
-const BEAT: &str = "
+const BEAT_SQL: &str = "
 INSERT INTO wayword_queue.workers (run, worker) VALUES ($1, $2)
 ON CONFLICT (run, worker) DO UPDATE SET beat = now()";
 
 /// A worker's view of a run's chunks.
 #[derive(Debug)]
-pub struct Queue {
-    pool: Arc<Pool>,
+pub struct ChunkQueue {
+    pool: Arc<ConnectionPool>,
     run: String,
     worker: String,
     /// Where the marks of finished chunks go.
@@ -105,13 +110,13 @@ pub struct Queue {
 }
 
 /// Connections of one worker: one for its work, one for its heartbeat.
-const CONNECTIONS: usize = 2;
+const WORKER_CONNECTIONS: usize = 2;
 /// Heartbeats in the time for which one counts.
-const BEATS: u32 = 6;
+const BEATS_PER_LEASE: u32 = 6;
 
 /// A worker, its last heartbeat, and its chunk.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Worker {
+pub struct QueueWorker {
     /// Its name.
     pub worker: String,
     /// Seconds since its last heartbeat.
@@ -124,7 +129,7 @@ pub struct Worker {
 
 /// The state of a run in the queue, for people.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Seen {
+pub struct QueueStatus {
     /// Chunks that no worker has.
     pub open: usize,
     /// Chunks that workers have.
@@ -136,26 +141,26 @@ pub struct Seen {
     /// How often chunks were tried again, by reason.
     pub retries: Vec<(String, i64)>,
     /// The workers.
-    pub workers: Vec<Worker>,
+    pub workers: Vec<QueueWorker>,
 }
 
-impl Queue {
+impl ChunkQueue {
     /// A queue for the run of a folder's plan, without a worker: to look at it.
     ///
     /// # Errors
     /// When the database cannot be used, or has a run of that name with another plan.
-    pub fn open(database: Database, folder: &Path, plan: &Plan) -> Result<Self, QueueError> {
-        let pool = Arc::new(Pool::new(database, CONNECTIONS));
-        prepare(&pool, &TABLES)?;
+    pub fn open(database: PostgresDatabase, folder: &Path, plan: &ChunkPlan) -> Result<Self, QueueError> {
+        let pool = Arc::new(ConnectionPool::new(database, WORKER_CONNECTIONS));
+        prepare_tables(&pool, &QUEUE_TABLES)?;
         let queue = Self {
             pool,
             run: plan.run.clone(),
             worker: String::new(),
             folder: folder.to_owned(),
-            lease: crate::FRESH,
+            lease: crate::HEARTBEAT_LEASE,
             beating: None,
         };
-        queue.enter(plan)?;
+        queue.enter_run(plan)?;
         Ok(queue)
     }
 
@@ -163,32 +168,32 @@ impl Queue {
     ///
     /// # Errors
     /// When the database cannot be used.
-    pub fn join(mut self, worker: &str, lease: Duration) -> Result<Self, QueueError> {
+    pub fn join_as(mut self, worker: &str, lease: Duration) -> Result<Self, QueueError> {
         self.worker = worker.to_owned();
         self.lease = lease;
-        beat(&self.pool, &self.run, worker)?;
+        send_heartbeat(&self.pool, &self.run, worker)?;
         let (end, ended) = mpsc::channel();
         let (pool, run, name) = (Arc::clone(&self.pool), self.run.clone(), worker.to_owned());
         let beats = move || {
-            while ended.recv_timeout(lease / BEATS) == Err(mpsc::RecvTimeoutError::Timeout) {
+            while ended.recv_timeout(lease / BEATS_PER_LEASE) == Err(mpsc::RecvTimeoutError::Timeout) {
                 // The pool tries several times. If that fails, the next heartbeat follows.
-                let _ = beat(&pool, &run, &name);
+                let _ = send_heartbeat(&pool, &run, &name);
             }
         };
         let thread = thread::Builder::new().name("heartbeat".to_owned()).spawn(beats);
-        let thread = thread.map_err(QueueError::io("heartbeat", "start the thread"))?;
+        let thread = thread.map_err(QueueError::for_file("heartbeat", "start the thread"))?;
         self.beating = Some((end, thread));
         Ok(self)
     }
 
     /// Enters the run and its chunks, unless they are there.
-    fn enter(&self, plan: &Plan) -> Result<(), QueueError> {
-        let (chunks, hash) = (i32::try_from(plan.chunks()).unwrap_or(i32::MAX), plan.hash());
-        let entered = self.pool.with("enter the run", |connection| {
+    fn enter_run(&self, plan: &ChunkPlan) -> Result<(), QueueError> {
+        let (chunks, hash) = (i32::try_from(plan.chunk_count()).unwrap_or(i32::MAX), plan.plan_hash());
+        let entered = self.pool.with_connection("enter the run", |connection| {
             let sql = "WITH new AS (INSERT INTO wayword_queue.runs (run, plan, chunks) VALUES ($1, $2, $3) ON CONFLICT DO NOTHING RETURNING run)
                        INSERT INTO wayword_queue.chunks (run, chunk) SELECT new.run, n FROM new, generate_series(0, $3 - 1) AS n";
-            connection.rows(sql, &[&self.run, &hash, &chunks])?;
-            let rows = connection.rows("SELECT plan FROM wayword_queue.runs WHERE run = $1", &[&self.run])?;
+            connection.query_rows(sql, &[&self.run, &hash, &chunks])?;
+            let rows = connection.query_rows("SELECT plan FROM wayword_queue.runs WHERE run = $1", &[&self.run])?;
             rows.first().map(|row| row.try_get::<_, String>(0)).transpose()
         })?;
         match entered {
@@ -200,19 +205,19 @@ impl Queue {
         }
     }
 
-    fn changed(
+    fn change_chunk(
         &self,
         doing: &'static str,
         sql: &'static str,
-        claimed: Claimed,
+        claimed: ChunkClaim,
         rest: &[&(dyn wayword_database::postgres::types::ToSql + Sync)],
     ) -> Result<bool, QueueError> {
-        let chunk = number(claimed.chunk);
+        let chunk = chunk_number(claimed.chunk);
         let mut values: Vec<&(dyn wayword_database::postgres::types::ToSql + Sync)> =
             vec![&self.run, &chunk, &claimed.epoch];
         values.extend(rest);
-        let changed = self.pool.with(doing, |connection| {
-            let statement = connection.prepared(sql)?;
+        let changed = self.pool.with_connection(doing, |connection| {
+            let statement = connection.prepare_statement(sql)?;
             connection.client().execute(&statement, &values)
         })?;
         Ok(changed == 1)
@@ -222,11 +227,11 @@ impl Queue {
     ///
     /// # Errors
     /// When the database cannot be used.
-    pub fn look(&self) -> Result<Seen, QueueError> {
-        Ok(self.pool.with("look at the run", |connection| {
-            let mut seen = Seen::default();
+    pub fn read_status(&self) -> Result<QueueStatus, QueueError> {
+        Ok(self.pool.with_connection("look at the run", |connection| {
+            let mut seen = QueueStatus::default();
             let sql = "SELECT state, count(*) FROM wayword_queue.chunks WHERE run = $1 GROUP BY state";
-            for row in connection.rows(sql, &[&self.run])? {
+            for row in connection.query_rows(sql, &[&self.run])? {
                 let count = usize::try_from(row.try_get::<_, i64>(1)?).unwrap_or(0);
                 match row.try_get::<_, &str>(0)? {
                     "open" => seen.open = count,
@@ -236,23 +241,23 @@ impl Queue {
                 }
             }
             let sql = "SELECT chunk, coalesce(reason, '') FROM wayword_queue.chunks WHERE run = $1 AND state = 'dead' ORDER BY chunk";
-            for row in connection.rows(sql, &[&self.run])? {
-                seen.dead.push((place(row.try_get(0)?), row.try_get(1)?));
+            for row in connection.query_rows(sql, &[&self.run])? {
+                seen.dead.push((chunk_index(row.try_get(0)?), row.try_get(1)?));
             }
             let sql = "SELECT reason, sum(retries)::bigint FROM wayword_queue.chunks WHERE run = $1 AND retries > 0 AND reason IS NOT NULL GROUP BY 1 ORDER BY 1";
-            for row in connection.rows(sql, &[&self.run])? {
+            for row in connection.query_rows(sql, &[&self.run])? {
                 seen.retries.push((row.try_get(0)?, row.try_get(1)?));
             }
             let sql = "SELECT w.worker, extract(epoch FROM now() - w.beat)::float8, c.chunk, extract(epoch FROM now() - c.since)::float8
                        FROM wayword_queue.workers AS w
                        LEFT JOIN wayword_queue.chunks AS c ON c.run = w.run AND c.worker = w.worker AND c.state = 'running'
                        WHERE w.run = $1 ORDER BY w.worker";
-            for row in connection.rows(sql, &[&self.run])? {
+            for row in connection.query_rows(sql, &[&self.run])? {
                 let chunk: Option<i32> = row.try_get(2)?;
-                seen.workers.push(Worker {
+                seen.workers.push(QueueWorker {
                     worker: row.try_get(0)?,
                     beat_s: row.try_get(1)?,
-                    chunk: chunk.map(place),
+                    chunk: chunk.map(chunk_index),
                     chunk_s: row.try_get(3)?,
                 });
             }
@@ -265,19 +270,19 @@ impl Queue {
     ///
     /// # Errors
     /// When the database cannot be used or a mark cannot be written.
-    pub fn mark(&self) -> Result<usize, QueueError> {
-        let kept: Vec<String> = self.pool.with("ask for the finished chunks", |connection| {
+    pub fn write_missing_marks(&self) -> Result<usize, QueueError> {
+        let kept: Vec<String> = self.pool.with_connection("ask for the finished chunks", |connection| {
             let sql = "SELECT done FROM wayword_queue.chunks WHERE run = $1 AND state = 'done' AND done IS NOT NULL";
-            connection.rows(sql, &[&self.run])?.iter().map(|row| row.try_get(0)).collect()
+            connection.query_rows(sql, &[&self.run])?.iter().map(|row| row.try_get(0)).collect()
         })?;
         let mut marked = 0;
         for kept in kept {
-            let done: Done = serde_json::from_str(&kept).map_err(|error| QueueError::Broken {
+            let done: ChunkRecord = serde_json::from_str(&kept).map_err(|error| QueueError::Broken {
                 path: crate::PLAN.into(),
                 problem: format!("the database has a result that cannot be read: {error}"),
             })?;
             if !crate::done_path(&self.folder, done.chunk).exists() {
-                marked += usize::from(done.put(&self.folder)?);
+                marked += usize::from(done.write_mark(&self.folder)?);
             }
         }
         Ok(marked)
@@ -287,10 +292,12 @@ impl Queue {
     ///
     /// # Errors
     /// When the database cannot be used or a mark cannot be read.
-    pub fn failing(&self, plan: &Plan, reason: &str) -> Result<Vec<usize>, QueueError> {
-        let mut failing = failing(&self.folder, plan, reason)?;
+    pub fn failing_chunks(&self, plan: &ChunkPlan, reason: &str) -> Result<Vec<usize>, QueueError> {
+        let mut failing = failing_chunks(&self.folder, plan, reason)?;
         // The reason why a chunk was given up is only in the database.
-        failing.extend(self.look()?.dead.into_iter().filter(|(_, why)| why.contains(reason)).map(|(chunk, _)| chunk));
+        failing.extend(
+            self.read_status()?.dead.into_iter().filter(|(_, why)| why.contains(reason)).map(|(chunk, _)| chunk),
+        );
         failing.sort_unstable();
         failing.dedup();
         Ok(failing)
@@ -300,93 +307,95 @@ impl Queue {
     ///
     /// # Errors
     /// When the database cannot be used or a mark cannot be removed.
-    pub fn reopen(&self, chunks: &[usize]) -> Result<(), QueueError> {
-        reopen(&self.folder, chunks)?;
-        let numbers: Vec<i32> = chunks.iter().map(|chunk| number(*chunk)).collect();
-        self.pool.with("make chunks open again", |connection| {
+    pub fn reopen_chunks(&self, chunks: &[usize]) -> Result<(), QueueError> {
+        reopen_chunks(&self.folder, chunks)?;
+        let numbers: Vec<i32> = chunks.iter().map(|chunk| chunk_number(*chunk)).collect();
+        self.pool.with_connection("make chunks open again", |connection| {
             let sql = "UPDATE wayword_queue.chunks SET state = 'open', tries = 0, done = NULL
                        WHERE run = $1 AND chunk = ANY($2) AND state IN ('done', 'dead')";
-            connection.rows(sql, &[&self.run, &numbers])
+            connection.query_rows(sql, &[&self.run, &numbers])
         })?;
         Ok(())
     }
 }
 
-fn number(chunk: usize) -> i32 {
+fn chunk_number(chunk: usize) -> i32 {
     i32::try_from(chunk).unwrap_or(i32::MAX)
 }
 
-fn place(chunk: i32) -> usize {
+fn chunk_index(chunk: i32) -> usize {
     usize::try_from(chunk).unwrap_or(0)
 }
 
-fn beat(pool: &Pool, run: &str, worker: &str) -> Result<(), QueueError> {
-    pool.with("give a sign of life", |connection| connection.rows(BEAT, &[&run, &worker]))?;
+fn send_heartbeat(pool: &ConnectionPool, run: &str, worker: &str) -> Result<(), QueueError> {
+    pool.with_connection("give a sign of life", |connection| connection.query_rows(BEAT_SQL, &[&run, &worker]))?;
     Ok(())
 }
 
-impl Board for Queue {
-    fn take(&self) -> Result<Option<Claimed>, QueueError> {
+impl ChunkBoard for ChunkQueue {
+    fn take_chunk(&self) -> Result<Option<ChunkClaim>, QueueError> {
         let lease_s = self.lease.as_secs_f64();
-        let taken = self.pool.with("take a chunk", |connection| {
+        let taken = self.pool.with_connection("take a chunk", |connection| {
             // A worker has one chunk at a time. If it has one, the answer to its claim was lost with the connection.
-            let mut rows = connection.rows(MINE, &[&self.run, &self.worker])?;
+            let mut rows = connection.query_rows(OWN_CLAIM_SQL, &[&self.run, &self.worker])?;
             if rows.is_empty() {
-                connection.rows(BURY, &[&self.run, &TRIES, &lease_s])?;
-                rows = connection.rows(CLAIM, &[&self.run, &self.worker, &lease_s, &TRIES])?;
+                connection.query_rows(BURY_SQL, &[&self.run, &MAX_CHUNK_TRIES, &lease_s])?;
+                rows = connection.query_rows(CLAIM_SQL, &[&self.run, &self.worker, &lease_s, &MAX_CHUNK_TRIES])?;
             }
             rows.first().map(|row| Ok((row.try_get::<_, i32>(0)?, row.try_get::<_, i64>(1)?))).transpose()
         })?;
-        Ok(taken.map(|(chunk, epoch)| Claimed { chunk: place(chunk), epoch }))
+        Ok(taken.map(|(chunk, epoch)| ChunkClaim { chunk: chunk_index(chunk), epoch }))
     }
 
-    fn complete(&self, claimed: Claimed, done: &Done) -> Result<bool, QueueError> {
+    fn complete_chunk(&self, claimed: ChunkClaim, done: &ChunkRecord) -> Result<bool, QueueError> {
         let kept = serde_json::to_string(done).unwrap_or_default();
-        if self.changed("complete a chunk", COMPLETE, claimed, &[&kept])? {
-            done.put(&self.folder)?;
+        if self.change_chunk("complete a chunk", COMPLETE_SQL, claimed, &[&kept])? {
+            done.write_mark(&self.folder)?;
             return Ok(true);
         }
         // Perhaps the first try was carried out, and its answer lost.
-        let chunk = number(claimed.chunk);
-        let found = self
-            .pool
-            .with("ask for a chunk", |connection| connection.rows(IS_DONE, &[&self.run, &chunk, &claimed.epoch]))?;
+        let chunk = chunk_number(claimed.chunk);
+        let found = self.pool.with_connection("ask for a chunk", |connection| {
+            connection.query_rows(IS_DONE, &[&self.run, &chunk, &claimed.epoch])
+        })?;
         if found.is_empty() {
             return Ok(false);
         }
-        done.put(&self.folder)?;
+        done.write_mark(&self.folder)?;
         Ok(true)
     }
 
-    fn hand_back(&self, claimed: Claimed) -> Result<(), QueueError> {
-        self.changed("hand a chunk back", HAND_BACK, claimed, &[]).map(drop)
+    fn hand_back(&self, claimed: ChunkClaim) -> Result<(), QueueError> {
+        self.change_chunk("hand a chunk back", HAND_BACK, claimed, &[]).map(drop)
     }
 
-    fn give_up(&self, claimed: Claimed, reason: &str) -> Result<(), QueueError> {
-        self.changed("give a chunk up", GIVE_UP, claimed, &[&TRIES, &reason]).map(drop)
+    fn give_up(&self, claimed: ChunkClaim, reason: &str) -> Result<(), QueueError> {
+        self.change_chunk("give a chunk up", GIVE_UP, claimed, &[&MAX_CHUNK_TRIES, &reason]).map(drop)
     }
 
-    fn left(&self) -> Result<Left, QueueError> {
-        let rows = self.pool.with("ask what is left", |connection| {
+    fn count_remaining(&self) -> Result<RemainingChunks, QueueError> {
+        let rows = self.pool.with_connection("ask what is left", |connection| {
             let sql = "SELECT count(*) FILTER (WHERE state = 'open'), count(*) FILTER (WHERE state = 'running')
                        FROM wayword_queue.chunks WHERE run = $1 AND state IN ('open', 'running')";
-            let rows = connection.rows(sql, &[&self.run])?;
+            let rows = connection.query_rows(sql, &[&self.run])?;
             rows.first().map(|row| Ok((row.try_get::<_, i64>(0)?, row.try_get::<_, i64>(1)?))).transpose()
         })?;
         let (open, running) = rows.unwrap_or_default();
         let count = |count: i64| usize::try_from(count).unwrap_or(0);
-        Ok(Left { open: count(open), running: count(running) })
+        Ok(RemainingChunks { open: count(open), running: count(running) })
     }
 }
 
-impl Drop for Queue {
+impl Drop for ChunkQueue {
     fn drop(&mut self) {
         let Some((end, thread)) = self.beating.take() else { return };
         drop(end);
         let _ = thread.join();
-        let _ = self.pool.with("leave", |connection| {
-            connection
-                .rows("DELETE FROM wayword_queue.workers WHERE run = $1 AND worker = $2", &[&self.run, &self.worker])
+        let _ = self.pool.with_connection("leave", |connection| {
+            connection.query_rows(
+                "DELETE FROM wayword_queue.workers WHERE run = $1 AND worker = $2",
+                &[&self.run, &self.worker],
+            )
         });
     }
 }

@@ -1,6 +1,6 @@
 //! The loop of one worker: takes chunks from a board, has them made, and reports the outcome of each.
 
-use crate::{Board, Claimed, Done, QueueError};
+use crate::{ChunkBoard, ChunkClaim, ChunkRecord, QueueError};
 use std::{thread, time::Duration};
 
 /// How often a worker asks again while others still have chunks, which come back if they die.
@@ -10,9 +10,9 @@ const LOOK_UP: Duration = Duration::from_millis(100);
 
 /// How a worker's attempt to make a chunk ended.
 #[derive(Debug)]
-pub enum Ended<S> {
+pub enum ChunkOutcome<S> {
     /// It is finished, and its results are synced.
-    Done(Done),
+    Done(ChunkRecord),
     /// The worker has to stop, through no fault of the chunk.
     Stopped(S),
     /// The chunk could not be made, for this reason, and the worker stops.
@@ -21,9 +21,9 @@ pub enum Ended<S> {
 
 /// The work of one worker, as it ended.
 #[derive(Debug)]
-pub struct Finished<S> {
+pub struct WorkSummary<S> {
     /// The chunks that it finished.
-    pub done: Vec<Done>,
+    pub done: Vec<ChunkRecord>,
     /// How many of its results were dropped, because another worker had taken over.
     pub dropped: usize,
     /// Why it stopped while chunks were left; `None` if all were finished.
@@ -35,36 +35,36 @@ pub struct Finished<S> {
 ///
 /// # Errors
 /// When the board cannot be reached, or `make` returns an error.
-pub fn work<S, E: From<QueueError>>(
-    board: &dyn Board,
-    mut make: impl FnMut(Claimed) -> Result<Ended<S>, E>,
+pub fn work_chunks<S, E: From<QueueError>>(
+    board: &dyn ChunkBoard,
+    mut make: impl FnMut(ChunkClaim) -> Result<ChunkOutcome<S>, E>,
     stopped: impl Fn() -> Option<S>,
-) -> Result<Finished<S>, E> {
-    let mut finished = Finished { done: Vec::new(), dropped: 0, stopped: None };
+) -> Result<WorkSummary<S>, E> {
+    let mut finished = WorkSummary { done: Vec::new(), dropped: 0, stopped: None };
     loop {
         if let Some(why) = stopped() {
             finished.stopped = Some(why);
             return Ok(finished);
         }
-        let Some(claimed) = board.take()? else {
-            let left = board.left()?;
+        let Some(claimed) = board.take_chunk()? else {
+            let left = board.count_remaining()?;
             if left.open + left.running == 0 {
                 return Ok(finished);
             }
-            wait(&stopped);
+            wait_or_stop(&stopped);
             continue;
         };
         match make(claimed)? {
-            Ended::Done(done) => match board.complete(claimed, &done)? {
+            ChunkOutcome::Done(done) => match board.complete_chunk(claimed, &done)? {
                 true => finished.done.push(done),
                 false => finished.dropped += 1,
             },
-            Ended::Stopped(why) => {
+            ChunkOutcome::Stopped(why) => {
                 board.hand_back(claimed)?;
                 finished.stopped = Some(why);
                 return Ok(finished);
             }
-            Ended::Failed(reason, why) => {
+            ChunkOutcome::Failed(reason, why) => {
                 board.give_up(claimed, &reason)?;
                 finished.stopped = Some(why);
                 return Ok(finished);
@@ -73,7 +73,7 @@ pub fn work<S, E: From<QueueError>>(
     }
 }
 
-fn wait<S>(stopped: &impl Fn() -> Option<S>) {
+fn wait_or_stop<S>(stopped: &impl Fn() -> Option<S>) {
     let mut left = ASK_AGAIN;
     while !left.is_zero() && stopped().is_none() {
         thread::sleep(LOOK_UP);

@@ -11,20 +11,20 @@ const LONGEST_S: f64 = 30.0;
 
 /// A wait that doubles with each attempt, minus up to half of it. The reduction depends only on the call's key and the
 /// attempt, so that a run is repeatable and calls that failed together are not repeated together.
-pub(crate) fn backoff(key: &str, attempt: u32) -> Duration {
+pub(crate) fn backoff_wait(key: &str, attempt: u32) -> Duration {
     let whole = FIRST_S * f64::from(2_u32.saturating_pow(attempt.saturating_sub(1).min(16)));
-    Duration::from_secs_f64(whole.min(LONGEST_S) * (1.0 - 0.5 * fraction(key, attempt)))
+    Duration::from_secs_f64(whole.min(LONGEST_S) * (1.0 - 0.5 * wait_fraction(key, attempt)))
 }
 
 /// A wait that is a little longer than the server asked for, so that not all calls are repeated at the same moment.
-pub(crate) fn after(asked: Duration, key: &str, attempt: u32) -> Duration {
-    asked + Duration::from_secs_f64(0.25 * fraction(key, attempt))
+pub(crate) fn wait_after(asked: Duration, key: &str, attempt: u32) -> Duration {
+    asked + Duration::from_secs_f64(0.25 * wait_fraction(key, attempt))
 }
 
 /// A number in [0, 1), always the same for a key and an attempt.
-fn fraction(key: &str, attempt: u32) -> f64 {
+fn wait_fraction(key: &str, attempt: u32) -> f64 {
     // FNV's low bits vary most; the upper half of a product with an odd constant spreads them.
-    let spread = seed::derive(u64::from(attempt), &["backoff", key]).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    let spread = seed::derive_seed(u64::from(attempt), &["backoff", key]).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     (spread >> 11) as f64 / (1_u64 << 53) as f64
 }
 
@@ -35,7 +35,7 @@ mod tests {
     #[test]
     fn waits_double_and_are_bounded() {
         for attempt in 1..40 {
-            let wait = backoff("key", attempt).as_secs_f64();
+            let wait = backoff_wait("key", attempt).as_secs_f64();
             let whole = (0.3 * 2_f64.powi(attempt as i32 - 1)).min(30.0);
             assert!(wait > whole / 2.0 - 1e-9 && wait <= whole, "{attempt}: {wait}");
         }
@@ -43,8 +43,8 @@ mod tests {
 
     #[test]
     fn waits_are_the_same_each_time_and_differ_between_calls() {
-        assert_eq!(backoff("a", 2), backoff("a", 2));
-        let fractions: Vec<f64> = (0..1000).map(|i| fraction(&format!("call {i}"), 1)).collect();
+        assert_eq!(backoff_wait("a", 2), backoff_wait("a", 2));
+        let fractions: Vec<f64> = (0..1000).map(|i| wait_fraction(&format!("call {i}"), 1)).collect();
         let mean = fractions.iter().sum::<f64>() / 1000.0;
         assert!((0.45..0.55).contains(&mean), "{mean}");
     }

@@ -48,7 +48,7 @@ impl BaseUrl {
     }
 
     /// The URL with `path` added, which begins with a slash.
-    pub(crate) fn join(&self, path: &str) -> String {
+    pub(crate) fn with_path(&self, path: &str) -> String {
         format!("{}{path}", self.text)
     }
 }
@@ -72,7 +72,7 @@ mod tests {
     #[test]
     fn a_server_is_a_scheme_a_host_and_perhaps_a_path() {
         let url = BaseUrl::new("http://127.0.0.1:8000/v1/", "").unwrap();
-        assert_eq!(url.join("/models"), "http://127.0.0.1:8000/v1/models");
+        assert_eq!(url.with_path("/models"), "http://127.0.0.1:8000/v1/models");
         assert!(url.loopback && url.plain);
         let url = BaseUrl::new("https://api.anthropic.com", "/v1").unwrap();
         assert_eq!(url.as_str(), "https://api.anthropic.com/v1");

@@ -4,19 +4,19 @@
 //! [`faults`](crate::faults); the ledger records every attempt, because a failed one may cost money too.
 
 use crate::{
-    Price,
-    backoff::{after, backoff},
-    dialect::{End, Heard, Wire},
-    endpoint::{Closed, Endpoint},
-    faults::{self, Fault, Load, Retry},
-    limiter::{Advertised, Outcome},
-    transport::Received,
+    ModelPrice,
+    backoff::{backoff_wait, wait_after},
+    dialect::{DialectReply, ReplyEnd, WireRequest},
+    endpoint::{ClosedEndpoint, ProviderEndpoint},
+    faults::{self, RemoteFault, RetryFault, ServiceLoad},
+    limiter::{AdvertisedLimits, RequestOutcome},
+    transport::HttpResponse,
 };
 use std::{
     thread,
     time::{Duration, Instant, SystemTime},
 };
-use wayword_ledger::{Answer, Attempts, LedgerError, Refused, Run};
+use wayword_ledger::{CallAnswer, CallAttempts, LedgerError, LedgerRun, RequestRefusedError};
 
 /// How often a thread that waits for its next attempt checks whether the run was stopped.
 const LOOK_UP: Duration = Duration::from_millis(100);
@@ -29,22 +29,22 @@ const EMPTY_AGAIN: u32 = 1;
 const MOST_TOKENS: u64 = 20_000_000;
 
 /// A call that is ready to be sent.
-pub(crate) struct Sending<'a> {
-    pub(crate) endpoint: &'a Endpoint,
-    pub(crate) run: &'a Run,
+pub(crate) struct PreparedCall<'a> {
+    pub(crate) endpoint: &'a ProviderEndpoint,
+    pub(crate) run: &'a LedgerRun,
     /// The ledger's key of the call, which seeds the waits.
     pub(crate) key: &'a str,
-    pub(crate) wire: &'a Wire,
-    pub(crate) price: Option<&'a Price>,
+    pub(crate) wire: &'a WireRequest,
+    pub(crate) price: Option<&'a ModelPrice>,
     /// The size of the request, from which its tokens are estimated.
-    pub(crate) size: Size,
+    pub(crate) size: RequestSize,
     /// Most attempts.
     pub(crate) attempts: u32,
 }
 
 /// The size of a request.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Size {
+pub(crate) struct RequestSize {
     /// Characters of the messages.
     pub(crate) chars: u64,
     /// Bytes of the characters that are not ASCII.
@@ -55,7 +55,7 @@ pub(crate) struct Size {
 
 /// Why a call was not answered.
 #[derive(Debug, thiserror::Error)]
-pub(crate) enum Unanswered {
+pub(crate) enum CallError {
     /// This call failed.
     #[error("{0}")]
     Failed(String),
@@ -64,15 +64,15 @@ pub(crate) enum Unanswered {
     Lost(String),
     /// The service answers no calls any more.
     #[error("{}", .0.reason)]
-    Closed(Closed),
+    Closed(ClosedEndpoint),
     /// The ledger refuses the request.
     #[error(transparent)]
-    Refused(Refused),
+    Refused(RequestRefusedError),
 }
 
-impl Unanswered {
+impl CallError {
     /// Its kind, in one word.
-    pub(crate) fn kind(&self) -> &'static str {
+    pub(crate) fn kind_name(&self) -> &'static str {
         match self {
             Self::Failed(_) => "failed",
             Self::Lost(_) => "lost",
@@ -83,16 +83,16 @@ impl Unanswered {
 }
 
 /// The result of one attempt.
-enum Attempt {
-    Heard(Heard, Duration),
-    Fault(Fault),
+enum AttemptOutcome {
+    Heard(DialectReply, Duration),
+    Fault(RemoteFault),
     /// The run was stopped, or the endpoint closed, before anything was sent.
     NotSent,
     /// The ledger, which limits the rate of all workers together, could not be used. No request was sent.
     NoTurn(LedgerError),
 }
 
-impl Size {
+impl RequestSize {
     /// An upper bound of the request's tokens, for any tokenizer in use and for large pictures. Words have more than
     /// two characters each; in a script that a tokenizer does not know, each byte is a token.
     pub(crate) fn most_tokens_in(self, tokens_per_picture: u64) -> u64 {
@@ -105,42 +105,43 @@ impl Size {
     }
 }
 
-impl Sending<'_> {
+impl PreparedCall<'_> {
     /// Makes the call.
     ///
     /// # Errors
     /// When it was not answered. The ledger has every attempt with its reason.
-    pub(crate) fn make(&self, attempts: &mut Attempts<'_>) -> Result<Answer, Unanswered> {
-        let secret = self.endpoint.secret().map_err(Unanswered::Closed)?;
+    pub(crate) fn make_call(&self, attempts: &mut CallAttempts<'_>) -> Result<CallAnswer, CallError> {
+        let secret = self.endpoint.find_secret().map_err(CallError::Closed)?;
         let body = self.wire.body.to_string();
-        let most_usd =
-            self.price.map(|price| price.usd(self.size.most_tokens_in(price.tokens_per_picture), self.size.max_tokens));
+        let most_usd = self
+            .price
+            .map(|price| price.cost_usd(self.size.most_tokens_in(price.tokens_per_picture), self.size.max_tokens));
         let mut empty = 0;
         let mut attempt = 0;
         loop {
             attempt += 1;
-            self.open()?;
-            attempts.begin(most_usd).map_err(Unanswered::Refused)?;
-            let fault = match self.attempt(body.as_bytes()) {
-                Attempt::Heard(heard, latency) => match judge(&heard, self.endpoint) {
+            self.check_open()?;
+            attempts.begin_request(most_usd).map_err(CallError::Refused)?;
+            let fault = match self.send_once(body.as_bytes()) {
+                AttemptOutcome::Heard(heard, latency) => match check_reply(&heard, self.endpoint) {
                     Ok(()) => {
-                        let text = secret.map_or(heard.text.clone(), |secret| secret.scrub(heard.text.clone()));
-                        return Ok(self.answer(&heard, text, latency, attempt));
+                        let text = secret.map_or(heard.text.clone(), |secret| secret.scrub_key(heard.text.clone()));
+                        return Ok(self.ledger_answer(&heard, text, latency, attempt));
                     }
                     Err(fault) => {
-                        empty += u32::from(matches!(fault, Fault::Retry(_)));
+                        empty += u32::from(matches!(fault, RemoteFault::Retry(_)));
                         fault
                     }
                 },
-                Attempt::Fault(fault) => fault,
-                Attempt::NotSent => {
-                    attempts.cancelled();
-                    self.open()?;
-                    return Err(Unanswered::Refused(Refused::Stopped));
+                AttemptOutcome::Fault(fault) => fault,
+                AttemptOutcome::NotSent => {
+                    attempts.mark_cancelled();
+                    self.check_open()?;
+                    return Err(CallError::Refused(RequestRefusedError::Stopped));
                 }
-                Attempt::NoTurn(error) => {
-                    attempts.cancelled();
-                    return Err(Unanswered::Refused(error.into()));
+                AttemptOutcome::NoTurn(error) => {
+                    attempts.mark_cancelled();
+                    return Err(CallError::Refused(error.into()));
                 }
             };
             let retry = self.give_up_or(fault, attempts)?;
@@ -148,42 +149,42 @@ impl Sending<'_> {
                 let times = if attempt == 1 { "1 attempt".to_owned() } else { format!("{attempt} attempts") };
                 let reason = format!("{} ({times})", retry.reason);
                 // A service that gives empty answers is there, so the call is not lost.
-                return Err(if empty > EMPTY_AGAIN { Unanswered::Failed(reason) } else { Unanswered::Lost(reason) });
+                return Err(if empty > EMPTY_AGAIN { CallError::Failed(reason) } else { CallError::Lost(reason) });
             }
             // Even if the service asks for short waits, the waits become longer and longer.
-            let asked = retry.after.map_or(Duration::ZERO, |asked| after(asked, self.key, attempt));
-            self.rest(asked.max(backoff(self.key, attempt)));
+            let asked = retry.after.map_or(Duration::ZERO, |asked| wait_after(asked, self.key, attempt));
+            self.wait_between_attempts(asked.max(backoff_wait(self.key, attempt)));
         }
     }
 
     /// Records a fault in the ledger. Returns it if another attempt makes sense.
-    fn give_up_or(&self, fault: Fault, attempts: &mut Attempts<'_>) -> Result<Retry, Unanswered> {
+    fn give_up_or(&self, fault: RemoteFault, attempts: &mut CallAttempts<'_>) -> Result<RetryFault, CallError> {
         match fault {
-            Fault::Retry(retry) => {
-                attempts.failed(&retry.reason, retry.maybe_paid);
+            RemoteFault::Retry(retry) => {
+                attempts.mark_failed(&retry.reason, retry.maybe_paid);
                 Ok(retry)
             }
-            Fault::Final { reason, maybe_paid } => {
-                attempts.failed(&reason, maybe_paid);
-                Err(Unanswered::Failed(reason))
+            RemoteFault::Final { reason, maybe_paid } => {
+                attempts.mark_failed(&reason, maybe_paid);
+                Err(CallError::Failed(reason))
             }
-            Fault::Stop { reason, hint } => {
-                attempts.failed(&reason, false);
-                let closed = Closed { reason, hint };
-                self.endpoint.close(closed.clone());
-                Err(Unanswered::Closed(closed))
+            RemoteFault::Stop { reason, hint } => {
+                attempts.mark_failed(&reason, false);
+                let closed = ClosedEndpoint { reason, hint };
+                self.endpoint.close_with(closed.clone());
+                Err(CallError::Closed(closed))
             }
         }
     }
 
-    fn open(&self) -> Result<(), Unanswered> {
-        self.endpoint.closed().map_or(Ok(()), |closed| Err(Unanswered::Closed(closed.clone())))
+    fn check_open(&self) -> Result<(), CallError> {
+        self.endpoint.closed_reason().map_or(Ok(()), |closed| Err(CallError::Closed(closed.clone())))
     }
 
     /// Waits, unless the run is stopped meanwhile.
-    fn rest(&self, wait: Duration) {
+    fn wait_between_attempts(&self, wait: Duration) {
         let until = Instant::now() + wait;
-        while !self.run.is_stopped() && self.endpoint.closed().is_none() {
+        while !self.run.is_stopped() && self.endpoint.closed_reason().is_none() {
             match until.saturating_duration_since(Instant::now()) {
                 Duration::ZERO => return,
                 left => thread::sleep(left.min(LOOK_UP)),
@@ -191,43 +192,51 @@ impl Sending<'_> {
         }
     }
 
-    fn attempt(&self, body: &[u8]) -> Attempt {
+    fn send_once(&self, body: &[u8]) -> AttemptOutcome {
         let endpoint = self.endpoint;
-        let stopped = || self.run.is_stopped() || endpoint.closed().is_some();
+        let stopped = || self.run.is_stopped() || endpoint.closed_reason().is_some();
         let tokens = self.size.tokens_in() + self.size.max_tokens;
-        let Some(mut permit) = endpoint.limiter.enter(tokens, stopped) else { return Attempt::NotSent };
+        let Some(mut permit) = endpoint.limiter.wait_for_permit(tokens, stopped) else {
+            return AttemptOutcome::NotSent;
+        };
         if self.run.shares_rates() {
-            let (name, rates) = endpoint.rates();
+            let (name, rates) = endpoint.shared_rates();
             match self.run.wait_turn(&name, rates, tokens, stopped) {
-                Ok(true) => permit.leaves(),
-                Ok(false) => return Attempt::NotSent,
-                Err(error) => return Attempt::NoTurn(error),
+                Ok(true) => permit.note_late_start(),
+                Ok(false) => return AttemptOutcome::NotSent,
+                Err(error) => return AttemptOutcome::NoTurn(error),
             }
         }
-        let received = endpoint.post(self.wire, body);
+        let received = endpoint.post_request(self.wire, body);
         let latency = permit.latency();
         let heard = match received {
             Ok(received) => {
-                permit.learn(Advertised::read(&received.headers, endpoint.provider.advertises_requests_per_day));
-                self.hear(&received)
+                permit.adopt_limits(AdvertisedLimits::from_headers(
+                    &received.headers,
+                    endpoint.provider.advertises_requests_per_day,
+                ));
+                self.read_response(&received)
             }
-            Err(error) => Err(faults::of_transport(&error, None, endpoint.provider.base_url.as_str(), endpoint.who())),
+            Err(error) => {
+                Err(faults::of_transport(&error, None, endpoint.provider.base_url.as_str(), endpoint.fault_context()))
+            }
         };
-        permit.done(match &heard {
-            Ok(heard) => Outcome::Answered { tokens: self.tokens(heard).0 + self.tokens(heard).1 },
-            Err(Fault::Retry(Retry { load: load @ (Load::Slow | Load::Over), after, .. })) => {
-                Outcome::Burdened { load: *load, after: *after }
-            }
-            Err(_) => Outcome::Failed,
+        permit.end_with(match &heard {
+            Ok(heard) => RequestOutcome::Answered { tokens: self.count_tokens(heard).0 + self.count_tokens(heard).1 },
+            Err(RemoteFault::Retry(RetryFault {
+                load: load @ (ServiceLoad::Slow | ServiceLoad::Over), after, ..
+            })) => RequestOutcome::Burdened { load: *load, after: *after },
+            Err(_) => RequestOutcome::Failed,
         });
-        heard.map_or_else(Attempt::Fault, |heard| Attempt::Heard(heard, latency))
+        heard.map_or_else(AttemptOutcome::Fault, |heard| AttemptOutcome::Heard(heard, latency))
     }
 
     /// Reads a response.
-    fn hear(&self, received: &Received) -> Result<Heard, Fault> {
+    fn read_response(&self, received: &HttpResponse) -> Result<DialectReply, RemoteFault> {
         let (endpoint, status) = (self.endpoint, received.status);
-        let fault =
-            |body: &[u8]| faults::of_response(status, &received.headers, body, SystemTime::now(), endpoint.who());
+        let fault = |body: &[u8]| {
+            faults::of_response(status, &received.headers, body, SystemTime::now(), endpoint.fault_context())
+        };
         let body = match &received.body {
             Ok(body) => body,
             // The status is enough, even if the body was lost.
@@ -237,26 +246,26 @@ impl Sending<'_> {
                     error,
                     Some(status),
                     endpoint.provider.base_url.as_str(),
-                    endpoint.who(),
+                    endpoint.fault_context(),
                 ));
             }
         };
         if !(200..300).contains(&status) {
             return Err(fault(body));
         }
-        let value: serde_json::Value =
-            serde_json::from_slice(body).map_err(|_| Fault::again("the answer is not complete JSON", true))?;
+        let value: serde_json::Value = serde_json::from_slice(body)
+            .map_err(|_| RemoteFault::retry_without_wait("the answer is not complete JSON", true))?;
         if value.get("error").is_some_and(|error| !error.is_null()) {
             return Err(fault(body));
         }
-        endpoint.provider.dialect.heard(&value).map_err(|missing| match faults::error_inside(&value) {
+        endpoint.provider.dialect.read_reply(&value).map_err(|missing| match faults::error_inside(&value) {
             true => fault(body),
-            false => Fault::again(format!("the answer has no {}", missing.0), true),
+            false => RemoteFault::retry_without_wait(format!("the answer has no {}", missing.0), true),
         })
     }
 
     /// Tokens in and out. Estimated where the service reports no number, or an impossible one.
-    fn tokens(&self, heard: &Heard) -> (u64, u64) {
+    fn count_tokens(&self, heard: &DialectReply) -> (u64, u64) {
         let told = |tokens: Option<u64>| tokens.filter(|tokens| *tokens <= MOST_TOKENS);
         let tokens_out = || heard.text.chars().count() as u64 / 4;
         (
@@ -265,14 +274,14 @@ impl Sending<'_> {
         )
     }
 
-    fn answer(&self, heard: &Heard, text: String, latency: Duration, attempts: u32) -> Answer {
-        let (tokens_in, tokens_out) = self.tokens(heard);
-        Answer {
+    fn ledger_answer(&self, heard: &DialectReply, text: String, latency: Duration, attempts: u32) -> CallAnswer {
+        let (tokens_in, tokens_out) = self.count_tokens(heard);
+        CallAnswer {
             text,
-            finish: if heard.end == End::Length { "length" } else { "stop" }.to_owned(),
+            finish: if heard.end == ReplyEnd::Length { "length" } else { "stop" }.to_owned(),
             tokens_in,
             tokens_out,
-            usd: self.price.map(|price| price.usd(tokens_in, tokens_out)),
+            usd: self.price.map(|price| price.cost_usd(tokens_in, tokens_out)),
             latency_ms: u64::try_from(latency.as_millis()).unwrap_or(u64::MAX),
             attempts,
         }
@@ -280,16 +289,16 @@ impl Sending<'_> {
 }
 
 /// Whether a reply is an answer.
-fn judge(heard: &Heard, endpoint: &Endpoint) -> Result<(), Fault> {
-    let lost = |reason: String| Fault::Final { reason, maybe_paid: true };
+fn check_reply(heard: &DialectReply, endpoint: &ProviderEndpoint) -> Result<(), RemoteFault> {
+    let lost = |reason: String| RemoteFault::Final { reason, maybe_paid: true };
     match &heard.end {
-        End::Filtered(why) => {
-            Err(lost(format!("the service's filter blocked the answer ({})", endpoint.who().told(why))))
+        ReplyEnd::Filtered(why) => {
+            Err(lost(format!("the service's filter blocked the answer ({})", endpoint.fault_context().safe_text(why))))
         }
-        End::Refused(why) => Err(lost(format!("the model refused: {}", endpoint.who().told(why)))),
-        End::Stop | End::Length if !heard.text.is_empty() => Ok(()),
-        End::Stop => Err(Fault::again("empty answer", true)),
-        End::Length => Err(lost(format!(
+        ReplyEnd::Refused(why) => Err(lost(format!("the model refused: {}", endpoint.fault_context().safe_text(why)))),
+        ReplyEnd::Stop | ReplyEnd::Length if !heard.text.is_empty() => Ok(()),
+        ReplyEnd::Stop => Err(RemoteFault::retry_without_wait("empty answer", true)),
+        ReplyEnd::Length => Err(lost(format!(
             "the model spent all its tokens on thinking and gave no answer: set {} under [providers.{}]",
             endpoint.provider.dialect.without_thinking(),
             endpoint.provider.name

@@ -2,15 +2,15 @@
 //! finding comes with advice if something is wrong.
 
 use crate::{
-    Dialect, RemoteModel, Services,
-    endpoint::Endpoint,
-    faults::{self, Who},
+    ModelServices, RemoteModel, ServiceDialect,
+    endpoint::ProviderEndpoint,
+    faults::{self, FaultContext},
 };
 use std::{
     sync::Arc,
     time::{SystemTime, UNIX_EPOCH},
 };
-use wayword_core::{Image, LanguageModel, Message, Request, Sampling};
+use wayword_core::{ChatMessage, Image, LanguageModel, ModelRequest, SamplingOptions};
 
 /// Side of the test picture, pixels: large enough for every service.
 const SQUARE_PX: u32 = 64;
@@ -20,7 +20,7 @@ const MAX_TOKENS: u32 = 256;
 
 /// How good or bad a finding is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Level {
+pub enum CheckLevel {
     /// All is in order.
     Ok,
     /// The model can be used, but something should be changed.
@@ -31,131 +31,136 @@ pub enum Level {
 
 /// The result of one check.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Finding {
+pub struct ServiceFinding {
     /// How good or bad it is.
-    pub level: Level,
+    pub level: CheckLevel,
     /// The finding, for people.
     pub what: String,
     /// How to fix it.
     pub to_do: Option<String>,
 }
 
-impl Finding {
+impl ServiceFinding {
     /// A finding that all is in order.
     pub fn ok(what: impl Into<String>) -> Self {
-        Self { level: Level::Ok, what: what.into(), to_do: None }
+        Self { level: CheckLevel::Ok, what: what.into(), to_do: None }
     }
 
     fn warning(what: impl Into<String>, to_do: impl Into<String>) -> Self {
-        Self { level: Level::Warning, what: what.into(), to_do: Some(to_do.into()) }
+        Self { level: CheckLevel::Warning, what: what.into(), to_do: Some(to_do.into()) }
     }
 
     fn problem(what: impl Into<String>, to_do: impl Into<String>) -> Self {
-        Self { level: Level::Problem, what: what.into(), to_do: Some(to_do.into()) }
+        Self { level: CheckLevel::Problem, what: what.into(), to_do: Some(to_do.into()) }
     }
 
     /// A problem, from the text of an error that ends in a hint.
     #[must_use]
-    pub fn error(text: &str) -> Self {
+    pub fn from_error_text(text: &str) -> Self {
         let (what, to_do) = text.split_once("\nhint: ").unwrap_or((text, "see docs/MODELS.md"));
         Self::problem(what, to_do)
     }
 }
 
-impl Services {
+impl ModelServices {
     /// Checks everything that a model needs: its key, its service and its price. Then asks it for a word and, if it is
     /// to see, for the colour of a red square. Both calls count and are limited like any other, but the ledger's
     /// answers are not used.
     #[must_use]
-    pub fn check(&self, name: &str, is_to_see: bool) -> Vec<Finding> {
+    pub fn check_model(&self, name: &str, is_to_see: bool) -> Vec<ServiceFinding> {
         let model = match self.model(name) {
             Ok(model) => model,
-            Err(error) => return vec![Finding::error(&error.to_string())],
+            Err(error) => return vec![ServiceFinding::from_error_text(&error.to_string())],
         };
         let mut findings = Vec::new();
-        if !key(&model.endpoint, &mut findings) || !reachable(&model, &mut findings) {
+        if !check_key(&model.endpoint, &mut findings) || !check_service(&model, &mut findings) {
             return findings;
         }
-        price(&model, &mut findings);
-        let spoke = Finding::of_speaking(model.as_ref());
-        let speaks = spoke.level == Level::Ok;
+        check_price(&model, &mut findings);
+        let spoke = ServiceFinding::of_speaking(model.as_ref());
+        let speaks = spoke.level == CheckLevel::Ok;
         findings.push(spoke);
         if speaks && is_to_see {
-            findings.extend(Finding::of_seeing(model.as_ref()));
+            findings.extend(ServiceFinding::of_seeing(model.as_ref()));
         }
         findings
     }
 }
 
 /// Whether there is a key, if the provider needs one.
-fn key(endpoint: &Endpoint, findings: &mut Vec<Finding>) -> bool {
+fn check_key(endpoint: &ProviderEndpoint, findings: &mut Vec<ServiceFinding>) -> bool {
     let provider = &endpoint.provider;
-    match (endpoint.secret(), &provider.key_env) {
+    match (endpoint.find_secret(), &provider.key_env) {
         (Err(closed), _) => {
-            findings.push(Finding::problem(closed.reason, closed.hint));
+            findings.push(ServiceFinding::problem(closed.reason, closed.hint));
             return false;
         }
-        (Ok(Some(_)), Some(variable)) => findings.push(Finding::ok(format!("{variable} contains a key"))),
-        _ => findings.push(Finding::ok(format!("{} needs no key", provider.name))),
+        (Ok(Some(_)), Some(variable)) => findings.push(ServiceFinding::ok(format!("{variable} contains a key"))),
+        _ => findings.push(ServiceFinding::ok(format!("{} needs no key", provider.name))),
     }
     if provider.base_url.plain && !provider.base_url.loopback {
         let what =
             format!("{} uses plain http: others on the network can read what is sent", provider.base_url.as_str());
         let secret = if provider.key_env.is_some() { ", including the key" } else { "" };
-        findings.push(Finding::warning(what + secret, "use https, unless the network is your own"));
+        findings.push(ServiceFinding::warning(what + secret, "use https, unless the network is your own"));
     }
     true
 }
 
 /// Whether the service answers. Also finds out whether it has the model.
-fn reachable(model: &RemoteModel, findings: &mut Vec<Finding>) -> bool {
+fn check_service(model: &RemoteModel, findings: &mut Vec<ServiceFinding>) -> bool {
     let endpoint = &model.endpoint;
     let provider = &endpoint.provider;
     let url = provider.base_url.as_str();
-    let received = match endpoint.models() {
+    let received = match endpoint.request_models() {
         Ok(received) => received,
         Err(error) => {
-            let fault = faults::of_transport(&error, None, url, endpoint.who());
+            let fault = faults::of_transport(&error, None, url, endpoint.fault_context());
             let to_do = if provider.local {
                 format!("start {} or give --base-url", provider.name)
             } else {
                 "check the network and the base URL".to_owned()
             };
-            findings.push(Finding::problem(fault.reason(), to_do));
+            findings.push(ServiceFinding::problem(fault.reason(), to_do));
             return false;
         }
     };
     let body = received.body.unwrap_or_default();
     if !(200..300).contains(&received.status) {
-        let fault = faults::of_response(received.status, &received.headers, &body, SystemTime::now(), endpoint.who());
+        let fault =
+            faults::of_response(received.status, &received.headers, &body, SystemTime::now(), endpoint.fault_context());
         return match fault {
-            faults::Fault::Stop { reason, hint } => {
-                findings.push(Finding::problem(reason, hint));
+            faults::RemoteFault::Stop { reason, hint } => {
+                findings.push(ServiceFinding::problem(reason, hint));
                 false
             }
             // Not every server can list its models.
             fault => {
                 let to_do = "check that the base URL ends in the version, like /v1";
-                findings.push(Finding::warning(format!("{url} lists no models: {}", fault.reason()), to_do));
+                findings.push(ServiceFinding::warning(format!("{url} lists no models: {}", fault.reason()), to_do));
                 true
             }
         };
     }
-    findings.push(Finding::ok(format!("{url} answers")));
+    findings.push(ServiceFinding::ok(format!("{url} answers")));
     let listed = serde_json::from_slice(&body).unwrap_or_default();
-    match provider.dialect.models(&listed) {
-        Some(models) if models.iter().any(|known| is_same(known, model.model())) => {
-            findings.push(Finding::ok(format!("{} has {}", provider.name, model.model())));
+    match provider.dialect.listed_models(&listed) {
+        Some(models) if models.iter().any(|known| is_same(known, model.model_name())) => {
+            findings.push(ServiceFinding::ok(format!("{} has {}", provider.name, model.model_name())));
         }
         Some(models) => {
             let to_do = match provider.dialect {
-                Dialect::Ollama => format!("ollama pull {}", model.model()),
-                _ => format!("choose one of {}", some(&models, endpoint.who())),
+                ServiceDialect::Ollama => format!("ollama pull {}", model.model_name()),
+                _ => format!("choose one of {}", list_models(&models, endpoint.fault_context())),
             };
-            findings.push(Finding::warning(format!("{} does not list {}", provider.name, model.model()), to_do));
+            findings.push(ServiceFinding::warning(
+                format!("{} does not list {}", provider.name, model.model_name()),
+                to_do,
+            ));
         }
         None => {
-            findings.push(Finding::warning(format!("{url} lists no models"), "check that this is the right server"));
+            findings
+                .push(ServiceFinding::warning(format!("{url} lists no models"), "check that this is the right server"));
         }
     }
     true
@@ -167,8 +172,9 @@ fn is_same(listed: &str, named: &str) -> bool {
 }
 
 /// The first names of a list, each shortened, because the list comes from the server.
-fn some(models: &[&str], who: Who<'_>) -> String {
-    let names: Vec<String> = models.iter().take(12).map(|name| who.told(name).chars().take(80).collect()).collect();
+fn list_models(models: &[&str], who: FaultContext<'_>) -> String {
+    let names: Vec<String> =
+        models.iter().take(12).map(|name| who.safe_text(name).chars().take(80).collect()).collect();
     if models.len() > names.len() {
         format!("{}, ... ({} in all)", names.join(", "), models.len())
     } else {
@@ -176,27 +182,28 @@ fn some(models: &[&str], who: Who<'_>) -> String {
     }
 }
 
-fn price(model: &RemoteModel, findings: &mut Vec<Finding>) {
+fn check_price(model: &RemoteModel, findings: &mut Vec<ServiceFinding>) {
     findings.push(match model.price() {
-        Some(price) if price.as_of.is_empty() => Finding::ok(format!("{} costs nothing", model.name())),
-        Some(price) => Finding::ok(format!(
+        Some(price) if price.as_of.is_empty() => ServiceFinding::ok(format!("{} costs nothing", model.name())),
+        Some(price) => ServiceFinding::ok(format!(
             "{} costs ${} per million tokens in and ${} out (as of {})",
             model.name(),
             price.usd_per_million_in,
             price.usd_per_million_out,
             price.as_of
         )),
-        None => Finding::warning(
+        None => ServiceFinding::warning(
             format!("the price of {} is not known, so --max-usd cannot be used with it", model.name()),
             "add the model's price to a file, and give the file with --prices FILE",
         ),
     });
 }
 
-fn ask(model: &dyn LanguageModel, message: Message) -> Result<String, String> {
-    let sampling = Sampling { temperature: 0.0, max_tokens: MAX_TOKENS, seed: 0 };
-    let request = Request { messages: vec![message], sampling, replicate: by_the_clock(), schema: None, tools: &[] };
-    let mut replies = model.complete(&[request]);
+fn ask_once(model: &dyn LanguageModel, message: ChatMessage) -> Result<String, String> {
+    let sampling = SamplingOptions { temperature: 0.0, max_tokens: MAX_TOKENS, seed: 0 };
+    let request =
+        ModelRequest { messages: vec![message], sampling, replicate: by_the_clock(), schema: None, tools: &[] };
+    let mut replies = model.complete_requests(&[request]);
     replies
         .pop()
         .map_or_else(|| Err(String::new()), |reply| reply.map(|reply| reply.text).map_err(|error| error.to_string()))
@@ -209,11 +216,11 @@ fn by_the_clock() -> u32 {
     u32::try_from(ms & u128::from(u32::MAX)).unwrap_or_default()
 }
 
-impl Finding {
+impl ServiceFinding {
     /// Asks any model for a word, wherever it runs.
     #[must_use]
     pub fn of_speaking(model: &dyn LanguageModel) -> Self {
-        match ask(model, Message::user("Answer with the one word: ready")) {
+        match ask_once(model, ChatMessage::from_user("Answer with the one word: ready")) {
             Ok(_) => Self::ok(format!("{} answers", model.name())),
             Err(error) => {
                 let (what, to_do) = error.split_once("\nhint: ").unwrap_or((&error, "read the service's message"));
@@ -228,10 +235,10 @@ impl Finding {
         let square = Image::new(SQUARE_PX, SQUARE_PX, pixels).ok()?;
         let text = "Which colour is this picture? Answer with one word.".to_owned();
         let to_do = "choose another model for --see";
-        Some(match ask(model, Message::about(text, vec![Arc::new(square)])) {
+        Some(match ask_once(model, ChatMessage::about_images(text, vec![Arc::new(square)])) {
             Ok(colour) if colour.to_lowercase().contains("red") => Self::ok(format!("{} sees", model.name())),
             Ok(said) => {
-                let what = format!("{} was shown a red square and said: {}", model.name(), faults::short(&said));
+                let what = format!("{} was shown a red square and said: {}", model.name(), faults::one_line(&said));
                 Self::warning(what, to_do)
             }
             Err(error) => Self::warning(format!("{} was shown a picture and failed: {error}", model.name()), to_do),

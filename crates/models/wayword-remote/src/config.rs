@@ -1,13 +1,13 @@
 //! The user's settings for services, as they are read from TOML.
 
-use crate::{Dialect, Prices};
+use crate::{PriceTable, ServiceDialect};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
 /// How services are used.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct Config {
+pub struct RemoteConfig {
     /// Providers by name. Their fields override those of the built-in table, and new names add to it.
     pub providers: BTreeMap<String, ProviderConfig>,
     /// Base URL of the one provider in use.
@@ -19,7 +19,7 @@ pub struct Config {
     /// Most time for one attempt, from looking up the host to the last byte, seconds.
     pub timeout_s: f64,
     /// Most requests in flight at once, per provider.
-    pub concurrency: Concurrency,
+    pub concurrency: RequestConcurrency,
     /// Most requests for one call: the first one, and repeats after faults.
     pub attempts: u32,
     /// Most requests per minute, for providers that set no limit themselves.
@@ -28,7 +28,7 @@ pub struct Config {
     pub tokens_per_minute: Option<f64>,
     /// The prices of models.
     #[serde(skip)]
-    pub prices: Prices,
+    pub prices: PriceTable,
     /// Refuse models without a price, because there is a limit on money.
     #[serde(skip)]
     pub needs_prices: bool,
@@ -37,7 +37,7 @@ pub struct Config {
 /// How many requests are in flight at once.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(untagged)]
-pub enum Concurrency {
+pub enum RequestConcurrency {
     /// Always up to this many.
     Fixed(usize),
     /// As many as the service can take: starts at 8.
@@ -52,7 +52,7 @@ pub enum Concurrency {
 #[serde(default, deny_unknown_fields)]
 pub struct ProviderConfig {
     /// Its API.
-    pub dialect: Option<Dialect>,
+    pub dialect: Option<ServiceDialect>,
     /// Its address, up to the version (`https://api.openai.com/v1`).
     pub base_url: Option<String>,
     /// Name of the environment variable with its key.
@@ -70,7 +70,7 @@ pub struct ProviderConfig {
     /// Those of `temperature`, `seed` and `max_tokens` that are not sent.
     pub omit: Option<Vec<String>>,
     /// How a request asks it for a reply in JSON.
-    pub json: Option<Json>,
+    pub json: Option<JsonMode>,
     /// Whether its models can call tools.
     pub tools: Option<bool>,
     /// Most requests per minute.
@@ -84,7 +84,7 @@ pub struct ProviderConfig {
 /// How a request asks a service for a reply in JSON.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Json {
+pub enum JsonMode {
     /// The request contains the schema, and the service makes the model follow it.
     Schema,
     /// The service makes the model write JSON; the prompt describes the form.
@@ -94,7 +94,7 @@ pub enum Json {
     Prompt,
 }
 
-impl Default for Config {
+impl Default for RemoteConfig {
     fn default() -> Self {
         Self {
             providers: BTreeMap::new(),
@@ -102,20 +102,20 @@ impl Default for Config {
             key_env: None,
             picture_px: 512,
             timeout_s: 120.0,
-            concurrency: Concurrency::Adaptive { most: 64 },
+            concurrency: RequestConcurrency::Adaptive { most: 64 },
             attempts: 6,
             requests_per_minute: None,
             tokens_per_minute: None,
-            prices: Prices::default(),
+            prices: PriceTable::default(),
             needs_prices: false,
         }
     }
 }
 
-impl Concurrency {
+impl RequestConcurrency {
     /// Most requests in flight at once.
     #[must_use]
-    pub fn most(self) -> usize {
+    pub fn max_in_flight(self) -> usize {
         match self {
             Self::Fixed(most) | Self::Adaptive { most } => most.max(1),
         }
@@ -124,8 +124,8 @@ impl Concurrency {
     /// How many threads keep that many requests in flight, while some threads wait for the ledger or for their next
     /// attempt.
     #[must_use]
-    pub fn threads(self) -> usize {
-        self.most() + self.most() / 2 + 1
+    pub fn thread_count(self) -> usize {
+        self.max_in_flight() + self.max_in_flight() / 2 + 1
     }
 }
 
@@ -147,7 +147,7 @@ mod tests {
 
     #[test]
     fn a_user_writes_toml() {
-        let config: Config = toml::from_str(
+        let config: RemoteConfig = toml::from_str(
             r#"
             concurrency = { most = 16 }
             timeout_s = 30
@@ -160,10 +160,12 @@ mod tests {
             "#,
         )
         .unwrap();
-        assert_eq!(config.concurrency, Concurrency::Adaptive { most: 16 });
+        assert_eq!(config.concurrency, RequestConcurrency::Adaptive { most: 16 });
         assert_eq!(config.attempts, 6);
-        assert_eq!(config.providers["mine"].dialect, Some(Dialect::OpenAi));
-        assert!(toml::from_str::<Config>("concurrency = 32").unwrap().concurrency == Concurrency::Fixed(32));
-        assert!(toml::from_str::<Config>("cocurrency = 32").is_err());
+        assert_eq!(config.providers["mine"].dialect, Some(ServiceDialect::OpenAi));
+        assert!(
+            toml::from_str::<RemoteConfig>("concurrency = 32").unwrap().concurrency == RequestConcurrency::Fixed(32)
+        );
+        assert!(toml::from_str::<RemoteConfig>("cocurrency = 32").is_err());
     }
 }

@@ -1,48 +1,48 @@
 //! One provider in use: its connections, its limits, its key and, once the service refuses all requests, the reason.
 
 use crate::{
-    Config, Secret,
-    dialect::Wire,
-    faults::Who,
-    limiter::{Limiter, Rules},
-    provider::Provider,
-    transport::{Received, Transport},
+    RemoteConfig, ServiceSecret,
+    dialect::WireRequest,
+    faults::FaultContext,
+    limiter::{EndpointLimiter, LimiterRules},
+    provider::RemoteProvider,
+    transport::{HttpResponse, HttpTransport},
 };
 use std::{sync::OnceLock, time::Duration};
-use wayword_ledger::Rates;
+use wayword_ledger::ProviderRates;
 
 /// Why no more requests are sent.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Closed {
+pub(crate) struct ClosedEndpoint {
     pub(crate) reason: String,
     pub(crate) hint: String,
 }
 
 /// One provider in use. All its models share it.
-pub(crate) struct Endpoint {
-    pub(crate) provider: Provider,
-    pub(crate) limiter: Limiter,
-    transport: Transport,
+pub(crate) struct ProviderEndpoint {
+    pub(crate) provider: RemoteProvider,
+    pub(crate) limiter: EndpointLimiter,
+    transport: HttpTransport,
     /// Read when the provider is first used, because a run that is answered from the ledger needs no key.
-    secret: OnceLock<Result<Option<Secret>, String>>,
+    secret: OnceLock<Result<Option<ServiceSecret>, String>>,
     /// Set when the key is refused or the quota is used up, so that the other threads stop sending.
-    closed: OnceLock<Closed>,
+    closed: OnceLock<ClosedEndpoint>,
 }
 
-impl Endpoint {
+impl ProviderEndpoint {
     /// With `shares_rates` the ledger enforces the user's rates for all workers together. Rates that the service
     /// advertises are enforced here in both cases.
-    pub(crate) fn new(provider: Provider, config: &Config, shares_rates: bool) -> Self {
+    pub(crate) fn new(provider: RemoteProvider, config: &RemoteConfig, shares_rates: bool) -> Self {
         let own = |rate: Option<f64>| rate.filter(|_| !shares_rates);
-        let rules = Rules {
+        let rules = LimiterRules {
             concurrency: config.concurrency,
             requests_per_minute: own(provider.requests_per_minute),
             tokens_per_minute: own(provider.tokens_per_minute),
         };
         let timeout = Duration::from_secs_f64(config.timeout_s);
         Self {
-            transport: Transport::new(&provider.base_url, config.concurrency.most(), timeout),
-            limiter: Limiter::new(rules),
+            transport: HttpTransport::new(&provider.base_url, config.concurrency.max_in_flight(), timeout),
+            limiter: EndpointLimiter::new(rules),
             secret: OnceLock::new(),
             closed: OnceLock::new(),
             provider,
@@ -50,9 +50,9 @@ impl Endpoint {
     }
 
     /// The user's rates, for a ledger that enforces them for all workers, and their name in that ledger.
-    pub(crate) fn rates(&self) -> (String, Rates) {
+    pub(crate) fn shared_rates(&self) -> (String, ProviderRates) {
         let per_s = |per_minute: Option<f64>| per_minute.map(|rate| rate / 60.0);
-        let rates = Rates {
+        let rates = ProviderRates {
             requests_per_s: per_s(self.provider.requests_per_minute),
             tokens_per_s: per_s(self.provider.tokens_per_minute),
         };
@@ -63,11 +63,11 @@ impl Endpoint {
     ///
     /// # Errors
     /// When its variable is not set or contains no key.
-    pub(crate) fn secret(&self) -> Result<Option<&Secret>, Closed> {
-        let read = || self.provider.key_env.as_deref().map(Secret::from_env).transpose();
+    pub(crate) fn find_secret(&self) -> Result<Option<&ServiceSecret>, ClosedEndpoint> {
+        let read = || self.provider.key_env.as_deref().map(ServiceSecret::from_env).transpose();
         match self.secret.get_or_init(read) {
             Ok(secret) => Ok(secret.as_ref()),
-            Err(problem) => Err(Closed {
+            Err(problem) => Err(ClosedEndpoint {
                 reason: format!("{} needs a key, and {problem}", self.provider.name),
                 hint: format!("export {}=...", self.provider.key_env.as_deref().unwrap_or_default()),
             }),
@@ -75,22 +75,22 @@ impl Endpoint {
     }
 
     /// The details of this provider that messages about faults need.
-    pub(crate) fn who(&self) -> Who<'_> {
-        Who {
+    pub(crate) fn fault_context(&self) -> FaultContext<'_> {
+        FaultContext {
             provider: &self.provider.name,
             key_env: self.provider.key_env.as_deref(),
-            secret: self.secret().ok().flatten(),
+            secret: self.find_secret().ok().flatten(),
         }
     }
 
     /// Stops all further requests.
-    pub(crate) fn close(&self, closed: Closed) {
+    pub(crate) fn close_with(&self, closed: ClosedEndpoint) {
         // The first reason is kept, because later ones follow from it.
         let _ = self.closed.set(closed);
     }
 
     /// Why no more requests are sent; `None` while requests are sent.
-    pub(crate) fn closed(&self) -> Option<&Closed> {
+    pub(crate) fn closed_reason(&self) -> Option<&ClosedEndpoint> {
         self.closed.get()
     }
 
@@ -98,24 +98,26 @@ impl Endpoint {
     ///
     /// # Errors
     /// When no status came back.
-    pub(crate) fn post(&self, wire: &Wire, body: &[u8]) -> Result<Received, ureq::Error> {
-        self.transport.post(&self.provider.base_url.join(&wire.path), &self.headers(), body)
+    pub(crate) fn post_request(&self, wire: &WireRequest, body: &[u8]) -> Result<HttpResponse, ureq::Error> {
+        self.transport.post(&self.provider.base_url.with_path(&wire.path), &self.request_headers(), body)
     }
 
     /// Asks for the service's list of models.
     ///
     /// # Errors
     /// When no status came back.
-    pub(crate) fn models(&self) -> Result<Received, ureq::Error> {
-        self.transport.get(&self.provider.base_url.join(self.provider.dialect.models_path()), &self.headers())
+    pub(crate) fn request_models(&self) -> Result<HttpResponse, ureq::Error> {
+        self.transport
+            .get(&self.provider.base_url.with_path(self.provider.dialect.models_path()), &self.request_headers())
     }
 
-    fn headers(&self) -> Vec<(&'static str, String)> {
+    fn request_headers(&self) -> Vec<(&'static str, String)> {
         let dialect = self.provider.dialect;
-        let mut headers: Vec<_> = dialect.headers().iter().map(|(name, value)| (*name, (*value).to_owned())).collect();
-        if let Ok(Some(secret)) = self.secret() {
+        let mut headers: Vec<_> =
+            dialect.extra_headers().iter().map(|(name, value)| (*name, (*value).to_owned())).collect();
+        if let Ok(Some(secret)) = self.find_secret() {
             let (name, prefix) = dialect.key_header();
-            headers.push((name, secret.header(prefix)));
+            headers.push((name, secret.header_value(prefix)));
         }
         headers
     }

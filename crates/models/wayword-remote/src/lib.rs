@@ -9,7 +9,7 @@
 //! whole request with its pictures and the whole body into its errors, refuses JSON with another content type, has no
 //! completions endpoint, and hides the headers of successful responses, so that advertised rate limits cannot be kept.
 //!
-//! Architecture invariant: a key is only in [`Secret`]'s module and in the header that carries it. It is removed from
+//! Architecture invariant: a key is only in [`ServiceSecret`]'s module and in the header that carries it. It is removed from
 //! every text of a server before anything else uses the text.
 
 mod backoff;
@@ -31,11 +31,11 @@ mod secret;
 mod services;
 mod transport;
 
-pub use check::{Finding, Level};
-pub use config::{Concurrency, Config, Json, ProviderConfig};
-pub use dialect::Dialect;
+pub use check::{CheckLevel, ServiceFinding};
+pub use config::{JsonMode, ProviderConfig, RemoteConfig, RequestConcurrency};
+pub use dialect::ServiceDialect;
 pub use error::{ConfigError, PricesError};
 pub use model::RemoteModel;
-pub use prices::{Price, Prices};
-pub use secret::Secret;
-pub use services::Services;
+pub use prices::{ModelPrice, PriceTable};
+pub use secret::ServiceSecret;
+pub use services::ModelServices;

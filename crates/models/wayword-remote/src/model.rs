@@ -2,11 +2,11 @@
 //! answers batches with several threads.
 
 use crate::{
-    Json, Price,
-    call::{Sending, Size, Unanswered},
-    dialect::{Asked, Line},
-    endpoint::{Closed, Endpoint},
-    picture::Pictures,
+    JsonMode, ModelPrice,
+    call::{CallError, PreparedCall, RequestSize},
+    dialect::{DialectRequest, RemoteMessage},
+    endpoint::{ClosedEndpoint, ProviderEndpoint},
+    picture::PictureEncoder,
 };
 use serde_json::{Map, Value, json};
 use std::{
@@ -17,17 +17,19 @@ use std::{
     },
     thread,
 };
-use wayword_core::{Finish, LanguageModel, Message, ModelError, Reply, Request, Tool, Usage};
-use wayword_ledger::{Answer, Call, Occasion, OnceError, Refused, Run};
+use wayword_core::{
+    ChatMessage, FinishReason, LanguageModel, ModelError, ModelReply, ModelRequest, ModelTool, ModelUsage,
+};
+use wayword_ledger::{CallAnswer, CallContext, LedgerRun, ModelCall, OnceError, RequestRefusedError};
 
 /// A model behind HTTP. Each of its calls is made once and kept in the ledger.
 pub struct RemoteModel {
     /// `provider/model`.
     pub(crate) name: String,
-    pub(crate) endpoint: Arc<Endpoint>,
-    pub(crate) run: Run,
-    pub(crate) pictures: Arc<Pictures>,
-    pub(crate) price: Option<Price>,
+    pub(crate) endpoint: Arc<ProviderEndpoint>,
+    pub(crate) run: LedgerRun,
+    pub(crate) pictures: Arc<PictureEncoder>,
+    pub(crate) price: Option<ModelPrice>,
     /// Most attempts per call.
     pub(crate) attempts: u32,
     /// Most threads that work on one batch.
@@ -37,56 +39,56 @@ pub struct RemoteModel {
 impl RemoteModel {
     /// Its price, if it is known.
     #[must_use]
-    pub fn price(&self) -> Option<&Price> {
+    pub fn price(&self) -> Option<&ModelPrice> {
         self.price.as_ref()
     }
 
-    fn one(&self, request: &Request) -> Result<Reply, ModelError> {
-        let lines = self.lines(&request.messages).map_err(|reason| self.failed(reason))?;
-        let call = self.call(request, &lines);
+    fn complete_one(&self, request: &ModelRequest) -> Result<ModelReply, ModelError> {
+        let lines = self.encode_messages(&request.messages).map_err(|reason| self.failed_error(reason))?;
+        let call = self.ledger_call(request, &lines);
         let key = call.key();
-        let asked = self.run.once(&call, |attempts| {
-            let asked = Asked {
+        let asked = self.run.answer_once(&call, |attempts| {
+            let asked = DialectRequest {
                 provider: &self.endpoint.provider,
-                model: self.model(),
+                model: self.model_name(),
                 lines: &lines,
                 sampling: &request.sampling,
                 schema: request.schema,
                 tools: request.tools,
             };
             let wire = self.endpoint.provider.dialect.to_wire(asked);
-            let wire = wire.map_err(|reason| Unanswered::Failed(reason.to_owned()))?;
-            let sending = Sending {
+            let wire = wire.map_err(|reason| CallError::Failed(reason.to_owned()))?;
+            let sending = PreparedCall {
                 endpoint: &self.endpoint,
                 run: &self.run,
                 key: key.as_str(),
                 wire: &wire,
                 price: self.price.as_ref(),
-                size: size(request),
+                size: request_size(request),
                 attempts: self.attempts,
             };
-            sending.make(attempts).inspect_err(|error| attempts.fails_as(error.kind()))
+            sending.make_call(attempts).inspect_err(|error| attempts.fails_as(error.kind_name()))
         });
-        asked.map(reply).map_err(|error| self.error(error))
+        asked.map(reply_from_answer).map_err(|error| self.model_error(error))
     }
 
     /// The part of its name after the provider's.
-    pub(crate) fn model(&self) -> &str {
+    pub(crate) fn model_name(&self) -> &str {
         self.name.split_once('/').map_or("", |(_, model)| model)
     }
 
-    fn lines(&self, messages: &[Message]) -> Result<Vec<Line>, String> {
-        let line = |message: &Message| {
+    fn encode_messages(&self, messages: &[ChatMessage]) -> Result<Vec<RemoteMessage>, String> {
+        let line = |message: &ChatMessage| {
             let pictures = message.images.iter().map(|image| self.pictures.encode(image)).collect::<Result<_, _>>()?;
-            Ok(Line { role: message.role, text: message.text.clone(), pictures })
+            Ok(RemoteMessage { role: message.role, text: message.text.clone(), pictures })
         };
         messages.iter().map(line).collect()
     }
 
     /// The call for the ledger: everything that could change its answer, with hashes in place of pictures.
-    fn call(&self, request: &Request, lines: &[Line]) -> Call {
+    fn ledger_call(&self, request: &ModelRequest, lines: &[RemoteMessage]) -> ModelCall {
         let provider = &self.endpoint.provider;
-        let message = |line: &Line| {
+        let message = |line: &RemoteMessage| {
             let mut message = Map::new();
             message.insert("role".to_owned(), json!(line.role));
             message.insert("text".to_owned(), line.text.clone().into());
@@ -110,14 +112,14 @@ impl RemoteModel {
         asked.insert("temperature".to_owned(), sampling.temperature.into());
         asked.insert("max_tokens".to_owned(), sampling.max_tokens.into());
         asked.insert("seed".to_owned(), sampling.seed.into());
-        if let Some(schema) = request.schema.filter(|_| provider.json != Json::Prompt) {
+        if let Some(schema) = request.schema.filter(|_| provider.json != JsonMode::Prompt) {
             asked.insert(
                 "schema".to_owned(),
                 json!({ "name": schema.name, "way": format!("{:?}", provider.json), "json": schema.json }),
             );
         }
         if provider.tools && !request.tools.is_empty() {
-            let tool = |tool: &Tool| json!({ "name": tool.name, "does": tool.does, "arguments": tool.arguments });
+            let tool = |tool: &ModelTool| json!({ "name": tool.name, "does": tool.does, "arguments": tool.arguments });
             asked.insert("tools".to_owned(), request.tools.iter().map(tool).collect());
         }
         if !provider.extra.is_empty() {
@@ -126,7 +128,7 @@ impl RemoteModel {
         if !provider.omit.is_empty() {
             asked.insert("omit".to_owned(), provider.omit.clone().into());
         }
-        Call {
+        ModelCall {
             model: self.name.clone(),
             base_url: provider.base_url.as_str().to_owned(),
             request: asked.into(),
@@ -134,48 +136,48 @@ impl RemoteModel {
         }
     }
 
-    fn failed(&self, reason: impl Into<String>) -> ModelError {
+    fn failed_error(&self, reason: impl Into<String>) -> ModelError {
         ModelError::Failed { model: self.name.clone(), reason: reason.into() }
     }
 
-    fn error(&self, error: OnceError<Unanswered>) -> ModelError {
+    fn model_error(&self, error: OnceError<CallError>) -> ModelError {
         match error {
-            OnceError::Call(Unanswered::Failed(reason)) => self.failed(reason),
-            OnceError::Call(Unanswered::Lost(reason)) => ModelError::Lost { model: self.name.clone(), reason },
-            OnceError::Call(Unanswered::Closed(Closed { reason, hint })) => {
+            OnceError::Call(CallError::Failed(reason)) => self.failed_error(reason),
+            OnceError::Call(CallError::Lost(reason)) => ModelError::Lost { model: self.name.clone(), reason },
+            OnceError::Call(CallError::Closed(ClosedEndpoint { reason, hint })) => {
                 ModelError::Stopped { reason, hint, is_lost: false }
             }
-            OnceError::Call(Unanswered::Refused(refused)) | OnceError::Refused(refused) => stopped(&refused),
-            OnceError::Ledger(error) => stopped(&Refused::Ledger(error)),
+            OnceError::Call(CallError::Refused(refused)) | OnceError::Refused(refused) => stopped_error(&refused),
+            OnceError::Ledger(error) => stopped_error(&RequestRefusedError::Ledger(error)),
             // The item also failed when the recording was made.
             missing @ OnceError::NotRecorded { .. } => {
-                self.failed(missing.to_string().lines().next().unwrap_or("not recorded"))
+                self.failed_error(missing.to_string().lines().next().unwrap_or("not recorded"))
             }
         }
     }
 }
 
 /// The error after which the ledger allows no more requests.
-fn stopped(refused: &Refused) -> ModelError {
-    let (reason, hint) = refused.told();
+fn stopped_error(refused: &RequestRefusedError) -> ModelError {
+    let (reason, hint) = refused.reason_and_hint();
     ModelError::Stopped { reason, hint, is_lost: refused.is_lost() }
 }
 
-fn size(request: &Request) -> Size {
-    let of_tools = |tool: &Tool| (tool.name.len() + tool.does.len() + tool.arguments.len()) as u64 + 16;
+fn request_size(request: &ModelRequest) -> RequestSize {
+    let of_tools = |tool: &ModelTool| (tool.name.len() + tool.does.len() + tool.arguments.len()) as u64 + 16;
     let of_messages = request.messages.iter().map(|message| message.text.chars().count() as u64 + 16);
     let chars = of_messages.chain(request.tools.iter().map(of_tools)).sum();
-    let other_bytes = |message: &Message| message.text.bytes().filter(|byte| !byte.is_ascii()).count() as u64;
+    let other_bytes = |message: &ChatMessage| message.text.bytes().filter(|byte| !byte.is_ascii()).count() as u64;
     let other_bytes = request.messages.iter().map(other_bytes).sum();
     let pictures = request.messages.iter().map(|message| message.images.len() as u64).sum();
-    Size { chars, other_bytes, pictures, max_tokens: request.sampling.max_tokens.into() }
+    RequestSize { chars, other_bytes, pictures, max_tokens: request.sampling.max_tokens.into() }
 }
 
-fn reply(answer: Answer) -> Reply {
-    let finish = if answer.finish == "length" { Finish::Length } else { Finish::Stop };
-    let Answer { text, tokens_in, tokens_out, usd, latency_ms, .. } = answer;
-    let usage = Usage { tokens_in, tokens_out, usd, seconds: latency_ms as f64 / 1e3 };
-    Reply { text, finish, usage: Some(usage) }
+fn reply_from_answer(answer: CallAnswer) -> ModelReply {
+    let finish = if answer.finish == "length" { FinishReason::Length } else { FinishReason::Stop };
+    let CallAnswer { text, tokens_in, tokens_out, usd, latency_ms, .. } = answer;
+    let usage = ModelUsage { tokens_in, tokens_out, usd, seconds: latency_ms as f64 / 1e3 };
+    ModelReply { text, finish, usage: Some(usage) }
 }
 
 impl LanguageModel for RemoteModel {
@@ -183,35 +185,35 @@ impl LanguageModel for RemoteModel {
         &self.name
     }
 
-    fn complete(&self, requests: &[Request]) -> Vec<Result<Reply, ModelError>> {
+    fn complete_requests(&self, requests: &[ModelRequest]) -> Vec<Result<ModelReply, ModelError>> {
         if let [only] = requests {
-            return vec![self.one(only)];
+            return vec![self.complete_one(only)];
         }
-        let occasion = Occasion::here();
+        let occasion = CallContext::from_current_thread();
         let next = AtomicUsize::new(0);
         let work = || {
             let mut done = Vec::new();
-            while let Some((at, request)) = take(&next, requests) {
-                done.push((at, self.one(request)));
+            while let Some((at, request)) = take_next(&next, requests) {
+                done.push((at, self.complete_one(request)));
             }
             done
         };
-        let mut results: Vec<Option<Result<Reply, ModelError>>> = requests.iter().map(|_| None).collect();
+        let mut results: Vec<Option<Result<ModelReply, ModelError>>> = requests.iter().map(|_| None).collect();
         thread::scope(|scope| {
             let threads: Vec<_> =
-                (0..self.threads.min(requests.len())).map(|_| scope.spawn(|| occasion.on(work))).collect();
+                (0..self.threads.min(requests.len())).map(|_| scope.spawn(|| occasion.run_within(work))).collect();
             for (at, result) in threads.into_iter().filter_map(|thread| thread.join().ok()).flatten() {
                 results[at] = Some(result);
             }
         });
         results
             .into_iter()
-            .map(|result| result.unwrap_or_else(|| Err(self.failed("lost by a thread that ended early"))))
+            .map(|result| result.unwrap_or_else(|| Err(self.failed_error("lost by a thread that ended early"))))
             .collect()
     }
 }
 
-fn take<'a>(next: &AtomicUsize, requests: &'a [Request]) -> Option<(usize, &'a Request)> {
+fn take_next<'a>(next: &AtomicUsize, requests: &'a [ModelRequest]) -> Option<(usize, &'a ModelRequest)> {
     let at = next.fetch_add(1, Ordering::Relaxed);
     requests.get(at).map(|request| (at, request))
 }
@@ -226,17 +228,23 @@ impl fmt::Debug for RemoteModel {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use wayword_core::Sampling;
+    use wayword_core::SamplingOptions;
 
     /// If a tokenizer does not know a script, each byte is a token.
     #[test]
     fn most_tokens_in_bounds_every_script() {
-        let sampling = Sampling { temperature: 0.0, max_tokens: 20, seed: 0 };
+        let sampling = SamplingOptions { temperature: 0.0, max_tokens: 20, seed: 0 };
         for text in ["మెట్లు ఎక్కండి", "सीढ़ियाँ चढ़ो", "\u{1f6cb}\u{1f6aa}"]
         {
             let text = text.repeat(100);
-            let (bytes, messages) = (text.len() as u64, vec![Message::user(text)]);
-            let size = size(&Request { messages, sampling: sampling.clone(), replicate: 0, schema: None, tools: &[] });
+            let (bytes, messages) = (text.len() as u64, vec![ChatMessage::from_user(text)]);
+            let size = request_size(&ModelRequest {
+                messages,
+                sampling: sampling.clone(),
+                replicate: 0,
+                schema: None,
+                tools: &[],
+            });
             assert!(size.most_tokens_in(0) >= bytes, "{size:?}");
         }
     }

@@ -7,29 +7,29 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
 use wayword_core::Image;
 
 /// JPEG quality: high enough that a model sees no block edges as texture.
-const QUALITY: u8 = 90;
+const JPEG_QUALITY: u8 = 90;
 
 /// How many frames are remembered: as many as are in use at the same time, and a few more.
-const REMEMBERED: usize = 128;
+const MAX_REMEMBERED_FRAMES: usize = 128;
 
 /// An encoded picture.
 #[derive(Debug, PartialEq, Eq)]
-pub(crate) struct Picture {
+pub(crate) struct EncodedPicture {
     /// JPEG, in base64.
     pub(crate) base64: String,
     /// SHA-256 of the JPEG, hex.
     pub(crate) sha256: String,
 }
 
-type Slot = Arc<OnceLock<Result<Arc<Picture>, String>>>;
+type PictureSlot = Arc<OnceLock<Result<Arc<EncodedPicture>, String>>>;
 
 /// Encodes pictures, and remembers the pictures of frames that are still in use.
-pub(crate) struct Pictures {
+pub(crate) struct PictureEncoder {
     longer_px: u32,
-    known: Mutex<Vec<(Weak<Image>, Slot)>>,
+    known: Mutex<Vec<(Weak<Image>, PictureSlot)>>,
 }
 
-impl Pictures {
+impl PictureEncoder {
     /// An encoder that scales pictures down until their longer side is at most `longer_px` pixels.
     pub(crate) fn new(longer_px: u32) -> Self {
         Self { longer_px, known: Mutex::default() }
@@ -44,12 +44,12 @@ impl Pictures {
     ///
     /// # Errors
     /// When the image has no pixels.
-    pub(crate) fn encode(&self, image: &Arc<Image>) -> Result<Arc<Picture>, String> {
+    pub(crate) fn encode(&self, image: &Arc<Image>) -> Result<Arc<EncodedPicture>, String> {
         // Other threads that need the same frame wait for this one instead of encoding it too.
-        self.slot(image).get_or_init(|| encode(image, self.longer_px).map(Arc::new)).clone()
+        self.slot_for(image).get_or_init(|| encode_picture(image, self.longer_px).map(Arc::new)).clone()
     }
 
-    fn slot(&self, image: &Arc<Image>) -> Slot {
+    fn slot_for(&self, image: &Arc<Image>) -> PictureSlot {
         let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
         // A weak pointer keeps the address from being used for another image, so that equal addresses mean the same
         // frame.
@@ -57,34 +57,34 @@ impl Pictures {
             return Arc::clone(slot);
         }
         known.retain(|(weak, _)| weak.strong_count() > 0);
-        if known.len() >= REMEMBERED {
+        if known.len() >= MAX_REMEMBERED_FRAMES {
             known.remove(0);
         }
-        let slot = Slot::default();
+        let slot = PictureSlot::default();
         known.push((Arc::downgrade(image), Arc::clone(&slot)));
         slot
     }
 }
 
 /// Scales down, never up, and encodes.
-fn encode(image: &Image, longer_px: u32) -> Result<Picture, String> {
+fn encode_picture(image: &Image, longer_px: u32) -> Result<EncodedPicture, String> {
     let (width, height) = (image.width_px(), image.height_px());
     if width == 0 || height == 0 {
         return Err(format!("a picture of {width} x {height} pixels is empty"));
     }
     let pixels =
-        ImageBuffer::<Rgb<u8>, _>::from_raw(width, height, image.rgb()).ok_or("a picture has too few pixels")?;
+        ImageBuffer::<Rgb<u8>, _>::from_raw(width, height, image.rgb_bytes()).ok_or("a picture has too few pixels")?;
     let mut jpeg = Vec::new();
-    let mut encoder = JpegEncoder::new_with_quality(&mut jpeg, QUALITY);
+    let mut encoder = JpegEncoder::new_with_quality(&mut jpeg, JPEG_QUALITY);
     let encoded = match scaled_down(width, height, longer_px) {
         Some((width, height)) => {
             // Averages whole pixels: as good as a filter for shrinking, and several times as fast.
             encoder.encode_image(&imageops::thumbnail(&pixels, width, height))
         }
-        None => encoder.encode(image.rgb(), width, height, image::ExtendedColorType::Rgb8),
+        None => encoder.encode(image.rgb_bytes(), width, height, image::ExtendedColorType::Rgb8),
     };
     encoded.map_err(|error| format!("a picture cannot be encoded: {error}"))?;
-    Ok(Picture { sha256: hex(&Sha256::digest(&jpeg)), base64: STANDARD.encode(&jpeg) })
+    Ok(EncodedPicture { sha256: hex_text(&Sha256::digest(&jpeg)), base64: STANDARD.encode(&jpeg) })
 }
 
 /// The smaller size, if the picture has to shrink.
@@ -97,7 +97,7 @@ fn scaled_down(width: u32, height: u32, longer_px: u32) -> Option<(u32, u32)> {
     (longer > longer_px).then(|| (scale(width), scale(height)))
 }
 
-fn hex(bytes: &[u8]) -> String {
+fn hex_text(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
@@ -109,7 +109,7 @@ mod tests {
         Arc::new(Image::new(width, height, vec![90; (width * height * 3) as usize]).unwrap())
     }
 
-    fn size(picture: &Picture) -> (u32, u32) {
+    fn size(picture: &EncodedPicture) -> (u32, u32) {
         let jpeg = STANDARD.decode(&picture.base64).unwrap();
         let image = image::load_from_memory_with_format(&jpeg, image::ImageFormat::Jpeg).unwrap();
         (image.width(), image.height())
@@ -117,7 +117,7 @@ mod tests {
 
     #[test]
     fn pictures_shrink_and_never_grow() {
-        let pictures = Pictures::new(64);
+        let pictures = PictureEncoder::new(64);
         assert_eq!(size(&pictures.encode(&plain(128, 96)).unwrap()), (64, 48));
         assert_eq!(size(&pictures.encode(&plain(96, 1000)).unwrap()), (6, 64));
         assert_eq!(size(&pictures.encode(&plain(64, 1)).unwrap()), (64, 1));
@@ -127,7 +127,7 @@ mod tests {
 
     #[test]
     fn a_frame_is_encoded_once() {
-        let pictures = Pictures::new(64);
+        let pictures = PictureEncoder::new(64);
         let frame = plain(80, 80);
         assert!(Arc::ptr_eq(&pictures.encode(&frame).unwrap(), &pictures.encode(&frame).unwrap()));
         let equal = plain(80, 80);
@@ -138,12 +138,12 @@ mod tests {
 
     #[test]
     fn frames_that_are_gone_are_forgotten() {
-        let pictures = Pictures::new(8);
+        let pictures = PictureEncoder::new(8);
         for _ in 0..1000 {
             pictures.encode(&plain(4, 4)).unwrap();
         }
-        let held: Vec<_> = (0..2 * REMEMBERED).map(|_| plain(4, 4)).collect();
+        let held: Vec<_> = (0..2 * MAX_REMEMBERED_FRAMES).map(|_| plain(4, 4)).collect();
         held.iter().for_each(|frame| drop(pictures.encode(frame).unwrap()));
-        assert_eq!(pictures.known.lock().unwrap().len(), REMEMBERED);
+        assert_eq!(pictures.known.lock().unwrap().len(), MAX_REMEMBERED_FRAMES);
     }
 }

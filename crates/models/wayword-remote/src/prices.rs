@@ -9,7 +9,7 @@ const BUILT_IN: &str = include_str!("prices.toml");
 /// The price of a model.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Price {
+pub struct ModelPrice {
     /// US dollars per million tokens of the request.
     pub usd_per_million_in: f64,
     /// US dollars per million tokens of the reply.
@@ -27,29 +27,29 @@ fn tokens_per_picture() -> u64 {
 
 /// Prices by `provider/model`.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Prices(BTreeMap<String, Price>);
+pub struct PriceTable(BTreeMap<String, ModelPrice>);
 
-impl Price {
+impl ModelPrice {
     /// The price of a model on a user's own machine.
     #[must_use]
-    pub fn nothing() -> Self {
+    pub fn free_of_charge() -> Self {
         Self { usd_per_million_in: 0.0, usd_per_million_out: 0.0, as_of: String::new(), tokens_per_picture: 0 }
     }
 
     /// The cost of a call with these tokens, US dollars.
     #[must_use]
-    pub fn usd(&self, tokens_in: u64, tokens_out: u64) -> f64 {
+    pub fn cost_usd(&self, tokens_in: u64, tokens_out: u64) -> f64 {
         (tokens_in as f64 * self.usd_per_million_in + tokens_out as f64 * self.usd_per_million_out) / 1e6
     }
 }
 
-impl Default for Prices {
+impl Default for PriceTable {
     fn default() -> Self {
         Self::built_in()
     }
 }
 
-impl Prices {
+impl PriceTable {
     /// The table that comes with the program.
     #[must_use]
     pub fn built_in() -> Self {
@@ -61,8 +61,8 @@ impl Prices {
     ///
     /// # Errors
     /// When the text is not a table of prices, or an amount is negative.
-    pub fn read(text: &str) -> Result<Self, PricesError> {
-        let own: BTreeMap<String, Price> =
+    pub fn from_toml(text: &str) -> Result<Self, PricesError> {
+        let own: BTreeMap<String, ModelPrice> =
             toml::from_str(text).map_err(|error| PricesError::Toml(error.to_string()))?;
         let sound = |usd: f64| usd.is_finite() && usd >= 0.0;
         let wrong = own.iter().find(|(_, price)| !sound(price.usd_per_million_in) || !sound(price.usd_per_million_out));
@@ -75,7 +75,7 @@ impl Prices {
     }
 
     /// The price of a model: by its name, or by the longest listed name that it is a dated snapshot of.
-    pub(crate) fn of(&self, name: &str) -> Option<Price> {
+    pub(crate) fn for_model(&self, name: &str) -> Option<ModelPrice> {
         let snapshot = || self.0.iter().rev().find(|(base, _)| is_snapshot(name, base)).map(|(_, price)| price);
         self.0.get(name).or_else(snapshot).cloned()
     }
@@ -98,34 +98,34 @@ mod tests {
 
     #[test]
     fn the_built_in_table_is_read_and_dated() {
-        let table: BTreeMap<String, Price> = toml::from_str(BUILT_IN).unwrap();
+        let table: BTreeMap<String, ModelPrice> = toml::from_str(BUILT_IN).unwrap();
         assert!(table.len() > 30);
         let providers = provider::built_in();
         for (name, price) in &table {
             assert!(price.as_of.parse::<toml::value::Datetime>().is_ok(), "{name}");
             assert!(price.usd_per_million_in > 0.0 && price.usd_per_million_out > 0.0, "{name}");
-            assert!(providers.contains_key(provider::split(name).unwrap().0), "{name}");
+            assert!(providers.contains_key(provider::split_name(name).unwrap().0), "{name}");
         }
     }
 
     #[test]
     fn a_snapshot_has_the_price_of_its_model() {
-        let prices = Prices::built_in();
-        assert_eq!(prices.of("openai/gpt-4.1-mini-2025-04-14"), prices.of("openai/gpt-4.1-mini"));
-        assert_eq!(prices.of("anthropic/claude-sonnet-4-20250514").unwrap().usd_per_million_in, 3.0);
-        assert_eq!(prices.of("openai/gpt-4o-2024-05-13").unwrap().usd_per_million_in, 5.0);
-        assert_eq!(prices.of("openai/gpt-4.1-huge"), None);
-        assert_eq!(prices.of("openai/gpt-4.1-"), None);
-        assert_eq!(prices.of("openai/gpt-4.1-2025"), prices.of("openai/gpt-4.1"));
+        let prices = PriceTable::built_in();
+        assert_eq!(prices.for_model("openai/gpt-4.1-mini-2025-04-14"), prices.for_model("openai/gpt-4.1-mini"));
+        assert_eq!(prices.for_model("anthropic/claude-sonnet-4-20250514").unwrap().usd_per_million_in, 3.0);
+        assert_eq!(prices.for_model("openai/gpt-4o-2024-05-13").unwrap().usd_per_million_in, 5.0);
+        assert_eq!(prices.for_model("openai/gpt-4.1-huge"), None);
+        assert_eq!(prices.for_model("openai/gpt-4.1-"), None);
+        assert_eq!(prices.for_model("openai/gpt-4.1-2025"), prices.for_model("openai/gpt-4.1"));
     }
 
     #[test]
     fn read_puts_a_users_rows_over_the_built_in_ones() {
         let row = "\"x/y\" = { usd_per_million_in = 1, usd_per_million_out = 2.5, as_of = \"2026-01-01\" }";
-        let prices = Prices::read(row).unwrap();
-        assert_eq!(prices.of("x/y").unwrap().usd(2_000_000, 1_000_000), 4.5);
-        assert!(prices.of("openai/gpt-4o").is_some());
-        assert!(matches!(Prices::read(&row.replace("2.5", "-2.5")), Err(PricesError::Amount(_))));
-        assert!(matches!(Prices::read("x = 1"), Err(PricesError::Toml(_))));
+        let prices = PriceTable::from_toml(row).unwrap();
+        assert_eq!(prices.for_model("x/y").unwrap().cost_usd(2_000_000, 1_000_000), 4.5);
+        assert!(prices.for_model("openai/gpt-4o").is_some());
+        assert!(matches!(PriceTable::from_toml(&row.replace("2.5", "-2.5")), Err(PricesError::Amount(_))));
+        assert!(matches!(PriceTable::from_toml("x = 1"), Err(PricesError::Toml(_))));
     }
 }

@@ -1,6 +1,6 @@
 //! Providers: merges the built-in table (`provider.toml`) with the user's settings, and checks the result.
 
-use crate::{Config, ConfigError, Dialect, Json, ProviderConfig, base_url::BaseUrl};
+use crate::{ConfigError, JsonMode, ProviderConfig, RemoteConfig, ServiceDialect, base_url::BaseUrl};
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 
@@ -11,9 +11,9 @@ const LONGEST_NAME: usize = 200;
 
 /// A provider with all its settings.
 #[derive(Debug, Clone)]
-pub(crate) struct Provider {
+pub(crate) struct RemoteProvider {
     pub(crate) name: String,
-    pub(crate) dialect: Dialect,
+    pub(crate) dialect: ServiceDialect,
     pub(crate) base_url: BaseUrl,
     pub(crate) key_env: Option<String>,
     pub(crate) local: bool,
@@ -22,7 +22,7 @@ pub(crate) struct Provider {
     pub(crate) seed_field: String,
     pub(crate) extra: Map<String, Value>,
     pub(crate) omit: Vec<String>,
-    pub(crate) json: Json,
+    pub(crate) json: JsonMode,
     pub(crate) tools: bool,
     pub(crate) requests_per_minute: Option<f64>,
     pub(crate) tokens_per_minute: Option<f64>,
@@ -31,7 +31,7 @@ pub(crate) struct Provider {
 
 /// All providers: the built-in ones, with the user's settings over them.
 #[derive(Debug, Clone)]
-pub(crate) struct Table(BTreeMap<String, ProviderConfig>);
+pub(crate) struct ProviderTable(BTreeMap<String, ProviderConfig>);
 
 /// The providers that come with the program.
 ///
@@ -44,7 +44,7 @@ pub(crate) fn built_in() -> BTreeMap<String, ProviderConfig> {
 ///
 /// # Errors
 /// When there is no slash, a part is empty, or a character is not allowed in a name.
-pub(crate) fn split(name: &str) -> Result<(&str, &str), ConfigError> {
+pub(crate) fn split_name(name: &str) -> Result<(&str, &str), ConfigError> {
     let odd = |part: &str| part.is_empty() || part.chars().any(|c| c.is_whitespace() || c.is_control());
     match name.split_once('/') {
         Some((provider, model)) if name.len() <= LONGEST_NAME && !odd(provider) && !odd(model) => Ok((provider, model)),
@@ -52,7 +52,7 @@ pub(crate) fn split(name: &str) -> Result<(&str, &str), ConfigError> {
     }
 }
 
-impl Table {
+impl ProviderTable {
     /// The built-in table with the user's settings over it.
     pub(crate) fn new(own: &BTreeMap<String, ProviderConfig>) -> Self {
         let mut table = built_in();
@@ -64,7 +64,7 @@ impl Table {
     }
 
     /// The providers' names.
-    pub(crate) fn names(&self) -> Vec<&str> {
+    pub(crate) fn provider_names(&self) -> Vec<&str> {
         self.0.keys().map(String::as_str).collect()
     }
 
@@ -72,18 +72,18 @@ impl Table {
     ///
     /// # Errors
     /// When there is no provider of that name, or one of its settings is missing or wrong.
-    pub(crate) fn resolve(&self, name: &str, config: &Config) -> Result<Provider, ConfigError> {
-        let own = self
-            .0
-            .get(name)
-            .ok_or_else(|| ConfigError::NoProvider { provider: name.to_owned(), known: self.names().join(", ") })?;
+    pub(crate) fn resolve_provider(&self, name: &str, config: &RemoteConfig) -> Result<RemoteProvider, ConfigError> {
+        let own = self.0.get(name).ok_or_else(|| ConfigError::NoProvider {
+            provider: name.to_owned(),
+            known: self.provider_names().join(", "),
+        })?;
         let dialect = own.dialect.ok_or_else(|| ConfigError::NoDialect(name.to_owned()))?;
         let url = config.base_url.as_ref().or(own.base_url.as_ref());
         let url = url.ok_or_else(|| ConfigError::NoBaseUrl(name.to_owned()))?;
-        let base_url = BaseUrl::new(url, dialect.version())
+        let base_url = BaseUrl::new(url, dialect.default_version_path())
             .map_err(|problem| ConfigError::BaseUrl { provider: name.to_owned(), problem })?;
         let text = |field: &Option<String>, usual: &str| field.clone().unwrap_or_else(|| usual.to_owned());
-        let provider = Provider {
+        let provider = RemoteProvider {
             name: name.to_owned(),
             dialect,
             base_url,
@@ -100,17 +100,17 @@ impl Table {
             tokens_per_minute: own.tokens_per_minute.or(config.tokens_per_minute),
             advertises_requests_per_day: own.advertises_requests_per_day.unwrap_or(false),
         };
-        provider.validated()
+        provider.into_validated()
     }
 }
 
-impl Provider {
+impl RemoteProvider {
     /// Whether a sampling field is sent.
-    pub(crate) fn sends(&self, field: &str) -> bool {
+    pub(crate) fn sends_field(&self, field: &str) -> bool {
         !self.omit.iter().any(|omitted| omitted == field)
     }
 
-    fn validated(self) -> Result<Self, ConfigError> {
+    fn into_validated(self) -> Result<Self, ConfigError> {
         let wrong = |field: &str, problem| ConfigError::Setting {
             setting: format!("providers.{}.{field}", self.name),
             problem,
@@ -143,9 +143,9 @@ mod tests {
     fn the_built_in_table_is_read_and_complete() {
         let table: BTreeMap<String, ProviderConfig> = toml::from_str(BUILT_IN).unwrap();
         assert_eq!(table.len(), 15);
-        let config = Config::default();
+        let config = RemoteConfig::default();
         for name in table.keys().filter(|name| !["server", "completions"].contains(&name.as_str())) {
-            let provider = Table::new(&config.providers).resolve(name, &config).unwrap();
+            let provider = ProviderTable::new(&config.providers).resolve_provider(name, &config).unwrap();
             assert_eq!(provider.local, provider.key_env.is_none(), "{name}");
             assert!(provider.local || !provider.base_url.plain, "{name}");
         }
@@ -153,16 +153,16 @@ mod tests {
 
     #[test]
     fn split_accepts_models_with_slashes_and_colons() {
-        assert_eq!(split("ollama/hf.co/owner/model:Q4").unwrap(), ("ollama", "hf.co/owner/model:Q4"));
+        assert_eq!(split_name("ollama/hf.co/owner/model:Q4").unwrap(), ("ollama", "hf.co/owner/model:Q4"));
         for name in ["qwen3", "/model", "ollama/", "ollama/a b", "ollama/a\nb", ""] {
-            assert!(split(name).is_err(), "{name:?}");
+            assert!(split_name(name).is_err(), "{name:?}");
         }
     }
 
     #[test]
     fn single_fields_are_overridden() {
-        let config: Config = toml::from_str("[providers.ollama]\nbase_url = \"http://10.0.0.7:11434\"").unwrap();
-        let provider = Table::new(&config.providers).resolve("ollama", &config).unwrap();
+        let config: RemoteConfig = toml::from_str("[providers.ollama]\nbase_url = \"http://10.0.0.7:11434\"").unwrap();
+        let provider = ProviderTable::new(&config.providers).resolve_provider("ollama", &config).unwrap();
         assert_eq!(provider.base_url.as_str(), "http://10.0.0.7:11434");
         assert_eq!(provider.extra["think"], false);
         assert!(provider.local);
@@ -170,18 +170,18 @@ mod tests {
 
     #[test]
     fn resolve_errors_name_the_missing_setting_and_its_flag() {
-        let config = Config::default();
-        let table = Table::new(&config.providers);
-        let error = table.resolve("nobody", &config).unwrap_err().to_string();
+        let config = RemoteConfig::default();
+        let table = ProviderTable::new(&config.providers);
+        let error = table.resolve_provider("nobody", &config).unwrap_err().to_string();
         assert!(error.contains("there is no provider \"nobody\"") && error.contains("ollama, openai"), "{error}");
-        let error = table.resolve("server", &config).unwrap_err().to_string();
+        let error = table.resolve_provider("server", &config).unwrap_err().to_string();
         assert!(error.contains("--base-url"), "{error}");
     }
 
     #[test]
     fn a_key_in_place_of_its_variable_is_refused_and_not_repeated() {
-        let config = Config { key_env: Some("sk-abc-123".to_owned()), ..Config::default() };
-        let error = Table::new(&config.providers).resolve("openai", &config).unwrap_err().to_string();
+        let config = RemoteConfig { key_env: Some("sk-abc-123".to_owned()), ..RemoteConfig::default() };
+        let error = ProviderTable::new(&config.providers).resolve_provider("openai", &config).unwrap_err().to_string();
         assert!(error.contains("not the key") && !error.contains("sk-abc"), "{error}");
     }
 }

@@ -1,7 +1,7 @@
 //! Checks, before a run begins, whether a model can be used: its key, its address, and whether it takes pictures. Sends no
 //! question to the model.
 
-use crate::{ConfigError, RemoteModel, Services, base_url::BaseUrl, endpoint::Endpoint};
+use crate::{ConfigError, ModelServices, RemoteModel, base_url::BaseUrl, endpoint::ProviderEndpoint};
 use std::{
     io,
     net::{SocketAddr, TcpStream, ToSocketAddrs},
@@ -10,18 +10,18 @@ use std::{
 use ureq::{Proxy, http::Uri};
 
 /// Longest wait for a connection. A service that takes longer is not refused.
-const PATIENCE: Duration = Duration::from_secs(2);
+const CONNECT_TIMEOUT: Duration = Duration::from_secs(2);
 
-impl Services {
+impl ModelServices {
     /// Refuses a model if its key is missing, no service listens at its address, or the host is not found.
     /// Connects only to services on this machine, and to addresses that the user gave.
     ///
     /// # Errors
     /// When the model cannot be used, or the provider does not exist.
-    pub fn ready(&self, name: &str) -> Result<(), ConfigError> {
+    pub fn check_ready(&self, name: &str) -> Result<(), ConfigError> {
         let model = self.model(name)?;
         let endpoint = &model.endpoint;
-        if let Err(closed) = endpoint.secret() {
+        if let Err(closed) = endpoint.find_secret() {
             return Err(ConfigError::NotReady { problem: closed.reason, hint: closed.hint });
         }
         if self.is_reached_directly(endpoint) { lets_in(endpoint) } else { Ok(()) }
@@ -47,7 +47,7 @@ impl Services {
     ///
     /// # Errors
     /// When it does not see, or the provider does not exist.
-    pub fn sees(&self, name: &str) -> Result<(), ConfigError> {
+    pub fn check_sight(&self, name: &str) -> Result<(), ConfigError> {
         let model = self.model(name)?;
         if !self.is_reached_directly(&model.endpoint) || describes_sight(&model) != Some(false) {
             return Ok(());
@@ -57,7 +57,7 @@ impl Services {
             format!("{name} cannot be shown pictures: {provider} does not list vision among what this model can do");
         let hint = format!(
             "name a model that sees, as in {provider}/qwen2.5vl; `{provider} show {}` lists what it can do",
-            model.model()
+            model.model_name()
         );
         Err(ConfigError::NotReady { problem, hint })
     }
@@ -71,7 +71,7 @@ impl Services {
     }
 
     /// Whether a test connection is meaningful. It is not through a proxy, nor for remote services.
-    fn is_reached_directly(&self, endpoint: &Endpoint) -> bool {
+    fn is_reached_directly(&self, endpoint: &ProviderEndpoint) -> bool {
         let provider = &endpoint.provider;
         let is_near = provider.local || self.has_own_address(&provider.name);
         provider.base_url.loopback || (is_near && Proxy::try_from_env().is_none())
@@ -81,24 +81,24 @@ impl Services {
 /// Whether a model sees, according to its service; `None` where the service does not report this or does not answer.
 fn describes_sight(model: &RemoteModel) -> Option<bool> {
     let dialect = model.endpoint.provider.dialect;
-    let wire = dialect.to_describe(model.model())?;
-    let received = model.endpoint.post(&wire, wire.body.to_string().as_bytes()).ok()?;
+    let wire = dialect.to_describe(model.model_name())?;
+    let received = model.endpoint.post_request(&wire, wire.body.to_string().as_bytes()).ok()?;
     let body = received.body.ok().filter(|_| (200..300).contains(&received.status))?;
     dialect.describes_sight(&serde_json::from_slice(&body).ok()?)
 }
 
-fn lets_in(endpoint: &Endpoint) -> Result<(), ConfigError> {
+fn lets_in(endpoint: &ProviderEndpoint) -> Result<(), ConfigError> {
     let provider = &endpoint.provider;
     let (name, url) = (&provider.name, provider.base_url.as_str());
     let not_ready = |problem: String, hint: String| Err(ConfigError::NotReady { problem, hint });
-    match connect(&provider.base_url) {
-        Err(Closed::Port) => not_ready(
+    match try_connect(&provider.base_url) {
+        Err(ConnectProblem::Port) => not_ready(
             format!("nothing listens at {url}, so {name} cannot be used"),
             format!(
                 "start {name}, or give its address: --base-url URL, or base_url under [providers.{name}] in the --config file"
             ),
         ),
-        Err(Closed::Host(host)) => not_ready(
+        Err(ConnectProblem::Host(host)) => not_ready(
             format!("the host {host} is not found, so {name} cannot be used at {url}"),
             format!(
                 "check the name and the network, or give --base-url URL, or base_url under [providers.{name}] in the --config file"
@@ -109,24 +109,24 @@ fn lets_in(endpoint: &Endpoint) -> Result<(), ConfigError> {
 }
 
 /// Why no connection is possible.
-enum Closed {
+enum ConnectProblem {
     Port,
     Host(String),
 }
 
 /// Checks whether a server accepts a connection, or may accept one later.
-fn connect(url: &BaseUrl) -> Result<(), Closed> {
-    let Some((host, port)) = place(url) else { return Ok(()) };
+fn try_connect(url: &BaseUrl) -> Result<(), ConnectProblem> {
+    let Some((host, port)) = host_and_port(url) else { return Ok(()) };
     let addresses: Vec<SocketAddr> =
-        (host.as_str(), port).to_socket_addrs().map_err(|_| Closed::Host(host.clone()))?.collect();
+        (host.as_str(), port).to_socket_addrs().map_err(|_| ConnectProblem::Host(host.clone()))?.collect();
     let is_refused = |address: &SocketAddr| {
-        TcpStream::connect_timeout(address, PATIENCE)
+        TcpStream::connect_timeout(address, CONNECT_TIMEOUT)
             .is_err_and(|error| error.kind() == io::ErrorKind::ConnectionRefused)
     };
-    if !addresses.is_empty() && addresses.iter().all(is_refused) { Err(Closed::Port) } else { Ok(()) }
+    if !addresses.is_empty() && addresses.iter().all(is_refused) { Err(ConnectProblem::Port) } else { Ok(()) }
 }
 
-fn place(url: &BaseUrl) -> Option<(String, u16)> {
+fn host_and_port(url: &BaseUrl) -> Option<(String, u16)> {
     let uri: Uri = url.as_str().parse().ok()?;
     let host = uri.host()?.trim_start_matches('[').trim_end_matches(']').to_owned();
     Some((host, uri.port_u16().unwrap_or(if url.plain { 80 } else { 443 })))
@@ -135,16 +135,19 @@ fn place(url: &BaseUrl) -> Option<(String, u16)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Config;
+    use crate::RemoteConfig;
     use std::net::TcpListener;
-    use wayword_ledger::{Ledger, Limits};
+    use wayword_ledger::{Ledger, RunLimits};
 
     /// Why a model cannot be used at an address.
     fn told(base_url: &str, key_env: Option<&str>) -> Option<String> {
-        let config =
-            Config { base_url: Some(base_url.to_owned()), key_env: key_env.map(str::to_owned), ..Config::default() };
-        let run = Ledger::in_memory().unwrap().run("test", Limits::default()).unwrap();
-        Services::new(config, run).unwrap().ready("server/words").err().map(|error| error.to_string())
+        let config = RemoteConfig {
+            base_url: Some(base_url.to_owned()),
+            key_env: key_env.map(str::to_owned),
+            ..RemoteConfig::default()
+        };
+        let run = Ledger::in_memory().unwrap().start_run("test", RunLimits::default()).unwrap();
+        ModelServices::new(config, run).unwrap().check_ready("server/words").err().map(|error| error.to_string())
     }
 
     #[test]
@@ -169,9 +172,9 @@ mod tests {
     #[test]
     fn takes_pictures_refuses_text_providers_before_any_call() {
         let told = |name: &str| {
-            let config = Config { base_url: Some("http://127.0.0.1:9/v1".to_owned()), ..Config::default() };
-            let run = Ledger::in_memory().unwrap().run("test", Limits::default()).unwrap();
-            Services::new(config, run).unwrap().takes_pictures(name).err().map(|error| error.to_string())
+            let config = RemoteConfig { base_url: Some("http://127.0.0.1:9/v1".to_owned()), ..RemoteConfig::default() };
+            let run = Ledger::in_memory().unwrap().start_run("test", RunLimits::default()).unwrap();
+            ModelServices::new(config, run).unwrap().takes_pictures(name).err().map(|error| error.to_string())
         };
         assert_eq!(told("server/words"), None);
         for name in ["completions/words", "deepseek/chat"] {
@@ -181,7 +184,7 @@ mod tests {
 
     #[test]
     fn an_address_has_a_host_and_a_port() {
-        let place = |url| place(&BaseUrl::new(url, "/v1").unwrap()).unwrap();
+        let place = |url| host_and_port(&BaseUrl::new(url, "/v1").unwrap()).unwrap();
         assert_eq!(place("http://[::1]:8000"), ("::1".to_owned(), 8000));
         assert_eq!(place("https://models.example.com/v1"), ("models.example.com".to_owned(), 443));
         assert_eq!(place("http://lab"), ("lab".to_owned(), 80));

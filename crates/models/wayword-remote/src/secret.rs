@@ -3,7 +3,7 @@
 use std::fmt;
 
 /// The text that replaces a key.
-const MASK: &str = "***";
+const KEY_MASK: &str = "***";
 
 /// Shorter keys are placeholders of local servers ("none", "EMPTY"). Removing them from every text would damage the
 /// text.
@@ -11,9 +11,9 @@ const SHORTEST_SCRUBBED: usize = 8;
 
 /// A key. Neither `Debug` nor `Display` shows it.
 #[derive(Clone, PartialEq, Eq)]
-pub struct Secret(String);
+pub struct ServiceSecret(String);
 
-impl Secret {
+impl ServiceSecret {
     /// A key, without white space around it, which copying may add.
     ///
     /// # Errors
@@ -42,25 +42,25 @@ impl Secret {
     }
 
     /// The value of the header that carries the key.
-    pub(crate) fn header(&self, prefix: &str) -> String {
+    pub(crate) fn header_value(&self, prefix: &str) -> String {
         format!("{prefix}{}", self.0)
     }
 
     /// A text with the key removed.
-    pub(crate) fn scrub(&self, text: String) -> String {
-        if self.0.len() >= SHORTEST_SCRUBBED && text.contains(&self.0) { text.replace(&self.0, MASK) } else { text }
+    pub(crate) fn scrub_key(&self, text: String) -> String {
+        if self.0.len() >= SHORTEST_SCRUBBED && text.contains(&self.0) { text.replace(&self.0, KEY_MASK) } else { text }
     }
 }
 
-impl fmt::Debug for Secret {
+impl fmt::Debug for ServiceSecret {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(MASK)
+        f.write_str(KEY_MASK)
     }
 }
 
-impl fmt::Display for Secret {
+impl fmt::Display for ServiceSecret {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(MASK)
+        f.write_str(KEY_MASK)
     }
 }
 
@@ -70,22 +70,22 @@ mod tests {
 
     #[test]
     fn secret_is_masked_in_output_and_scrubbed_from_texts() {
-        let secret = Secret::new(" sk-0123456789\n").unwrap();
+        let secret = ServiceSecret::new(" sk-0123456789\n").unwrap();
         assert_eq!(format!("{secret:?} {secret}"), "*** ***");
-        assert_eq!(secret.scrub("bad key sk-0123456789!".to_owned()), "bad key ***!");
-        assert_eq!(secret.header("Bearer "), "Bearer sk-0123456789");
-        assert!(Secret::new("two words").is_err());
-        assert!(Secret::new("line\nbreak").is_err());
+        assert_eq!(secret.scrub_key("bad key sk-0123456789!".to_owned()), "bad key ***!");
+        assert_eq!(secret.header_value("Bearer "), "Bearer sk-0123456789");
+        assert!(ServiceSecret::new("two words").is_err());
+        assert!(ServiceSecret::new("line\nbreak").is_err());
     }
 
     #[test]
     fn a_placeholder_is_left_in_texts() {
-        assert_eq!(Secret::new("EMPTY").unwrap().scrub("EMPTY room".to_owned()), "EMPTY room");
+        assert_eq!(ServiceSecret::new("EMPTY").unwrap().scrub_key("EMPTY room".to_owned()), "EMPTY room");
     }
 
     #[test]
     fn a_variable_that_is_not_set_is_named() {
-        let problem = Secret::from_env("WAYWORD_NO_SUCH_KEY").unwrap_err();
+        let problem = ServiceSecret::from_env("WAYWORD_NO_SUCH_KEY").unwrap_err();
         assert_eq!(problem, "the variable WAYWORD_NO_SUCH_KEY is not set");
     }
 }

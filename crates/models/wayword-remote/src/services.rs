@@ -2,17 +2,17 @@
 //! and limits.
 
 use crate::{
-    Concurrency, Config, ConfigError, Price, RemoteModel,
-    endpoint::Endpoint,
-    picture::Pictures,
-    provider::{self, Provider, Table},
+    ConfigError, ModelPrice, RemoteConfig, RemoteModel, RequestConcurrency,
+    endpoint::ProviderEndpoint,
+    picture::PictureEncoder,
+    provider::{self, ProviderTable, RemoteProvider},
 };
 use std::{
     collections::BTreeMap,
     fmt,
     sync::{Arc, Mutex, PoisonError},
 };
-use wayword_ledger::Run;
+use wayword_ledger::LedgerRun;
 
 /// Longest timeout of an attempt, seconds.
 const LONGEST_TIMEOUT_S: f64 = 3600.0;
@@ -24,23 +24,23 @@ const MOST_CONCURRENCY: usize = 4096;
 const LARGEST_PICTURE_PX: u32 = 8192;
 
 /// Finds models by their names. Models of one provider share its connections and limits.
-pub struct Services {
-    config: Config,
-    table: Table,
-    run: Run,
-    pictures: Arc<Pictures>,
-    endpoints: Mutex<BTreeMap<String, Arc<Endpoint>>>,
+pub struct ModelServices {
+    config: RemoteConfig,
+    table: ProviderTable,
+    run: LedgerRun,
+    pictures: Arc<PictureEncoder>,
+    endpoints: Mutex<BTreeMap<String, Arc<ProviderEndpoint>>>,
 }
 
-impl Services {
+impl ModelServices {
     /// Services for one run of the ledger. Makes no connection, and reads no key.
     ///
     /// # Errors
     /// When a setting is out of range.
-    pub fn new(config: Config, run: Run) -> Result<Self, ConfigError> {
+    pub fn new(config: RemoteConfig, run: LedgerRun) -> Result<Self, ConfigError> {
         let wrong = |setting: &str, problem| Err(ConfigError::Setting { setting: setting.to_owned(), problem });
         let most = match config.concurrency {
-            Concurrency::Fixed(most) | Concurrency::Adaptive { most } => most,
+            RequestConcurrency::Fixed(most) | RequestConcurrency::Adaptive { most } => most,
         };
         if !(1..=MOST_CONCURRENCY).contains(&most) {
             return wrong("concurrency", "must be from 1 to 4096");
@@ -55,8 +55,8 @@ impl Services {
         if config.attempts == 0 {
             return wrong("attempts", "must be at least 1");
         }
-        let table = Table::new(&config.providers);
-        let pictures = Arc::new(Pictures::new(config.picture_px));
+        let table = ProviderTable::new(&config.providers);
+        let pictures = Arc::new(PictureEncoder::new(config.picture_px));
         Ok(Self { config, table, run, pictures, endpoints: Mutex::default() })
     }
 
@@ -65,9 +65,9 @@ impl Services {
     /// # Errors
     /// When the provider does not exist, its settings are wrong, or a price is needed and not known.
     pub fn model(&self, name: &str) -> Result<Arc<RemoteModel>, ConfigError> {
-        let (provider, _) = provider::split(name)?;
-        let endpoint = self.endpoint(provider)?;
-        let price = self.price(name, &endpoint.provider);
+        let (provider, _) = provider::split_name(name)?;
+        let endpoint = self.endpoint_for(provider)?;
+        let price = self.find_price(name, &endpoint.provider);
         if self.config.needs_prices {
             if price.is_none() {
                 return Err(ConfigError::NoPrice(name.to_owned()));
@@ -86,21 +86,21 @@ impl Services {
             pictures: Arc::clone(&self.pictures),
             price,
             attempts: self.config.attempts,
-            threads: self.config.concurrency.threads(),
+            threads: self.config.concurrency.thread_count(),
         }))
     }
 
     /// The price of a model. A local provider is free on this machine. At another address it counts as free only if the
     /// user sets no limit on money, because the same software may be a paid service there.
-    fn price(&self, name: &str, provider: &Provider) -> Option<Price> {
+    fn find_price(&self, name: &str, provider: &RemoteProvider) -> Option<ModelPrice> {
         let at_home = provider.local && (provider.base_url.loopback || !self.config.needs_prices);
-        self.config.prices.of(name).or_else(|| at_home.then(Price::nothing))
+        self.config.prices.for_model(name).or_else(|| at_home.then(ModelPrice::free_of_charge))
     }
 
     /// The names of all providers.
     #[must_use]
-    pub fn names(&self) -> Vec<&str> {
-        self.table.names()
+    pub fn provider_names(&self) -> Vec<&str> {
+        self.table.provider_names()
     }
 
     /// Whether the user has given a provider's address.
@@ -109,31 +109,31 @@ impl Services {
         self.config.base_url.is_some() || own.is_some()
     }
 
-    fn endpoint(&self, provider: &str) -> Result<Arc<Endpoint>, ConfigError> {
+    fn endpoint_for(&self, provider: &str) -> Result<Arc<ProviderEndpoint>, ConfigError> {
         let mut endpoints = self.endpoints.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(endpoint) = endpoints.get(provider) {
             return Ok(Arc::clone(endpoint));
         }
-        let resolved = self.table.resolve(provider, &self.config)?;
+        let resolved = self.table.resolve_provider(provider, &self.config)?;
         let for_one = self.config.base_url.is_some() || self.config.key_env.is_some();
         if let (true, Some(first)) = (for_one, endpoints.keys().next()) {
             return Err(ConfigError::Several { first: first.clone(), second: provider.to_owned() });
         }
-        let endpoint = Arc::new(Endpoint::new(resolved, &self.config, self.run.shares_rates()));
+        let endpoint = Arc::new(ProviderEndpoint::new(resolved, &self.config, self.run.shares_rates()));
         endpoints.insert(provider.to_owned(), Arc::clone(&endpoint));
         Ok(endpoint)
     }
 }
 
-impl fmt::Debug for Services {
+impl fmt::Debug for ModelServices {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         // Leaves out the settings, because a user may have typed a key in the wrong place.
-        f.debug_struct("Services").field("providers", &self.names()).finish_non_exhaustive()
+        f.debug_struct("Services").field("providers", &self.provider_names()).finish_non_exhaustive()
     }
 }
 
 /// Whether settings remove the token limit from a request, replace it, or ask for several answers at once.
-fn changes_the_limit(provider: &Provider) -> bool {
+fn changes_the_limit(provider: &RemoteProvider) -> bool {
     const IN_BODY: [&str; 8] = [
         "max_tokens",
         "max_completion_tokens",
@@ -152,18 +152,18 @@ fn changes_the_limit(provider: &Provider) -> bool {
 mod tests {
     use super::*;
     use crate::ProviderConfig;
-    use wayword_ledger::{Ledger, Limits};
+    use wayword_ledger::{Ledger, RunLimits};
 
     /// Why a model is refused if there is a limit on money.
     fn refused(base_url: Option<&str>, provider: &str, config: ProviderConfig) -> Option<String> {
-        let config = Config {
+        let config = RemoteConfig {
             providers: [(provider.to_owned(), config)].into(),
             base_url: base_url.map(str::to_owned),
             needs_prices: true,
-            ..Config::default()
+            ..RemoteConfig::default()
         };
-        let run = Ledger::in_memory().unwrap().run("test", Limits::default()).unwrap();
-        let services = Services::new(config, run).unwrap();
+        let run = Ledger::in_memory().unwrap().start_run("test", RunLimits::default()).unwrap();
+        let services = ModelServices::new(config, run).unwrap();
         services.model(&format!("{provider}/gpt-4.1-mini")).err().map(|error| error.to_string())
     }
 

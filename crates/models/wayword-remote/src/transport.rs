@@ -12,21 +12,21 @@ use ureq::{
 pub(crate) const LARGEST_BODY: u64 = 8 << 20;
 
 /// Longest wait for a connection.
-const CONNECT: Duration = Duration::from_secs(10);
+const CONNECT_TIMEOUT: Duration = Duration::from_secs(10);
 
 /// One provider's connections.
 #[derive(Debug)]
-pub(crate) struct Transport(Agent);
+pub(crate) struct HttpTransport(Agent);
 
 /// A response, perhaps cut off in its body.
 #[derive(Debug)]
-pub(crate) struct Received {
+pub(crate) struct HttpResponse {
     pub(crate) status: u16,
     pub(crate) headers: HeaderMap,
     pub(crate) body: Result<Vec<u8>, ureq::Error>,
 }
 
-impl Transport {
+impl HttpTransport {
     /// Keeps up to `connections` connections open. `timeout` is for each request, from looking up the host to the last
     /// byte.
     pub(crate) fn new(base_url: &BaseUrl, connections: usize, timeout: Duration) -> Self {
@@ -34,7 +34,7 @@ impl Transport {
             .http_status_as_error(false)
             // A redirect would send the key to another server.
             .max_redirects(0)
-            .timeout_connect(Some(CONNECT))
+            .timeout_connect(Some(CONNECT_TIMEOUT))
             .timeout_global(Some(timeout))
             .max_idle_connections(connections)
             .max_idle_connections_per_host(connections)
@@ -49,22 +49,30 @@ impl Transport {
     ///
     /// # Errors
     /// When no status came back.
-    pub(crate) fn post(&self, url: &str, headers: &[(&str, String)], body: &[u8]) -> Result<Received, ureq::Error> {
+    pub(crate) fn post(&self, url: &str, headers: &[(&str, String)], body: &[u8]) -> Result<HttpResponse, ureq::Error> {
         let request = self.0.post(url).header("content-type", "application/json");
-        headers.iter().fold(request, |request, (name, value)| request.header(*name, value)).send(body).map(received)
+        headers
+            .iter()
+            .fold(request, |request, (name, value)| request.header(*name, value))
+            .send(body)
+            .map(read_response)
     }
 
     /// Asks for JSON.
     ///
     /// # Errors
     /// When no status came back.
-    pub(crate) fn get(&self, url: &str, headers: &[(&str, String)]) -> Result<Received, ureq::Error> {
-        headers.iter().fold(self.0.get(url), |request, (name, value)| request.header(*name, value)).call().map(received)
+    pub(crate) fn get(&self, url: &str, headers: &[(&str, String)]) -> Result<HttpResponse, ureq::Error> {
+        headers
+            .iter()
+            .fold(self.0.get(url), |request, (name, value)| request.header(*name, value))
+            .call()
+            .map(read_response)
     }
 }
 
-fn received(response: Response<ureq::Body>) -> Received {
+fn read_response(response: Response<ureq::Body>) -> HttpResponse {
     let (head, mut body) = response.into_parts();
     let body = body.with_config().limit(LARGEST_BODY).read_to_vec();
-    Received { status: head.status.as_u16(), headers: head.headers, body }
+    HttpResponse { status: head.status.as_u16(), headers: head.headers, body }
 }

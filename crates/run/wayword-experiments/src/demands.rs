@@ -3,41 +3,41 @@
 use std::sync::Arc;
 use wayword_core::{Platform, SceneId};
 use wayword_formats::Episode;
-use wayword_metrics::{Atlas, Demand, Distances};
-use wayword_run::error::Error;
+use wayword_metrics::{DistanceAtlas, EpisodeDemand, SceneDistances};
+use wayword_run::error::CommandError;
 
 /// Goals nearer to each other than this count as one goal, metres: R2R counts an agent there as arrived.
 pub(crate) const SAME_GOAL_M: f64 = 3.0;
 
 /// Makes the demands of a platform's episodes. It computes the distances of each scene once.
-pub struct Demands<'a> {
+pub struct PlatformDemands<'a> {
     platform: &'a dyn Platform,
-    atlas: Atlas<'a>,
+    atlas: DistanceAtlas<'a>,
 }
 
-impl<'a> Demands<'a> {
+impl<'a> PlatformDemands<'a> {
     /// Starts without any distances.
     #[must_use]
     pub fn new(platform: &'a dyn Platform) -> Self {
-        Self { platform, atlas: Atlas::new(platform) }
+        Self { platform, atlas: DistanceAtlas::new(platform) }
     }
 
     /// The distances of a scene.
     ///
     /// # Errors
     /// When the scene cannot be read.
-    pub fn distances(&self, scene: &SceneId) -> Result<Arc<Distances>, Error> {
-        Ok(self.atlas.scene(scene)?)
+    pub fn scene_distances(&self, scene: &SceneId) -> Result<Arc<SceneDistances>, CommandError> {
+        Ok(self.atlas.scene_distances(scene)?)
     }
 
     /// The demand of an episode, and the distances of its scene.
     ///
     /// # Errors
     /// When the scene cannot be read.
-    pub fn of(&self, episode: &Episode) -> Result<(Arc<Distances>, Demand), Error> {
-        let distances = self.distances(&episode.scene)?;
+    pub fn for_episode(&self, episode: &Episode) -> Result<(Arc<SceneDistances>, EpisodeDemand), CommandError> {
+        let distances = self.scene_distances(&episode.scene)?;
         let visible = episode.target_object.as_ref().map(|object| self.platform.visible_from(&episode.scene, object));
-        let demand = Demand {
+        let demand = EpisodeDemand {
             reference: episode.viewpoints.clone(),
             object: episode.target_object.clone(),
             visible_from: visible.transpose()?.flatten(),

@@ -2,49 +2,49 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use wayword_core::{ModelError, TextEncoder};
-use wayword_metrics::Words;
-use wayword_run::{error::Error, interrupt, output::Output};
+use wayword_metrics::HashedWordEncoder;
+use wayword_run::{error::CommandError, interrupt, output::CommandOutput};
 
 /// Number of texts that the encoder gets at once.
-const BATCH: usize = 128;
+const ENCODER_BATCH_TEXTS: usize = 128;
 
 /// Opens an encoder by its name. `words` counts words, without a model.
-pub fn encoder(name: &str) -> Result<Box<dyn TextEncoder>, Error> {
-    if name == "words" { Ok(Box::new(Words)) } else { in_process(name) }
+pub fn open_encoder(name: &str) -> Result<Box<dyn TextEncoder>, CommandError> {
+    if name == "words" { Ok(Box::new(HashedWordEncoder)) } else { in_process(name) }
 }
 
 #[cfg(feature = "local")]
-fn in_process(name: &str) -> Result<Box<dyn TextEncoder>, Error> {
-    use wayword_local::{Device, Hub, HubConfig, ModelName, Needs, Precision, SentenceEncoder};
-    let needs = Needs::default()
-        .weights()
-        .required(&["config.json", "tokenizer.json"])
-        .optional(&["1_Pooling/config.json", "sentence_bert_config.json"]);
-    let folder = Hub::new(HubConfig::from_env()?)?.folder(&ModelName::parse(name)?, &needs, &())?;
-    Ok(Box::new(SentenceEncoder::load(name, &folder.path, &Device::cpu(), Precision::F32)?))
+fn in_process(name: &str) -> Result<Box<dyn TextEncoder>, CommandError> {
+    use wayword_local::{HubConfig, ModelDevice, ModelHub, ModelName, NeededFiles, SentenceEncoder, WeightPrecision};
+    let needs = NeededFiles::default()
+        .with_weights()
+        .with_required(&["config.json", "tokenizer.json"])
+        .with_optional(&["1_Pooling/config.json", "sentence_bert_config.json"]);
+    let folder = ModelHub::new(HubConfig::from_env()?)?.model_folder(&ModelName::parse(name)?, &needs, &())?;
+    Ok(Box::new(SentenceEncoder::load(name, &folder.path, &ModelDevice::cpu(), WeightPrecision::F32)?))
 }
 
 #[cfg(not(feature = "local"))]
-fn in_process(name: &str) -> Result<Box<dyn TextEncoder>, Error> {
-    Err(Error::usage(
+fn in_process(name: &str) -> Result<Box<dyn TextEncoder>, CommandError> {
+    Err(CommandError::usage(
         format!("{name}: this build runs no models in process"),
         "build it with `cargo build --release --features full`, or count words with `--encoder words`",
     ))
 }
 
 /// Encodes texts, equal ones once, and gives the vector of each.
-pub fn vectors<'a>(
+pub fn encode_texts<'a>(
     encoder: &dyn TextEncoder,
     texts: impl Iterator<Item = &'a str>,
-    output: &Output,
-) -> Result<BTreeMap<&'a str, Vec<f32>>, Error> {
+    output: &CommandOutput,
+) -> Result<BTreeMap<&'a str, Vec<f32>>, CommandError> {
     let texts: Vec<&str> = texts.collect::<BTreeSet<_>>().into_iter().collect();
-    let bar = output.progress(texts.len(), "texts");
+    let bar = output.progress_bar(texts.len(), "texts");
     let mut vectors = BTreeMap::new();
     let mut numbers = None;
-    for batch in texts.chunks(BATCH) {
-        interrupt::check()?;
-        let found = encoder.encode(batch)?;
+    for batch in texts.chunks(ENCODER_BATCH_TEXTS) {
+        interrupt::check_interrupt()?;
+        let found = encoder.encode_texts(batch)?;
         let expected = *numbers.get_or_insert_with(|| found.first().map_or(0, Vec::len));
         let fits = |vector: &Vec<f32>| vector.len() == expected && vector.iter().all(|number| number.is_finite());
         if found.len() != batch.len() || !found.iter().all(fits) {
@@ -71,15 +71,15 @@ mod tests {
             "fixed"
         }
 
-        fn encode(&self, texts: &[&str]) -> Result<Vec<Vec<f32>>, ModelError> {
+        fn encode_texts(&self, texts: &[&str]) -> Result<Vec<Vec<f32>>, ModelError> {
             self.1.lock().unwrap().extend(texts.iter().map(|text| (*text).to_owned()));
             Ok(texts.iter().skip(usize::from(self.0.is_empty())).map(|_| self.0.clone()).collect())
         }
     }
 
-    fn encode_with(vector: Vec<f32>) -> Result<Vec<String>, Error> {
+    fn encode_with(vector: Vec<f32>) -> Result<Vec<String>, CommandError> {
         let encoder = Fixed(vector, Mutex::default());
-        vectors(&encoder, ["b", "a", "b", "a"].into_iter(), &Output::new(false, true))?;
+        encode_texts(&encoder, ["b", "a", "b", "a"].into_iter(), &CommandOutput::new(false, true))?;
         Ok(encoder.1.into_inner().unwrap())
     }
 

@@ -19,7 +19,7 @@ Examples:
   wayword study close STUDY
 
 docs/STUDY.md says what participants see, how nothing is lost, and what stands in the results.")]
-pub struct Study {
+pub struct StudyArgs {
     /// What to do.
     #[command(subcommand)]
     pub command: StudyCommand,
@@ -63,7 +63,7 @@ pub struct StudyNew {
     pub run: Vec<NamedSet>,
     /// Controls: people (the texts of --episodes) and other-path (a text of another path in the same scene: what a wrong text reaches).
     #[arg(long, value_name = "CONTROLS", value_delimiter = ',')]
-    pub include: Vec<Control>,
+    pub include: Vec<StudyControl>,
     /// Mark the words to doubt in the texts of this set or control, with the alternatives, for those who walk by them.
     /// May be given several times. The same run under two names, one of them marked, shows what the marks are worth.
     #[arg(long, value_name = "NAME")]
@@ -103,7 +103,7 @@ pub struct StudyNew {
 
 /// Texts that show what the figures of a study are worth.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Control {
+pub enum StudyControl {
     /// Those of the dataset.
     People,
     /// Those of other paths.

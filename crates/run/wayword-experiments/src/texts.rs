@@ -1,60 +1,60 @@
 //! Reads a set of instructions from a run folder or a dataset file, and groups the texts by item or path.
 
-use crate::{episodes, similarity::args::By};
+use crate::{episodes, similarity::args::TextPairing};
 use std::{
     collections::{BTreeMap, BTreeSet},
     path::{Path, PathBuf},
 };
 use wayword_formats::{
-    Format,
-    jsonl::{self, Record},
+    DatasetFormat,
+    jsonl::{self, InstructionRecord},
 };
-use wayword_run::{error::Error, run_folder::file};
+use wayword_run::{error::CommandError, run_folder::file};
 
 /// The texts of each item by the item's id, or of each path by its name.
-pub(crate) type Items = BTreeMap<String, Texts>;
+pub(crate) type TextSet = BTreeMap<String, ItemTexts>;
 
 /// The texts of one item or path.
 #[derive(Debug, PartialEq, Eq)]
-pub(crate) struct Texts {
+pub(crate) struct ItemTexts {
     /// Scene and path.
     pub(crate) path: String,
     pub(crate) texts: Vec<String>,
 }
 
 /// Reads a set: a run folder, or a file of any format, with `#STYLE` at the end to take one style.
-pub(crate) fn set(name: &str, style: Option<&str>, by: By) -> Result<Items, Error> {
-    let (_, own_style) = split(name);
+pub(crate) fn read_text_set(name: &str, style: Option<&str>, by: TextPairing) -> Result<TextSet, CommandError> {
+    let (_, own_style) = split_style(name);
     let path = file_of(name);
-    let texts = if wayword_formats::detect(&path)? == Format::Wayword {
+    let texts = if wayword_formats::detect_format(&path)? == DatasetFormat::Wayword {
         of_records(&path, own_style.or(style))?
     } else if let Some(style) = own_style {
         let problem = format!("{}: texts of this format have no style, so none has style {style}", path.display());
-        return Err(Error::usage(problem, "leave out the # and what follows"));
+        return Err(CommandError::usage(problem, "leave out the # and what follows"));
     } else {
         of_episodes(&path)?
     };
-    let mut items = Items::new();
-    for Said { item, path, text } in texts {
-        let key = if by == By::Path { path.clone() } else { item };
-        items.entry(key).or_insert_with(|| Texts { path, texts: Vec::new() }).texts.push(text);
+    let mut items = TextSet::new();
+    for SingleText { item, path, text } in texts {
+        let key = if by == TextPairing::Path { path.clone() } else { item };
+        items.entry(key).or_insert_with(|| ItemTexts { path, texts: Vec::new() }).texts.push(text);
     }
     Ok(items)
 }
 
 /// The file of a set: the instructions in a run folder, or the file itself.
 pub(crate) fn file_of(name: &str) -> PathBuf {
-    let (path, _) = split(name);
+    let (path, _) = split_style(name);
     if path.is_dir() { path.join(file::INSTRUCTIONS) } else { path }
 }
 
 /// The run folder of a set, if its name is one.
 pub(crate) fn run_of(name: &str) -> Option<PathBuf> {
-    Some(split(name).0).filter(|path| path.is_dir())
+    Some(split_style(name).0).filter(|path| path.is_dir())
 }
 
 /// Splits the style off a name. A name that exists as a file or folder is not split.
-fn split(name: &str) -> (PathBuf, Option<&str>) {
+fn split_style(name: &str) -> (PathBuf, Option<&str>) {
     match name.rsplit_once('#') {
         Some((path, style)) if !Path::new(name).exists() => (path.into(), Some(style)),
         _ => (name.into(), None),
@@ -62,41 +62,41 @@ fn split(name: &str) -> (PathBuf, Option<&str>) {
 }
 
 /// One text with its item and path.
-struct Said {
+struct SingleText {
     item: String,
     path: String,
     text: String,
 }
 
-fn of_episodes(file: &Path) -> Result<Vec<Said>, Error> {
+fn of_episodes(file: &Path) -> Result<Vec<SingleText>, CommandError> {
     let mut all = Vec::new();
-    for episode in wayword_formats::read(file)? {
-        let path = episodes::cluster(&episode);
-        let said = |text| Said { item: episode.id.clone(), path: path.clone(), text };
+    for episode in wayword_formats::read_any_format(file)? {
+        let path = episodes::episode_path_name(&episode);
+        let said = |text| SingleText { item: episode.id.clone(), path: path.clone(), text };
         all.extend(episode.instructions.into_iter().map(said));
     }
     Ok(all)
 }
 
-fn of_records(file: &Path, style: Option<&str>) -> Result<Vec<Said>, Error> {
-    let mut records = jsonl::read(file)?;
+fn of_records(file: &Path, style: Option<&str>) -> Result<Vec<SingleText>, CommandError> {
+    let mut records = jsonl::read_records(file)?;
     let styles: BTreeSet<String> = records.iter().map(|record| record.instruction.style.clone()).collect();
     let all = styles.iter().cloned().collect::<Vec<_>>().join(", ");
     if style.is_none() && styles.len() > 1 {
         let problem = format!("{}: it has texts of several styles ({all}), and a set has one", file.display());
         let set = format!("{}#{}", file.display(), styles.first().map_or("", String::as_str));
         let hint = format!("name one style: in `similarity` as {set}, in `compare` as --instructions NAME={set}");
-        return Err(Error::usage(problem, hint));
+        return Err(CommandError::usage(problem, hint));
     }
     if let Some(style) = style.filter(|style| !styles.contains(*style)) {
         let problem = format!("{}: it has no instruction of style {style}", file.display());
-        return Err(Error::usage(problem, format!("it has these styles: {all}")));
+        return Err(CommandError::usage(problem, format!("it has these styles: {all}")));
     }
     records.retain(|record| style.is_none_or(|style| record.instruction.style == style));
     Ok(records.into_iter().map(of_record).collect())
 }
 
-fn of_record(record: Record) -> Said {
+fn of_record(record: InstructionRecord) -> SingleText {
     let path = episodes::path_name(&record.path.scene, &record.path_id());
-    Said { item: record.path.id, path, text: record.instruction.text }
+    SingleText { item: record.path.id, path, text: record.instruction.text }
 }

@@ -1,41 +1,42 @@
 //! Scenes with walkable ground, in which an agent can take single steps: generated houses and Habitat's scenes, each with its navmesh.
 
 use std::sync::Arc;
-use wayword_core::{DVec3, Frame, Gaze, Heading, Image, Path, Platform, PlatformError, Pose, Recent, SceneId};
+use wayword_core::{DVec3, Frame, Heading, Image, Path, Platform, PlatformError, Pose, RecentCache, SceneId, ViewGaze};
 use wayword_habitat::{
-    Ground, HabitatOptions, HabitatPlatform, NavMesh, NavMeshSettings, axes::EYE_M, bake::bake, scene::Model,
+    HabitatOptions, HabitatPlatform, NavMesh, NavMeshGround, NavMeshSettings, axes::EYE_M, bake::bake_navmesh,
+    scene::SceneModel,
 };
-use wayword_house::{House, HouseOptions, HousePlatform, generate, seed_of, surfaces};
-use wayword_run::{error::Error, platforms, settings::Settings, stores};
+use wayword_house::{House, HouseOptions, HousePlatform, build_surfaces, generate_house, seed_of};
+use wayword_run::{error::CommandError, platforms, settings::RunSettings, stores};
 
 /// Navmeshes that are kept in memory.
-const READY: usize = 6;
+const MAX_NAVMESHES: usize = 6;
 
 /// The scenes of a run, with their ground.
-pub struct Scenes {
-    kind: Kind,
-    grounds: Recent<SceneId, Ground>,
+pub struct WalkingScenes {
+    kind: WalkingPlatform,
+    grounds: RecentCache<SceneId, NavMeshGround>,
 }
 
-enum Kind {
+enum WalkingPlatform {
     Houses(HousePlatform),
     Habitat(Box<HabitatPlatform>),
 }
 
-impl Scenes {
+impl WalkingScenes {
     /// Generated houses; their pictures get this size in pixels.
-    pub fn houses([width_px, height_px]: [u32; 2]) -> Self {
+    pub fn generated_houses([width_px, height_px]: [u32; 2]) -> Self {
         let houses = HousePlatform::new(HouseOptions { width_px, height_px, ..HouseOptions::default() });
-        Self { kind: Kind::Houses(houses), grounds: Recent::new(READY) }
+        Self { kind: WalkingPlatform::Houses(houses), grounds: RecentCache::new(MAX_NAVMESHES) }
     }
 
     /// The scenes of a run; their pictures get this size in pixels.
     ///
     /// # Errors
     /// When the run's platform has no navmeshes, or its data cannot be opened.
-    pub(crate) fn open(settings: &Settings, [width_px, height_px]: [u32; 2]) -> Result<Self, Error> {
+    pub(crate) fn open_run(settings: &RunSettings, [width_px, height_px]: [u32; 2]) -> Result<Self, CommandError> {
         let kind = match settings.platform.as_str() {
-            "house" => return Ok(Self::houses([width_px, height_px])),
+            "house" => return Ok(Self::generated_houses([width_px, height_px])),
             "habitat" => {
                 let (island, connectivity) = (settings.island, settings.connectivity.clone());
                 let options = HabitatOptions {
@@ -47,8 +48,8 @@ impl Scenes {
                     ..HabitatOptions::default()
                 };
                 let data = settings.data.as_deref().ok_or_else(|| platforms::no_data("habitat"))?;
-                Kind::Habitat(Box::new(HabitatPlatform::open(
-                    &stores::local(data)?,
+                WalkingPlatform::Habitat(Box::new(HabitatPlatform::open(
+                    &stores::local_data(data)?,
                     options,
                     Arc::new(wayword_run::output::pass_on),
                 )?))
@@ -57,17 +58,17 @@ impl Scenes {
                 let problem = format!("platform {other} has no ground on which single steps can be taken");
                 let hint = "make the run with --platform house or habitat; Matterport3D's buildings are scenes of Habitat too \
                             (docs/DATA.md)";
-                return Err(Error::usage(problem, hint));
+                return Err(CommandError::usage(problem, hint));
             }
         };
-        Ok(Self { kind, grounds: Recent::new(READY) })
+        Ok(Self { kind, grounds: RecentCache::new(MAX_NAVMESHES) })
     }
 
     /// The platform that draws them.
     pub(crate) fn platform(&self) -> &dyn Platform {
         match &self.kind {
-            Kind::Houses(houses) => houses,
-            Kind::Habitat(scenes) => scenes.as_ref(),
+            WalkingPlatform::Houses(houses) => houses,
+            WalkingPlatform::Habitat(scenes) => scenes.as_ref(),
         }
     }
 
@@ -75,15 +76,15 @@ impl Scenes {
     ///
     /// # Errors
     /// When the scene does not exist, or cannot be drawn.
-    pub(crate) fn picture(
+    pub(crate) fn take_picture(
         &self,
         scene: &SceneId,
         (floor, heading): (DVec3, Heading),
         eye_m: f64,
         horizontal_fov_rad: f64,
     ) -> Result<Arc<Image>, PlatformError> {
-        let from = Frame { pose: Pose::level(floor + DVec3::Z * eye_m, heading), viewpoint: None, level: None };
-        let view = self.platform().look(scene, &from, Gaze { heading, horizontal_fov_rad })?;
+        let from = Frame { pose: Pose::looking_level(floor + DVec3::Z * eye_m, heading), viewpoint: None, level: None };
+        let view = self.platform().look_from(scene, &from, ViewGaze { heading, horizontal_fov_rad })?;
         view.image.ok_or_else(|| PlatformError::NotDrawn { scene: scene.clone(), reason: "it has no picture".into() })
     }
 
@@ -91,18 +92,18 @@ impl Scenes {
     ///
     /// # Errors
     /// When the scene does not exist, or its files cannot be read.
-    pub fn ground(&self, scene: &SceneId) -> Result<Arc<Ground>, PlatformError> {
+    pub fn ground(&self, scene: &SceneId) -> Result<Arc<NavMeshGround>, PlatformError> {
         self.grounds.get_or_make(scene.clone(), || {
             let navmesh = match &self.kind {
-                Kind::Habitat(scenes) => scenes.navmesh(scene)?,
-                Kind::Houses(houses) => match seed_of(scene.as_str()) {
-                    Some(seed) => navmesh(&generate(seed))
+                WalkingPlatform::Habitat(scenes) => scenes.navmesh(scene)?,
+                WalkingPlatform::Houses(houses) => match seed_of(scene.as_str()) {
+                    Some(seed) => bake_house_navmesh(&generate_house(seed))
                         .map_err(|reason| PlatformError::NotDrawn { scene: scene.clone(), reason })?,
                     // The platform has the better error for a scene that it does not have.
-                    None => return houses.graph(scene).and(Err(no_house(scene))),
+                    None => return houses.graph_for_scene(scene).and(Err(no_house(scene))),
                 },
             };
-            Ok(Ground::new(&navmesh))
+            Ok(NavMeshGround::new(&navmesh))
         })
     }
 }
@@ -112,7 +113,7 @@ fn no_house(scene: &SceneId) -> PlatformError {
 }
 
 /// The places on the floor under the frames of a path.
-pub fn feet(path: &Path) -> Vec<DVec3> {
+pub fn floor_positions(path: &Path) -> Vec<DVec3> {
     path.frames.iter().map(|frame| frame.pose.position - DVec3::Z * EYE_M).collect()
 }
 
@@ -120,7 +121,7 @@ pub fn feet(path: &Path) -> Vec<DVec3> {
 ///
 /// # Errors
 /// When it cannot be baked; with the reason.
-pub fn navmesh(house: &House) -> Result<NavMesh, String> {
-    let model = Model { meshes: surfaces(house), ..Model::default() };
-    bake(&model, &NavMeshSettings::default()).map_err(|error| error.to_string())
+pub fn bake_house_navmesh(house: &House) -> Result<NavMesh, String> {
+    let model = SceneModel { meshes: build_surfaces(house), ..SceneModel::default() };
+    bake_navmesh(&model, &NavMeshSettings::default()).map_err(|error| error.to_string())
 }

@@ -8,7 +8,7 @@ use std::{
     },
     thread,
 };
-use wayword_ledger::Occasion;
+use wayword_ledger::CallContext;
 
 /// Calls `make` for each item on at most `threads` threads, and returns the results in the order of the items. After a result
 /// for which `ends` is true no further item is begun, so the results of the last items may be missing.
@@ -29,9 +29,9 @@ pub fn at_once<I: Sync, R: Send>(
             made.lock().unwrap_or_else(PoisonError::into_inner).push((at, result));
         }
     };
-    let occasion = Occasion::here();
+    let occasion = CallContext::from_current_thread();
     thread::scope(|scope| {
-        let others: Vec<_> = (1..threads.min(items.len())).map(|_| scope.spawn(|| occasion.on(work))).collect();
+        let others: Vec<_> = (1..threads.min(items.len())).map(|_| scope.spawn(|| occasion.run_within(work))).collect();
         work();
         for other in others {
             if let Err(panic) = other.join() {

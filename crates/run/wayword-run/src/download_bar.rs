@@ -1,28 +1,28 @@
 //! Shows the progress of a download from the model hub.
 
-use crate::output::Output;
+use crate::output::CommandOutput;
 use indicatif::{HumanBytes, ProgressBar};
 use std::{
     collections::BTreeSet,
     sync::{Mutex, PoisonError},
 };
-use wayword_local::Progress;
+use wayword_local::DownloadProgress;
 
 /// A bar for the current file, or a line for each file if standard error is not a terminal.
 pub struct DownloadBar {
-    output: Output,
+    output: CommandOutput,
     bar: ProgressBar,
     file: Mutex<String>,
 }
 
 impl DownloadBar {
-    pub fn new(output: &Output) -> Self {
-        Self { output: output.clone(), bar: output.bytes(), file: Mutex::default() }
+    pub fn new(output: &CommandOutput) -> Self {
+        Self { output: output.clone(), bar: output.bytes_bar(), file: Mutex::default() }
     }
 }
 
-impl Progress for DownloadBar {
-    fn bytes(&self, file: &str, done: u64, total: Option<u64>) {
+impl DownloadProgress for DownloadBar {
+    fn bytes_arrived(&self, file: &str, done: u64, total: Option<u64>) {
         let mut shown = self.file.lock().unwrap_or_else(PoisonError::into_inner);
         if *shown != file {
             file.clone_into(&mut shown);
@@ -37,14 +37,14 @@ impl Progress for DownloadBar {
         self.bar.set_position(done);
     }
 
-    fn waiting(&self, file: &str) {
+    fn waiting_for(&self, file: &str) {
         self.output.say(format_args!("waiting for another process that fetches {file}"));
     }
 
-    fn told(&self, note: &str) {
+    fn show_note(&self, note: &str) {
         // A model is looked up before a run and loaded in it, so the same note comes twice. It is printed once.
-        static TOLD: Mutex<BTreeSet<String>> = Mutex::new(BTreeSet::new());
-        if TOLD.lock().unwrap_or_else(PoisonError::into_inner).insert(note.to_owned()) {
+        static PRINTED_NOTES: Mutex<BTreeSet<String>> = Mutex::new(BTreeSet::new());
+        if PRINTED_NOTES.lock().unwrap_or_else(PoisonError::into_inner).insert(note.to_owned()) {
             self.output.say(note);
         }
     }

@@ -4,7 +4,7 @@ use std::{
     io::{self, ErrorKind},
     path::PathBuf,
 };
-use wayword_core::{Failure, ModelError, PlatformError, platform::is_lost_disk};
+use wayword_core::{FailureKind, ModelError, PlatformError, platform::is_lost_disk};
 use wayword_formats::FormatError;
 use wayword_navigation::WalkError;
 use wayword_queue::QueueError;
@@ -31,7 +31,7 @@ pub enum Exit {
 // clap itself exits with 2 when the command line is wrong.
 
 /// The hint that is printed with an error of the file system.
-fn advice(error: &io::Error) -> &'static str {
+fn io_advice(error: &io::Error) -> &'static str {
     match error.kind() {
         ErrorKind::NotFound => "\nhint: check the spelling of the path, and that its folder exists",
         ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
@@ -45,7 +45,7 @@ fn advice(error: &io::Error) -> &'static str {
 
 /// An error of a command.
 #[derive(Debug, thiserror::Error)]
-pub enum Error {
+pub enum CommandError {
     /// Of a platform.
     #[error(transparent)]
     Platform(#[from] PlatformError),
@@ -95,7 +95,7 @@ pub enum Error {
     #[error(transparent)]
     House(#[from] wayword_house::SaveError),
     /// A file operation failed.
-    #[error("{}: cannot {doing}: {source}{}", path.display(), advice(source))]
+    #[error("{}: cannot {doing}: {source}{}", path.display(), io_advice(source))]
     Io {
         /// Which file or folder.
         path: PathBuf,
@@ -143,7 +143,7 @@ pub enum Error {
     },
 }
 
-impl Error {
+impl CommandError {
     /// A mistake of the user, with a hint.
     pub fn usage(problem: impl Into<String>, hint: impl Into<String>) -> Self {
         Self::Usage { problem: problem.into(), hint: hint.into() }
@@ -155,23 +155,23 @@ impl Error {
     }
 
     /// How the failure of one item is handled; `None` if the error concerns the whole run.
-    pub fn failure(&self) -> Option<Failure> {
+    pub fn item_failure(&self) -> Option<FailureKind> {
         match self {
             Self::Model(error) | Self::Observe(ObserveError::Model(error)) | Self::Walk(WalkError::Model(error)) => {
-                (!error.ends_run()).then(|| error.failure())
+                (!error.ends_run()).then(|| error.failure_kind())
             }
             Self::Platform(error)
             | Self::Observe(ObserveError::Platform(error))
-            | Self::Walk(WalkError::Platform(error)) => Some(error.failure()),
+            | Self::Walk(WalkError::Platform(error)) => Some(error.failure_kind()),
             Self::Walk(_) | Self::Format(_) | Self::Style(_) | Self::Prompt(_) | Self::Usage { .. } => {
-                Some(Failure::Broken)
+                Some(FailureKind::Broken)
             }
             _ => None,
         }
     }
 
     /// Which part failed an item, as one word of a fixed list: `model`, `platform` or `other`.
-    pub(crate) fn of(&self) -> &'static str {
+    pub(crate) fn failed_part(&self) -> &'static str {
         match self {
             Self::Model(_) | Self::Observe(ObserveError::Model(_)) | Self::Walk(WalkError::Model(_)) => "model",
             Self::Platform(_) | Self::Observe(ObserveError::Platform(_)) | Self::Walk(WalkError::Platform(_)) => {
@@ -225,8 +225,8 @@ impl Error {
             Self::Interrupted => Exit::Interrupted,
             Self::Queue(error) if error.is_refused() => Exit::Stopped,
             error if error.is_of_the_disk() => Exit::Lost,
-            error => match error.failure() {
-                Some(Failure::Lost) => Exit::Lost,
+            error => match error.item_failure() {
+                Some(FailureKind::Lost) => Exit::Lost,
                 None if error.ends_sending() => Exit::Stopped,
                 _ => Exit::BadInput,
             },
@@ -241,11 +241,12 @@ mod tests {
 
     #[test]
     fn exit_code_is_lost_for_a_full_disk_and_bad_input_for_a_refused_file() {
-        let error = |kind| Error::io("walks.jsonl", "write")(IoError::from(kind)).exit_code();
+        let error = |kind| CommandError::io("walks.jsonl", "write")(IoError::from(kind)).exit_code();
         assert_eq!(error(ErrorKind::StorageFull), Exit::Lost);
         assert_eq!(error(ErrorKind::PermissionDenied), Exit::BadInput);
         let stopped = |is_lost| {
-            Error::from(ModelError::Stopped { reason: "no more".into(), hint: "wait".into(), is_lost }).exit_code()
+            CommandError::from(ModelError::Stopped { reason: "no more".into(), hint: "wait".into(), is_lost })
+                .exit_code()
         };
         assert_eq!([stopped(true), stopped(false)], [Exit::Lost, Exit::Stopped]);
     }

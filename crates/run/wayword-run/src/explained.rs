@@ -1,16 +1,16 @@
 //! Splits an error into kind, problem, place and hint, for a program that this one runs in (the Python package).
 
-use crate::error::{Error, Exit};
+use crate::error::{CommandError, Exit};
 use std::{fmt::Display, path::Path};
 use wayword_core::PlatformError;
 use wayword_formats::FormatError;
 
 /// The text before a hint in the errors of this program.
-const HINT: &str = "\nhint: ";
+const HINT_PREFIX: &str = "\nhint: ";
 
 /// An error in parts.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Explained {
+pub struct ErrorParts {
     /// Its kind: `lost`, `stopped`, `busy` and `interrupted` as the exit codes have them; else the subject: `input`, `file`,
     /// `format`, `platform`, `style`, `model`, `ledger`, `walk` or `study`.
     pub kind: &'static str,
@@ -22,11 +22,11 @@ pub struct Explained {
     pub hint: Option<String>,
 }
 
-impl Explained {
+impl ErrorParts {
     /// The parts of an error.
     #[must_use]
-    pub fn of(error: &Error) -> Self {
-        let kind = kind(error);
+    pub fn from_error(error: &CommandError) -> Self {
+        let kind = error_kind(error);
         let at = |place: &Path, what: &dyn Display, hint: &str| Self {
             kind,
             what: what.to_string(),
@@ -34,29 +34,30 @@ impl Explained {
             hint: (!hint.is_empty()).then(|| hint.to_owned()),
         };
         match error {
-            Error::Format(FormatError::Io { file, doing, source }) => {
+            CommandError::Format(FormatError::Io { file, doing, source }) => {
                 let is_missing = source.kind() == std::io::ErrorKind::NotFound;
                 let hint = if is_missing { "check the spelling of the path" } else { "" };
                 at(file, &format!("cannot {doing} it: {source}"), hint)
             }
-            Error::Format(FormatError::Document { file, problem, hint }) => at(file, problem, hint),
-            Error::Format(FormatError::Item(wrong)) => {
+            CommandError::Format(FormatError::Document { file, problem, hint }) => at(file, problem, hint),
+            CommandError::Format(FormatError::Item(wrong)) => {
                 let id = wrong.id.as_ref().map_or_else(String::new, |id| format!(" (id {id})"));
                 let place = format!("{}: {}{id}: field \"{}\"", wrong.file.display(), wrong.place, wrong.field);
                 at(place.as_ref(), &wrong.problem, wrong.hint)
             }
-            Error::Platform(PlatformError::File { file, reason, hint }) => at(file, reason, hint),
-            Error::Platform(PlatformError::NoFile { file, hint }) => at(file, &"there is no such file", hint),
-            Error::Platform(PlatformError::Lost { world, reason, hint }) => at(world.as_ref(), reason, hint),
-            Error::Platform(PlatformError::UnknownScene { scene, hint }) => {
+            CommandError::Platform(PlatformError::File { file, reason, hint }) => at(file, reason, hint),
+            CommandError::Platform(PlatformError::NoFile { file, hint }) => at(file, &"there is no such file", hint),
+            CommandError::Platform(PlatformError::Lost { world, reason, hint }) => at(world.as_ref(), reason, hint),
+            CommandError::Platform(PlatformError::UnknownScene { scene, hint }) => {
                 at(scene.as_ref(), &"there is no such scene", hint)
             }
-            Error::Platform(PlatformError::NoSuchPath { scene, request, hint }) => {
+            CommandError::Platform(PlatformError::NoSuchPath { scene, request, hint }) => {
                 at(scene.as_str().as_ref(), &format!("the scene has no path with {request}"), hint)
             }
             error => {
                 let told = error.to_string();
-                let (what, hint) = told.split_once(HINT).map_or((&*told, None), |(what, hint)| (what, Some(hint)));
+                let (what, hint) =
+                    told.split_once(HINT_PREFIX).map_or((&*told, None), |(what, hint)| (what, Some(hint)));
                 let place = file_of(error).map(|file| file.display().to_string());
                 Self { kind, what: what.to_owned(), place, hint: hint.map(str::to_owned) }
             }
@@ -65,17 +66,17 @@ impl Explained {
 }
 
 /// The file or folder that an error is about.
-fn file_of(error: &Error) -> Option<&Path> {
+fn file_of(error: &CommandError) -> Option<&Path> {
     match error {
-        Error::Io { path, .. } => Some(path),
-        Error::Busy(folder) | Error::BusyElsewhere { folder, .. } => Some(folder),
-        Error::ChangedScene { record, .. } => Some(record),
+        CommandError::Io { path, .. } => Some(path),
+        CommandError::Busy(folder) | CommandError::BusyElsewhere { folder, .. } => Some(folder),
+        CommandError::ChangedScene { record, .. } => Some(record),
         _ => None,
     }
 }
 
-/// The kind of an error, as [`Explained::kind`] lists them.
-fn kind(error: &Error) -> &'static str {
+/// The kind of an error, as [`ErrorParts::error_kind`] lists them.
+fn error_kind(error: &CommandError) -> &'static str {
     use wayword_navigation::WalkError;
     use wayword_synthesis::observe::ObserveError;
     match error.exit_code() {
@@ -86,30 +87,30 @@ fn kind(error: &Error) -> &'static str {
         Exit::Done | Exit::BadInput | Exit::WithLoss => {}
     }
     match error {
-        Error::Platform(_) | Error::Observe(ObserveError::Platform(_)) | Error::Walk(WalkError::Platform(_)) => {
-            "platform"
-        }
-        Error::Format(FormatError::Io { .. }) => "file",
-        Error::Format(_) => "format",
-        Error::Style(_) | Error::Prompt(_) => "style",
-        Error::Model(_)
-        | Error::Observe(ObserveError::Model(_))
-        | Error::Walk(WalkError::Model(_))
-        | Error::Service(_) => "model",
+        CommandError::Platform(_)
+        | CommandError::Observe(ObserveError::Platform(_))
+        | CommandError::Walk(WalkError::Platform(_)) => "platform",
+        CommandError::Format(FormatError::Io { .. }) => "file",
+        CommandError::Format(_) => "format",
+        CommandError::Style(_) | CommandError::Prompt(_) => "style",
+        CommandError::Model(_)
+        | CommandError::Observe(ObserveError::Model(_))
+        | CommandError::Walk(WalkError::Model(_))
+        | CommandError::Service(_) => "model",
         #[cfg(feature = "local")]
-        Error::Local(_) => "model",
-        Error::Ledger(_) => "ledger",
+        CommandError::Local(_) => "model",
+        CommandError::Ledger(_) => "ledger",
         #[cfg(feature = "queue")]
-        Error::Database(_) => "ledger",
-        Error::Queue(_) => "file",
-        Error::Walk(_) => "walk",
+        CommandError::Database(_) => "ledger",
+        CommandError::Queue(_) => "file",
+        CommandError::Walk(_) => "walk",
         #[cfg(feature = "study")]
-        Error::Study(_) => "study",
-        Error::House(_) | Error::Io { .. } => "file",
-        Error::Usage { .. } | Error::Launch(_) => "input",
-        Error::ChangedScene { .. } => "platform",
+        CommandError::Study(_) => "study",
+        CommandError::House(_) | CommandError::Io { .. } => "file",
+        CommandError::Usage { .. } | CommandError::Launch(_) => "input",
+        CommandError::ChangedScene { .. } => "platform",
         // The exit codes above have handled these.
-        Error::Interrupted | Error::Busy(_) | Error::BusyElsewhere { .. } => "input",
+        CommandError::Interrupted | CommandError::Busy(_) | CommandError::BusyElsewhere { .. } => "input",
     }
 }
 
@@ -119,10 +120,11 @@ mod tests {
 
     #[test]
     fn from_error_splits_errors_into_problem_place_and_hint() {
-        let usage = Explained::of(&Error::usage("there is no scene", "name one"));
+        let usage = ErrorParts::from_error(&CommandError::usage("there is no scene", "name one"));
         assert_eq!((usage.kind, &*usage.what, usage.hint.as_deref()), ("input", "there is no scene", Some("name one")));
-        let missing = wayword_formats::read(Path::new("nowhere.json")).map_err(Error::from).unwrap_err();
-        let missing = Explained::of(&missing);
+        let missing =
+            wayword_formats::read_any_format(Path::new("nowhere.json")).map_err(CommandError::from).unwrap_err();
+        let missing = ErrorParts::from_error(&missing);
         assert_eq!((missing.kind, missing.place.as_deref()), ("file", Some("nowhere.json")));
         let file = tempfile::NamedTempFile::with_suffix(".json").unwrap();
         std::fs::write(
@@ -130,7 +132,9 @@ mod tests {
             r#"[{"path_id": 1, "scan": "s", "path": ["a"], "heading": "x", "instructions": ["Go."]}]"#,
         )
         .unwrap();
-        let item = Explained::of(&wayword_formats::read(file.path()).map_err(Error::from).unwrap_err());
+        let item = ErrorParts::from_error(
+            &wayword_formats::read_any_format(file.path()).map_err(CommandError::from).unwrap_err(),
+        );
         let place = item.place.unwrap();
         assert!(place.contains("item 0 (id 1): field \"heading\"") && item.hint.is_some(), "{place}: {}", item.what);
     }

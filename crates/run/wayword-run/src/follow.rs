@@ -1,54 +1,60 @@
 //! Follows a text through a building with the rules of `wayword-follower`. Finds turns that are wrong, whether the text leads to
 //! another place than its path, and how many places it may mean.
 
-use crate::{error::Error, platforms::SCENES_KEPT};
+use crate::{error::CommandError, platforms::SCENES_KEPT};
 use serde::Serialize;
 use std::{
     collections::BTreeSet,
     sync::{Arc, LazyLock},
 };
-use wayword_checks::{Checked, Evidence, FrameEvidence, Turns, World, objects_meant};
-use wayword_core::{Ambiguity, Check, Finding, Frame, Path, Platform, Recent, SceneId, Survey, Verdict};
+use wayword_checks::{CheckWorld, Evidence, FrameEvidence, TextFindings, TurnJudge, objects_meant};
+use wayword_core::{
+    CheckFinding, CheckKind, Frame, Path, Platform, RecentCache, SceneId, TextAmbiguity, Verdict, ViewpointSurvey,
+};
 use wayword_follower::{
-    Building, Guide, Place, Prior, Weights,
-    route::{Known, Route, Thresholds, Unfollowed, judge, leads_there, route},
+    FeatureWeights, Guide, KnownBuilding, PathPlace, WalkPrior,
+    route::{GainThresholds, KnownWalk, RouteVerdict, UnfollowedReason, judge_route, judge_steps, leads_there},
 };
 use wayword_language::{
     Language,
-    reading::{Reading, read},
+    reading::{TextReading, read_instruction},
 };
-use wayword_synthesis::offline::Listing;
-use wayword_world::survey;
+use wayword_synthesis::offline::BuildingListing;
+use wayword_world::survey_scene;
 
 /// A scene that was surveyed.
 pub(crate) struct KnownScene {
     /// Its viewpoints.
-    pub(crate) survey: Survey,
+    pub(crate) survey: ViewpointSurvey,
     /// Its listed objects, for the checks.
-    pub(crate) listed: Arc<wayword_checks::Building>,
+    pub(crate) listed: Arc<wayword_checks::BuildingInventory>,
     /// The same list, for the description of a target.
-    pub(crate) listing: Listing,
+    pub(crate) listing: BuildingListing,
     /// The same building, for the follower.
-    pub(crate) followed: Building,
+    pub(crate) followed: KnownBuilding,
 }
 
 /// A cache of the scenes that were surveyed last.
-pub struct KnownScenes(Recent<SceneId, KnownScene>);
+pub struct KnownScenes(RecentCache<SceneId, KnownScene>);
 
 impl KnownScenes {
     /// None yet.
     #[must_use]
     pub fn new() -> Self {
-        Self(Recent::new(SCENES_KEPT))
+        Self(RecentCache::new(SCENES_KEPT))
     }
 
     /// A scene, surveyed if it is not known. It has no viewpoints where the platform has no graph.
-    pub(crate) fn get(&self, platform: &dyn Platform, scene: &SceneId) -> Result<Arc<KnownScene>, Error> {
+    pub(crate) fn get_or_survey(
+        &self,
+        platform: &dyn Platform,
+        scene: &SceneId,
+    ) -> Result<Arc<KnownScene>, CommandError> {
         self.0.get_or_make(scene.clone(), || {
-            let survey = survey(platform, scene)?;
-            let listed = Arc::new(wayword_checks::Building::of(&survey));
-            let followed = Building::of(&survey);
-            let listing = Listing::of(&survey);
+            let survey = survey_scene(platform, scene)?;
+            let listed = Arc::new(wayword_checks::BuildingInventory::from_survey(&survey));
+            let followed = KnownBuilding::from_survey(&survey);
+            let listing = BuildingListing::from_survey(&survey);
             Ok(KnownScene { survey, listed, listing, followed })
         })
     }
@@ -62,37 +68,37 @@ impl Default for KnownScenes {
 
 /// The weights of the follower that chooses between candidate texts. They differ from those that judge texts and from those of
 /// the agents, so that a text chosen because it suits one set of weights by chance has no advantage when it is judged.
-static CHOOSES: LazyLock<Weights> = LazyLock::new(Weights::by_hand);
+static CHOICE_WEIGHTS: LazyLock<FeatureWeights> = LazyLock::new(FeatureWeights::by_hand);
 
 /// A path as the follower knows it.
-pub(crate) struct Followed<'a> {
-    place: Surrounded<'a>,
+pub(crate) struct FollowedPath<'a> {
+    place: FollowedPlace<'a>,
     walk: Vec<usize>,
     heading_rad: f64,
 }
 
 /// The surroundings of a path, as far as they are known.
-enum Surrounded<'a> {
+enum FollowedPlace<'a> {
     /// The building with its viewpoint graph.
     By(&'a KnownScene),
     /// The path alone: there is no graph, so no other walk is known.
-    Nothing(Building),
+    Nothing(KnownBuilding),
 }
 
 /// The result of following a text.
-pub(crate) struct Told {
-    pub(crate) findings: Vec<Finding>,
-    pub(crate) route: Option<Shares>,
+pub(crate) struct FollowerFindings {
+    pub(crate) findings: Vec<CheckFinding>,
+    pub(crate) route: Option<RouteShares>,
     /// How much the text would fit better with its most doubtful turn reversed: a difference of natural logs of likelihood.
     pub(crate) turn_gain: Option<f64>,
-    pub(crate) ends: Option<Ends>,
+    pub(crate) ends: Option<TextEnds>,
     /// Whether its turns were judged.
-    pub(crate) turns: Turns,
+    pub(crate) turns: TurnJudge,
 }
 
 /// How likely it is that a text means a walk, among the walks that the follower thinks of.
 #[derive(Debug, Clone, Copy, Serialize)]
-pub struct Shares {
+pub struct RouteShares {
     /// The annotated walk.
     pub annotated: f64,
     /// The likeliest other walk that ends elsewhere.
@@ -100,12 +106,12 @@ pub struct Shares {
 }
 
 /// The ends that a text may mean.
-pub(crate) struct Ends {
+pub(crate) struct TextEnds {
     pub(crate) count: usize,
     pub(crate) told_apart_by: Option<String>,
 }
 
-impl<'a> Followed<'a> {
+impl<'a> FollowedPath<'a> {
     /// A path in its scene. If the path does not go along the viewpoints of a graph, the building consists of its own frames and
     /// what they show.
     ///
@@ -118,35 +124,35 @@ impl<'a> Followed<'a> {
         let [first, _, ..] = &path.frames[..] else { return Err("its path is one place, so it goes nowhere") };
         let heading_rad = first.pose.heading.rad();
         let on_graph = |scene: &KnownScene| {
-            let place = |frame: &Frame| scene.survey.place(frame.viewpoint.as_ref()?);
+            let place = |frame: &Frame| scene.survey.viewpoint_index(frame.viewpoint.as_ref()?);
             path.frames.iter().map(place).collect::<Option<Vec<usize>>>()
         };
         if let Some((scene, walk)) = scene.and_then(|scene| Some((scene, on_graph(scene)?))) {
-            return Ok(Self { place: Surrounded::By(scene), walk, heading_rad });
+            return Ok(Self { place: FollowedPlace::By(scene), walk, heading_rad });
         }
-        let place = |(frame, seen): (&Frame, &FrameEvidence)| Place {
+        let place = |(frame, seen): (&Frame, &FrameEvidence)| PathPlace {
             position: frame.pose.position,
             room: seen.rooms.first().cloned(),
             things: seen
                 .things
                 .iter()
-                .map(|thing| (thing.name.clone(), thing.turn_rad.map(|rad| frame.pose.heading.turned(rad).rad())))
+                .map(|thing| (thing.name.clone(), thing.turn_rad.map(|rad| frame.pose.heading.turned_by(rad).rad())))
                 .collect(),
         };
-        let building = Building::along(path.frames.iter().zip(&evidence.frames).map(place).collect());
+        let building = KnownBuilding::along_path(path.frames.iter().zip(&evidence.frames).map(place).collect());
         let walk = (0..path.frames.len()).collect();
-        Ok(Self { place: Surrounded::Nothing(building), walk, heading_rad })
+        Ok(Self { place: FollowedPlace::Nothing(building), walk, heading_rad })
     }
 
     /// Follows a text, and judges its steps. `tag` is that of its language, where its file gives one.
-    pub(crate) fn follow(&self, text: &str, tag: Option<&str>) -> Told {
-        let guide = match guide(text, tag) {
+    pub(crate) fn follow_text(&self, text: &str, tag: Option<&str>) -> FollowerFindings {
+        let guide = match read_guide(text, tag) {
             Ok(guide) => guide,
-            Err(why) => return Told::unknown(why),
+            Err(why) => return FollowerFindings::not_followed(why),
         };
-        let mut told = self.routed(&guide);
-        if told.turns == Turns::JudgedElsewhere {
-            let judged = judge(&guide, self.known(), Weights::fitted(), Thresholds::default());
+        let mut told = self.judge_guide(&guide);
+        if told.turns == TurnJudge::JudgedElsewhere {
+            let judged = judge_steps(&guide, self.known_path(), FeatureWeights::fitted(), GainThresholds::default());
             told.findings.extend(judged.wrong);
             told.turn_gain = judged.turn_gain;
         }
@@ -154,65 +160,65 @@ impl<'a> Followed<'a> {
     }
 
     /// Only judges where a text leads, without its single turns.
-    pub(crate) fn route(&self, text: &str) -> Told {
-        guide(text, None).map_or_else(Told::unknown, |guide| self.routed(&guide))
+    pub(crate) fn judge_route(&self, text: &str) -> FollowerFindings {
+        read_guide(text, None).map_or_else(FollowerFindings::not_followed, |guide| self.judge_guide(&guide))
     }
 
     /// How likely a text leads to the end of the path, for the choice between texts; `None` where it cannot be followed.
     pub(crate) fn leads_there(&self, text: &str) -> Option<f64> {
-        let guide = guide(text, None).ok()?;
-        leads_there(&guide, self.known(), self.prior(), &CHOOSES).ok()
+        let guide = read_guide(text, None).ok()?;
+        leads_there(&guide, self.known_path(), self.walk_prior(), &CHOICE_WEIGHTS).ok()
     }
 
     /// The prior over other walks; `None` if the path alone is known.
-    fn prior(&self) -> Option<Prior> {
-        matches!(self.place, Surrounded::By(_)).then(Prior::default)
+    fn walk_prior(&self) -> Option<WalkPrior> {
+        matches!(self.place, FollowedPlace::By(_)).then(WalkPrior::default)
     }
 
-    pub(crate) fn known(&self) -> Known<'_> {
+    pub(crate) fn known_path(&self) -> KnownWalk<'_> {
         let building = match &self.place {
-            Surrounded::By(scene) => &scene.followed,
-            Surrounded::Nothing(building) => building,
+            FollowedPlace::By(scene) => &scene.followed,
+            FollowedPlace::Nothing(building) => building,
         };
-        Known { building, walk: &self.walk, heading_rad: self.heading_rad }
+        KnownWalk { building, walk: &self.walk, heading_rad: self.heading_rad }
     }
 
-    fn routed(&self, guide: &Guide) -> Told {
-        let known = self.known();
-        let routed = route(guide, known, self.prior(), Weights::fitted(), Thresholds::default());
-        let apart = |route: &Route| match route.ends.split_first() {
+    fn judge_guide(&self, guide: &Guide) -> FollowerFindings {
+        let known = self.known_path();
+        let routed = judge_route(guide, known, self.walk_prior(), FeatureWeights::fitted(), GainThresholds::default());
+        let apart = |route: &RouteVerdict| match route.ends.split_first() {
             Some((own, others)) if !others.is_empty() => known.building.told_apart_by(*own, others).map(str::to_owned),
             _ => None,
         };
-        if let Err(why @ (Unfollowed::TooManySteps | Unfollowed::TooFewSteps)) = routed {
-            return Told::unknown(why.why());
+        if let Err(why @ (UnfollowedReason::TooManySteps | UnfollowedReason::TooFewSteps)) = routed {
+            return FollowerFindings::not_followed(why.reason_words());
         }
         let seen = routed.as_ref().ok();
-        let ends = seen.map(|route| Ends { count: route.ends.len(), told_apart_by: apart(route) });
-        let route = seen.map(|route| Shares { annotated: route.share, other: route.other });
-        let finding = routed.map_or_else(|why| unknown_route(why.why()), |route| route.finding);
-        Told { findings: vec![finding], route, turn_gain: None, ends, turns: Turns::JudgedElsewhere }
+        let ends = seen.map(|route| TextEnds { count: route.ends.len(), told_apart_by: apart(route) });
+        let route = seen.map(|route| RouteShares { annotated: route.share, other: route.other });
+        let finding = routed.map_or_else(|why| unknown_route(why.reason_words()), |route| route.finding);
+        FollowerFindings { findings: vec![finding], route, turn_gain: None, ends, turns: TurnJudge::JudgedElsewhere }
     }
 }
 
 /// The steps that a text gives to a walker; an error, with the reason, for a text that cannot be followed.
-pub(crate) fn guide(text: &str, tag: Option<&str>) -> Result<Guide, &'static str> {
-    followable(text, tag).map(|(guide, _)| guide)
+pub(crate) fn read_guide(text: &str, tag: Option<&str>) -> Result<Guide, &'static str> {
+    read_followable(text, tag).map(|(guide, _)| guide)
 }
 
-/// As [`guide`], with the reading of the text as well.
-pub(crate) fn followable(text: &str, tag: Option<&str>) -> Result<(Guide, Reading), &'static str> {
-    let reading = read(text, &BTreeSet::new());
+/// As [`read_guide`], with the reading of the text as well.
+pub(crate) fn read_followable(text: &str, tag: Option<&str>) -> Result<(Guide, TextReading), &'static str> {
+    let reading = read_instruction(text, &BTreeSet::new());
     if !is_understood(&reading, tag) {
         return Err("the program does not understand it");
     }
-    let guide = Guide::of(text, &reading);
+    let guide = Guide::from_reading(text, &reading);
     if guide.is_empty() { Err("the text tells no step") } else { Ok((guide, reading)) }
 }
 
 /// Whether the rules understand at least one clause of a text. A text in another language may have words that look English, so
 /// its language is checked first.
-fn is_understood(reading: &Reading, tag: Option<&str>) -> bool {
+fn is_understood(reading: &TextReading, tag: Option<&str>) -> bool {
     let is_foreign = matches!(reading.language.or_tagged(tag), Language::Other(_));
     let mut clauses = reading.clauses.iter().filter(|clause| clause.span[0] < clause.span[1]).peekable();
     !is_foreign && (clauses.peek().is_none() || clauses.any(|clause| clause.understood))
@@ -221,22 +227,22 @@ fn is_understood(reading: &Reading, tag: Option<&str>) -> bool {
 /// The reason that is given for a path without poses, which cannot be followed.
 pub(crate) const GOES_UNKNOWN: &str = "it is not known how its path goes";
 
-fn unknown_route(why: &str) -> Finding {
+fn unknown_route(why: &str) -> CheckFinding {
     let reason = format!("the program cannot check whether the text leads elsewhere: {why}");
-    Finding { check: Check::Route, verdict: Verdict::Unverified, reason, span: None }
+    CheckFinding { check: CheckKind::Route, verdict: Verdict::Unverified, reason, span: None }
 }
 
-impl Told {
+impl FollowerFindings {
     /// The result for a text that cannot be followed, for this reason.
-    pub(crate) fn unknown(why: &'static str) -> Self {
+    pub(crate) fn not_followed(why: &'static str) -> Self {
         let findings = vec![unknown_route(why)];
-        Self { findings, route: None, turn_gain: None, ends: None, turns: Turns::NotJudged(why) }
+        Self { findings, route: None, turn_gain: None, ends: None, turns: TurnJudge::NotJudged(why) }
     }
 
     /// How ambiguous the text is: places where it may end, and objects that it may mean.
-    pub(crate) fn ambiguity(&self, text: &str, evidence: &Evidence) -> Ambiguity {
-        let unfollowed = self.findings.iter().find(|finding| finding.check == Check::Route && self.ends.is_none());
-        Ambiguity {
+    pub(crate) fn text_ambiguity(&self, text: &str, evidence: &Evidence) -> TextAmbiguity {
+        let unfollowed = self.findings.iter().find(|finding| finding.check == CheckKind::Route && self.ends.is_none());
+        TextAmbiguity {
             ends: self.ends.as_ref().map(|ends| ends.count),
             objects: objects_meant(text, evidence),
             told_apart_by: self.ends.as_ref().and_then(|ends| ends.told_apart_by.clone()),
@@ -246,15 +252,15 @@ impl Told {
 
     /// Adds the follower's findings to those of a checked text. In a closed world the checks have judged the turns already, so
     /// only the route is added.
-    pub(crate) fn add_to(&self, checked: &mut Checked) {
-        let is_route = |finding: &&Finding| finding.check == Check::Route;
-        let all = checked.world == World::Open;
-        checked.add(self.findings.iter().filter(|finding| all || is_route(finding)).cloned());
+    pub(crate) fn add_to(&self, checked: &mut TextFindings) {
+        let is_route = |finding: &&CheckFinding| finding.check == CheckKind::Route;
+        let all = checked.world == CheckWorld::Open;
+        checked.add_findings(self.findings.iter().filter(|finding| all || is_route(finding)).cloned());
     }
 }
 
 /// The failure of an ambiguous text, for `--reject-ambiguous`.
-pub(crate) fn rejection(ambiguity: &Ambiguity) -> Option<Finding> {
-    let reason = ambiguity.told()?;
-    Some(Finding { check: Check::Route, verdict: Verdict::Fail, reason, span: None })
+pub(crate) fn ambiguity_rejection(ambiguity: &TextAmbiguity) -> Option<CheckFinding> {
+    let reason = ambiguity.to_sentence()?;
+    Some(CheckFinding { check: CheckKind::Route, verdict: Verdict::Fail, reason, span: None })
 }

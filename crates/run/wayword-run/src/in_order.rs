@@ -8,10 +8,10 @@ use std::{
 
 /// How far the newest item may be ahead of the oldest unfinished one, in items per worker: enough that one slow item does not
 /// delay the others, few enough that finished items do not fill the memory.
-const AHEAD: usize = 4;
+const MAX_ITEMS_AHEAD_PER_WORKER: usize = 4;
 
 /// Number of items that are made in parallel if no model is called.
-pub fn cores() -> usize {
+pub fn core_count() -> usize {
     thread::available_parallelism().map_or(1, std::num::NonZero::get)
 }
 
@@ -27,7 +27,7 @@ impl Drop for AtTheEnd<'_> {
 }
 
 /// The state of the work.
-struct Progress {
+struct OrderedProgress {
     next: usize,
     kept: usize,
     stopped: bool,
@@ -45,7 +45,7 @@ pub fn in_order<I: Sync, R: Send, E>(
     mut keep: impl FnMut(&I, R) -> Result<bool, E>,
 ) -> Result<(), E> {
     let workers = workers.clamp(1, items.len().max(1));
-    let progress = Mutex::new(Progress { next: 0, kept: 0, stopped: false });
+    let progress = Mutex::new(OrderedProgress { next: 0, kept: 0, stopped: false });
     let moved = Condvar::new();
     let take = || {
         let mut progress = progress.lock().unwrap_or_else(PoisonError::into_inner);
@@ -53,14 +53,14 @@ pub fn in_order<I: Sync, R: Send, E>(
             if progress.stopped || progress.next >= items.len() {
                 return None;
             }
-            if progress.next < progress.kept + workers * AHEAD {
+            if progress.next < progress.kept + workers * MAX_ITEMS_AHEAD_PER_WORKER {
                 progress.next += 1;
                 return Some(progress.next - 1);
             }
             progress = moved.wait(progress).unwrap_or_else(PoisonError::into_inner);
         }
     };
-    let update = |change: &dyn Fn(&mut Progress)| {
+    let update = |change: &dyn Fn(&mut OrderedProgress)| {
         change(&mut progress.lock().unwrap_or_else(PoisonError::into_inner));
         moved.notify_all();
     };
@@ -154,7 +154,7 @@ mod tests {
             *item
         };
         in_order(&items, 2, make, |_, item| Ok::<bool, ()>(item < 10)).unwrap();
-        assert!(begun.load(Ordering::Relaxed) <= 11 + 2 * AHEAD);
+        assert!(begun.load(Ordering::Relaxed) <= 11 + 2 * MAX_ITEMS_AHEAD_PER_WORKER);
         assert_eq!(in_order(&items, 2, |item| *item, |_, _| Err("full")), Err("full"));
         assert_eq!(in_order(&[], 2, |item: &usize| *item, |_, _| Err("never")), Ok(()));
     }

@@ -1,12 +1,12 @@
 //! Handles Ctrl-C, SIGTERM and SIGUSR1 (which Slurm sends shortly before the time limit): a command finishes the items that it
 //! works on, or ends at once, with exit code 6.
 //!
-//! Inside another program, the host catches the signals and calls [`ask`].
+//! Inside another program, the host catches the signals and calls [`ask_to_stop`].
 //!
 //! On systems other than Unix the system ends the process, with its own exit code. No result is lost there either, because a
 //! kill leaves every file whole.
 
-use crate::{calls::Calls, error::Error, output::Output};
+use crate::{calls::ModelCalls, error::CommandError, output::CommandOutput};
 #[cfg(unix)]
 use signal_hook::{
     consts::{SIGINT, SIGTERM, SIGUSR1},
@@ -24,99 +24,99 @@ use std::{
 use wayword_platforms::process;
 
 /// Whether the user or a scheduler has interrupted.
-static ASKED: AtomicBool = AtomicBool::new(false);
+static INTERRUPT_ASKED: AtomicBool = AtomicBool::new(false);
 /// How the running command comes to an end; `None` if it can be ended at any point.
-static ENDING: Mutex<Option<Ending>> = Mutex::new(None);
+static COMMAND_ENDING: Mutex<Option<CommandEnding>> = Mutex::new(None);
 /// Files that mark this process as running. They are removed however it ends.
-static MARKS: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+static PROCESS_MARKS: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 /// How long a child process may take to answer a request from before the interrupt.
-const GRACE: Duration = Duration::from_secs(10);
+const CHILD_GRACE: Duration = Duration::from_secs(10);
 /// After that, how long a command without models may take before it is ended at any point: a simulator may keep it waiting. A command
 /// with models is not ended, because the calls in flight are paid for.
 const LAST_GRACE: Duration = Duration::from_secs(5);
 
 /// How to stop sending calls, and whether the command makes any.
-struct Ending {
+struct CommandEnding {
     stop: Box<dyn Fn() + Send>,
     has_calls: bool,
 }
 
 /// Until this is dropped, the command checks for interrupts by itself, and the signal handler does not end it at once.
 #[must_use]
-pub struct Graceful(());
+pub struct GracefulEnding(());
 
-/// From now on an interrupt stops the sending of `calls`, and the command calls [`check`] between two items. A second interrupt ends
+/// From now on an interrupt stops the sending of `calls`, and the command calls [`check_interrupt`] between two items. A second interrupt ends
 /// the process.
-pub fn finish_first(calls: Option<&Calls>) -> Graceful {
-    let stop: Box<dyn Fn() + Send> = match calls.map(Calls::ending) {
+pub fn finish_first(calls: Option<&ModelCalls>) -> GracefulEnding {
+    let stop: Box<dyn Fn() + Send> = match calls.map(ModelCalls::sending_stopper) {
         Some(ending) => Box::new(ending),
         None => Box::new(|| ()),
     };
-    *lock() = Some(Ending { stop, has_calls: calls.is_some() });
-    Graceful(())
+    *lock_ending() = Some(CommandEnding { stop, has_calls: calls.is_some() });
+    GracefulEnding(())
 }
 
-impl Drop for Graceful {
+impl Drop for GracefulEnding {
     fn drop(&mut self) {
-        *lock() = None;
+        *lock_ending() = None;
     }
 }
 
 /// Registers a file that is removed if an interrupt ends the process at once.
-pub(crate) fn removes(mark: &Path) {
-    MARKS.lock().unwrap_or_else(PoisonError::into_inner).push(mark.to_owned());
+pub(crate) fn remove_on_exit(mark: &Path) {
+    PROCESS_MARKS.lock().unwrap_or_else(PoisonError::into_inner).push(mark.to_owned());
 }
 
 /// Whether the user or a scheduler has interrupted.
 #[must_use]
 pub fn is_asked() -> bool {
-    ASKED.load(Ordering::Relaxed)
+    INTERRUPT_ASKED.load(Ordering::Relaxed)
 }
 
 /// Refuses to begin more work after an interrupt.
 ///
 /// # Errors
-/// [`Error::Interrupted`].
-pub fn check() -> Result<(), Error> {
-    if is_asked() { Err(Error::Interrupted) } else { Ok(()) }
+/// [`CommandError::Interrupted`].
+pub fn check_interrupt() -> Result<(), CommandError> {
+    if is_asked() { Err(CommandError::Interrupted) } else { Ok(()) }
 }
 
 /// Interrupts the running command as a first Ctrl-C does: it comes to its end. For a program that this one runs in.
-pub fn ask() {
-    ASKED.store(true, Ordering::Relaxed);
-    if let Some(ending) = lock().as_ref() {
+pub fn ask_to_stop() {
+    INTERRUPT_ASKED.store(true, Ordering::Relaxed);
+    if let Some(ending) = lock_ending().as_ref() {
         (ending.stop)();
     }
 }
 
 /// Forgets an interrupt, before the next command in the same process.
-pub fn forget() {
-    ASKED.store(false, Ordering::Relaxed);
+pub fn forget_interrupt() {
+    INTERRUPT_ASKED.store(false, Ordering::Relaxed);
     process::start_again();
 }
 
 /// Interrupts that are not handled yet.
-pub struct Pending(#[cfg(unix)] Option<Signals>);
+pub struct PendingSignals(#[cfg(unix)] Option<Signals>);
 
 /// Catches SIGINT, SIGTERM and SIGUSR1 from now on. SIGHUP is left alone, because `nohup` has to work.
 #[cfg(unix)]
 #[must_use]
-pub fn catch() -> Pending {
+pub fn catch_signals() -> PendingSignals {
     // Without a handler the signals end the process, as usual.
-    Pending(Signals::new([SIGINT, SIGTERM, SIGUSR1]).ok())
+    PendingSignals(Signals::new([SIGINT, SIGTERM, SIGUSR1]).ok())
 }
 
-/// Handles interrupts until the process ends, those since [`catch`] among them.
+/// Handles interrupts until the process ends, those since [`catch_signals`] among them.
 #[cfg(unix)]
-pub fn listen(pending: Pending, output: &Output) {
+pub fn listen_for_signals(pending: PendingSignals, output: &CommandOutput) {
     let output = output.clone();
     let Some(mut signals) = pending.0 else { return };
     thread::spawn(move || {
         for _ in signals.forever() {
-            let again = ASKED.swap(true, Ordering::Relaxed);
-            match lock().as_ref() {
-                Some(ending) if !again => finish(ending, output.clone()),
+            let again = INTERRUPT_ASKED.swap(true, Ordering::Relaxed);
+            match lock_ending().as_ref() {
+                Some(ending) if !again => finish_items(ending, output.clone()),
                 _ => end_at_once(&output),
             }
         }
@@ -125,13 +125,13 @@ pub fn listen(pending: Pending, output: &Output) {
 
 /// Lets the command come to its end, and ends it if that takes too long.
 #[cfg(unix)]
-fn finish(ending: &Ending, output: Output) {
+fn finish_items(ending: &CommandEnding, output: CommandOutput) {
     output.say("finishing the items in progress; interrupt again to stop at once");
     (ending.stop)();
     let has_calls = ending.has_calls;
     thread::spawn(move || {
         // A hanging platform would delay the end. The next command tries its item again.
-        thread::sleep(GRACE);
+        thread::sleep(CHILD_GRACE);
         process::end_all();
         if !has_calls {
             thread::sleep(LAST_GRACE);
@@ -143,25 +143,25 @@ fn finish(ending: &Ending, output: Output) {
 /// Catches no signals: the system ends the process.
 #[cfg(not(unix))]
 #[must_use]
-pub fn catch() -> Pending {
+pub fn catch_signals() -> Pending {
     Pending()
 }
 
 /// Has no signals to handle.
 #[cfg(not(unix))]
-pub fn listen(_: Pending, _: &Output) {}
+pub fn listen_for_signals(_: Pending, _: &Output) {}
 
 #[cfg(unix)]
-fn end_at_once(output: &Output) {
-    output.error(&Error::Interrupted);
+fn end_at_once(output: &CommandOutput) {
+    output.print_error(&CommandError::Interrupted);
     process::end_all();
-    for mark in MARKS.lock().unwrap_or_else(PoisonError::into_inner).drain(..) {
+    for mark in PROCESS_MARKS.lock().unwrap_or_else(PoisonError::into_inner).drain(..) {
         // A file that stays is found by the next command.
         let _ = std::fs::remove_file(mark);
     }
     std::process::exit(crate::error::Exit::Interrupted as i32);
 }
 
-fn lock() -> MutexGuard<'static, Option<Ending>> {
-    ENDING.lock().unwrap_or_else(PoisonError::into_inner)
+fn lock_ending() -> MutexGuard<'static, Option<CommandEnding>> {
+    COMMAND_ENDING.lock().unwrap_or_else(PoisonError::into_inner)
 }

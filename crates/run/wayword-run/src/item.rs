@@ -1,6 +1,6 @@
 //! The items of a run: episodes of a dataset, or random paths, which are drawn only when their turn comes.
 
-use crate::{error::Error, settings::Settings};
+use crate::{error::CommandError, settings::RunSettings};
 use std::{collections::BTreeSet, path::Path as FilePath, sync::Arc};
 use wayword_core::{ObjectId, Path, Platform, PlatformError, SceneId, ViewpointId, seed};
 use wayword_formats::Episode;
@@ -8,7 +8,7 @@ use wayword_world::path_of;
 
 /// A path to write instructions for.
 #[derive(Debug, Clone)]
-pub enum Item {
+pub enum RunItem {
     /// An episode of a dataset.
     Episode(Box<Episode>),
     /// A path that is known already.
@@ -30,10 +30,10 @@ pub enum Item {
 ///
 /// # Errors
 /// When the episodes or their scenes cannot be read, or no item is left.
-pub fn items(settings: &Settings, platform: &dyn Platform) -> Result<Vec<Item>, Error> {
+pub fn run_items(settings: &RunSettings, platform: &dyn Platform) -> Result<Vec<RunItem>, CommandError> {
     let mut items = match &settings.episodes {
-        Some(file) => episodes(file, settings, platform)?,
-        None => random(settings, platform)?,
+        Some(file) => episode_items(file, settings, platform)?,
+        None => random_items(settings, platform)?,
     };
     items.truncate(settings.limit.unwrap_or(usize::MAX));
     if items.is_empty() {
@@ -41,17 +41,21 @@ pub fn items(settings: &Settings, platform: &dyn Platform) -> Result<Vec<Item>, 
             true => "there are no episodes",
             false => "no episode is in the scenes that --scan names",
         };
-        return Err(Error::usage(problem, "check --episodes and --scan"));
+        return Err(CommandError::usage(problem, "check --episodes and --scan"));
     }
-    platform.check(&items.iter().map(Item::scene).collect())?;
+    platform.check_scenes(&items.iter().map(RunItem::scene).collect())?;
     Ok(items)
 }
 
-fn episodes(file: &FilePath, settings: &Settings, platform: &dyn Platform) -> Result<Vec<Item>, Error> {
-    let episodes = wayword_formats::read(file)?;
+fn episode_items(
+    file: &FilePath,
+    settings: &RunSettings,
+    platform: &dyn Platform,
+) -> Result<Vec<RunItem>, CommandError> {
+    let episodes = wayword_formats::read_any_format(file)?;
     if let Some(blind) = episodes.iter().find(|episode| episode.viewpoints.is_empty()) {
         let problem = format!("{}: episode {} names no viewpoints, but paths need them", file.display(), blind.id);
-        return Err(Error::usage(
+        return Err(CommandError::usage(
             problem,
             "give an R2R, REVERIE or RxR file, or a Wayword file whose paths name viewpoints (of matterport, say)",
         ));
@@ -60,59 +64,59 @@ fn episodes(file: &FilePath, settings: &Settings, platform: &dyn Platform) -> Re
         |episode: &Episode| settings.scan.is_empty() || settings.scan.iter().any(|scan| scan == episode.scene.as_str());
     // Every scene gets its one official name, because under two names it could come into two splits.
     let called = |mut episode: Episode| {
-        episode.scene = platform.called(&episode.scene);
+        episode.scene = platform.canonical_scene(&episode.scene);
         episode
     };
-    Ok(episodes.into_iter().filter(wanted).map(called).map(|episode| Item::Episode(Box::new(episode))).collect())
+    Ok(episodes.into_iter().filter(wanted).map(called).map(|episode| RunItem::Episode(Box::new(episode))).collect())
 }
 
-fn random(settings: &Settings, platform: &dyn Platform) -> Result<Vec<Item>, Error> {
+fn random_items(settings: &RunSettings, platform: &dyn Platform) -> Result<Vec<RunItem>, CommandError> {
     let mut scenes = Vec::new();
     for name in &settings.scan {
         let scene = SceneId::new(name.as_str())
-            .map_err(|error| Error::usage(format!("--scan {name}: {error}"), "give the name of a scene"))?;
+            .map_err(|error| CommandError::usage(format!("--scan {name}: {error}"), "give the name of a scene"))?;
         if settings.left_out.contains_key(name) {
             continue;
         }
-        platform.graph(&scene)?;
-        scenes.push(platform.called(&scene));
+        platform.graph_for_scene(&scene)?;
+        scenes.push(platform.canonical_scene(&scene));
     }
     if settings.scan.is_empty() {
-        scenes = platform.scenes()?;
+        scenes = platform.list_scenes()?;
     }
     scenes.retain(|scene| !settings.left_out.contains_key(scene.as_str()));
     if scenes.is_empty() {
-        return Err(Error::usage("the platform has no scene", "check --data"));
+        return Err(CommandError::usage("the platform has no scene", "check --data"));
     }
     // A single scene without walkable ground is refused here; otherwise every item of the run would fail.
     if let [scene] = &scenes[..] {
-        platform.islands(scene)?;
+        platform.ground_islands(scene)?;
     }
     let scenes: Arc<[SceneId]> = scenes.into();
-    let item = |number: usize| Item::Random {
+    let item = |number: usize| RunItem::Random {
         id: format!("random-{}-{number}", settings.seed),
         scenes: Arc::clone(&scenes),
         first: first_scene(number, settings, scenes.len()),
-        seed: seed::derive(settings.seed, &["path", &number.to_string()]),
+        seed: seed::derive_seed(settings.seed, &["path", &number.to_string()]),
     };
     let number_of_scenes = scenes.len();
-    let items: Vec<Item> = (0..settings.paths).map(item).collect();
-    if platform.name() == RECORDING && number_of_scenes <= MOST_LOOKED_AT {
+    let items: Vec<RunItem> = (0..settings.paths).map(item).collect();
+    if platform.name() == RECORDING_PLATFORM && number_of_scenes <= MOST_LOOKED_AT {
         return Ok(without_repeats(items, settings, platform));
     }
     Ok(items)
 }
 
 /// The platform with random paths that may all be equal: of a short recording, each path is the whole.
-const RECORDING: &str = "recording";
+const RECORDING_PLATFORM: &str = "recording";
 /// With more recordings than this, equal paths are not searched for, because all recordings would have to be opened.
 const MOST_LOOKED_AT: usize = 8;
 
 /// Removes items with the same path as an earlier item. Items without a path stay, so that the run reports the reason.
-fn without_repeats(items: Vec<Item>, settings: &Settings, platform: &dyn Platform) -> Vec<Item> {
+fn without_repeats(items: Vec<RunItem>, settings: &RunSettings, platform: &dyn Platform) -> Vec<RunItem> {
     let mut taken: BTreeSet<(SceneId, Vec<Option<ViewpointId>>)> = BTreeSet::new();
-    let mut is_new = |item: &Item| {
-        let Ok(path) = item.path(settings, platform) else { return true };
+    let mut is_new = |item: &RunItem| {
+        let Ok(path) = item.find_path(settings, platform) else { return true };
         taken.insert((path.scene, path.frames.into_iter().map(|frame| frame.viewpoint).collect()))
     };
     items.into_iter().filter(|item| is_new(item)).collect()
@@ -120,7 +124,7 @@ fn without_repeats(items: Vec<Item>, settings: &Settings, platform: &dyn Platfor
 
 /// The scene of a random path. Paths go scene by scene, because a platform keeps only the last few scenes loaded. Paths that were
 /// asked for later go through the scenes again, so that earlier paths stay in their scenes.
-fn first_scene(number: usize, settings: &Settings, scenes: usize) -> usize {
+fn first_scene(number: usize, settings: &RunSettings, scenes: usize) -> usize {
     let steps = settings.raised_from.iter().copied().chain([settings.paths]);
     let mut start = 0;
     for end in steps {
@@ -132,7 +136,7 @@ fn first_scene(number: usize, settings: &Settings, scenes: usize) -> usize {
     0
 }
 
-impl Item {
+impl RunItem {
     /// Its name, unique within the run; known before its path is.
     #[must_use]
     pub fn id(&self) -> String {
@@ -156,7 +160,7 @@ impl Item {
     ///
     /// # Errors
     /// When an episode does not fit its scene, or no scene has a random path of the length asked for.
-    pub fn path(&self, settings: &Settings, platform: &dyn Platform) -> Result<Path, PlatformError> {
+    pub fn find_path(&self, settings: &RunSettings, platform: &dyn Platform) -> Result<Path, PlatformError> {
         match self {
             Self::Episode(episode) => path_of(
                 platform,
@@ -183,7 +187,7 @@ impl Item {
 
     /// The instructions that the dataset has for it.
     #[must_use]
-    pub fn originals(&self) -> &[String] {
+    pub fn original_texts(&self) -> &[String] {
         match self {
             Self::Episode(episode) => &episode.instructions,
             Self::Walk(_) | Self::Random { .. } => &[],
@@ -205,14 +209,14 @@ impl Item {
 ///
 /// # Errors
 /// When two items share an id, or one cannot be part of a file name.
-pub fn check_names(items: &[Item]) -> Result<(), Error> {
+pub fn check_names(items: &[RunItem]) -> Result<(), CommandError> {
     let mut seen = BTreeSet::new();
-    for id in items.iter().map(Item::id) {
+    for id in items.iter().map(RunItem::id) {
         ObjectId::new(id.as_str()).map_err(|error| {
-            Error::usage(format!("an item's id cannot be used: {error}"), "change its id in the episodes file")
+            CommandError::usage(format!("an item's id cannot be used: {error}"), "change its id in the episodes file")
         })?;
         if !seen.insert(id.clone()) {
-            return Err(Error::usage(
+            return Err(CommandError::usage(
                 format!("item {id} occurs twice"),
                 "give each item of the episodes file its own id",
             ));

@@ -1,18 +1,18 @@
 //! Decides when a command gives up because its platform or service is gone.
 
-use wayword_core::Failure;
+use wayword_core::FailureKind;
 
 /// A command ends after this many lost items in a row, because the other items would be lost too.
 pub(crate) const MOST_IN_A_ROW: usize = 5;
 
 /// Number of lost items in a row.
 #[derive(Debug, Default)]
-pub struct Losses(usize);
+pub struct LossCounter(usize);
 
-impl Losses {
+impl LossCounter {
     /// Counts an item with this failure, or without one. Returns whether the command should end.
-    pub fn are_enough(&mut self, failure: Option<Failure>) -> bool {
-        self.0 = if failure == Some(Failure::Lost) { self.0 + 1 } else { 0 };
+    pub fn are_enough(&mut self, failure: Option<FailureKind>) -> bool {
+        self.0 = if failure == Some(FailureKind::Lost) { self.0 + 1 } else { 0 };
         self.0 >= MOST_IN_A_ROW
     }
 }
@@ -23,11 +23,11 @@ mod tests {
 
     #[test]
     fn only_losses_in_a_row_count() {
-        let mut losses = Losses::default();
+        let mut losses = LossCounter::default();
         let mut take = |failure| losses.are_enough(failure);
-        assert!((1..MOST_IN_A_ROW).all(|_| !take(Some(Failure::Lost))));
-        assert!(!take(Some(Failure::Broken)) && !take(None));
-        assert!((1..MOST_IN_A_ROW).all(|_| !take(Some(Failure::Lost))));
-        assert!(take(Some(Failure::Lost)));
+        assert!((1..MOST_IN_A_ROW).all(|_| !take(Some(FailureKind::Lost))));
+        assert!(!take(Some(FailureKind::Broken)) && !take(None));
+        assert!((1..MOST_IN_A_ROW).all(|_| !take(Some(FailureKind::Lost))));
+        assert!(take(Some(FailureKind::Lost)));
     }
 }

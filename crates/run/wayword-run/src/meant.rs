@@ -1,12 +1,12 @@
 //! Ranks the walks that a text may mean from a given start, for the Python package.
 
 use crate::{
-    error::Error,
-    follow::{KnownScenes, guide},
+    error::CommandError,
+    follow::{KnownScenes, read_guide},
 };
 use serde::Serialize;
 use wayword_core::{Heading, Platform, PlatformError, SceneId, ViewpointId};
-use wayword_follower::{Fit, MOST_WORK, Prior, Tree, Trial, Weights, shares};
+use wayword_follower::{FeatureWeights, GuideTrial, MOST_WORK, WalkFit, WalkPrior, WalkTree, walk_shares};
 
 /// A walk that a text may mean.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -23,27 +23,27 @@ impl KnownScenes {
     ///
     /// # Errors
     /// When the scene cannot be surveyed, does not have the viewpoint, or the text cannot be followed.
-    pub fn meant(
+    pub fn meant_walks(
         &self,
         platform: &dyn Platform,
         (scene, start, heading): (&SceneId, &ViewpointId, Heading),
         text: &str,
         most: usize,
-    ) -> Result<Vec<MeantWalk>, Error> {
-        let known = self.get(platform, scene)?;
+    ) -> Result<Vec<MeantWalk>, CommandError> {
+        let known = self.get_or_survey(platform, scene)?;
         let nowhere = || PlatformError::UnknownViewpoint { scene: scene.clone(), viewpoint: start.clone() };
-        let place = known.survey.place(start).ok_or_else(nowhere)?;
+        let place = known.survey.viewpoint_index(start).ok_or_else(nowhere)?;
         let unfollowed = |why: &str| {
             let hint = "give the steps of a walk in English, as in \"Go past the bed and turn left\"";
-            Error::usage(format!("the text cannot be followed: {why}"), hint)
+            CommandError::usage(format!("the text cannot be followed: {why}"), hint)
         };
-        let guide = guide(text, None).map_err(unfollowed)?;
-        let tree = Tree::of(&known.followed, place, heading.rad(), Prior::default());
+        let guide = read_guide(text, None).map_err(unfollowed)?;
+        let tree = WalkTree::from_prior(&known.followed, place, heading.rad(), WalkPrior::default());
         if guide.len().saturating_mul(tree.len()) > MOST_WORK {
             return Err(unfollowed("it has too many steps"));
         }
-        let fit = Fit::new(&Trial::new(&guide, &known.followed), &tree, Weights::fitted());
-        let mut by_share: Vec<(usize, f64)> = shares(&fit, &tree).into_iter().enumerate().skip(1).collect();
+        let fit = WalkFit::new(&GuideTrial::new(&guide, &known.followed), &tree, FeatureWeights::fitted());
+        let mut by_share: Vec<(usize, f64)> = walk_shares(&fit, &tree).into_iter().enumerate().skip(1).collect();
         by_share.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
         let name = |place: usize| known.survey.viewpoints().get(place).map(|viewpoint| viewpoint.id.clone());
         let walk = |(walk, share): (usize, f64)| MeantWalk {

@@ -15,26 +15,26 @@ use wayword_world::said::is_unseen;
 
 /// How the program prints.
 #[derive(Clone)]
-pub struct Output {
+pub struct CommandOutput {
     json: bool,
     quiet: bool,
     /// Gets everything in place of the terminal, if there is one.
-    listener: Option<Arc<dyn Listener>>,
+    listener: Option<Arc<dyn CommandOutputListener>>,
 }
 
 /// A program that this one runs in.
-pub trait Listener: Send + Sync {
+pub trait CommandOutputListener: Send + Sync {
     /// Takes a result, as JSON.
-    fn data(&self, json: String);
+    fn take_result(&self, json: String);
 
     /// Takes a message.
-    fn say(&self, text: String);
+    fn take_message(&self, text: String);
 
     /// Takes a progress bar and may read its position from then on. The bar itself is hidden.
-    fn bar(&self, bar: &ProgressBar);
+    fn take_bar(&self, bar: &ProgressBar);
 }
 
-impl fmt::Debug for Output {
+impl fmt::Debug for CommandOutput {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { json, quiet, listener } = self;
         let fields = ("json", json, "quiet", quiet, "is_heard", listener.is_some());
@@ -47,13 +47,13 @@ const MOST_ERROR_CHARS: usize = 1000;
 
 /// A text without control characters. Every text from a model, a server, a child process or a file goes through here before it is
 /// printed.
-pub(crate) fn tame(text: &str) -> String {
+pub(crate) fn tame_text(text: &str) -> String {
     text.chars().map(|c| if is_unseen(c) && !matches!(c, '\n' | '\t') { '\u{fffd}' } else { c }).collect()
 }
 
-/// As [`tame`], for an error; a long one is cut.
+/// As [`tame_text`], for an error; a long one is cut.
 fn tame_error(text: &str) -> String {
-    let mut tamed = tame(&text.chars().take(MOST_ERROR_CHARS).collect::<String>());
+    let mut tamed = tame_text(&text.chars().take(MOST_ERROR_CHARS).collect::<String>());
     if text.chars().nth(MOST_ERROR_CHARS).is_some() {
         tamed.push_str(" ...");
     }
@@ -79,7 +79,7 @@ pub fn pass_on(line: &str) {
     eprintln!("{}", tame_error(line));
 }
 
-impl Output {
+impl CommandOutput {
     /// `json`: results as JSON; `quiet`: no messages, no progress.
     #[must_use]
     pub fn new(json: bool, quiet: bool) -> Self {
@@ -88,7 +88,7 @@ impl Output {
 
     /// Results as JSON, messages and bars for a listener; the terminal stays empty.
     #[must_use]
-    pub fn heard_by(listener: Arc<dyn Listener>) -> Self {
+    pub fn heard_by(listener: Arc<dyn CommandOutputListener>) -> Self {
         Self { json: true, quiet: false, listener: Some(listener) }
     }
 
@@ -99,45 +99,45 @@ impl Output {
     }
 
     /// Prints a result: `value` as JSON if that is wanted, else the text. A closed standard output is no error.
-    pub fn data(&self, value: &impl Serialize, text: impl Display) {
+    pub fn print_result(&self, value: &impl Serialize, text: impl Display) {
         let json = || {
             // A file name that is not UTF-8 cannot be written as JSON.
             let json = serde_json::to_string(value);
             json.unwrap_or_else(|error| format!("{{\"error\":{:?}}}", error.to_string()))
         };
         if let Some(listener) = &self.listener {
-            return listener.data(json());
+            return listener.take_result(json());
         }
-        let line = if self.json { tame_json(&json()) } else { tame(&text.to_string()) };
+        let line = if self.json { tame_json(&json()) } else { tame_text(&text.to_string()) };
         let _ = writeln!(io::stdout(), "{}", line.trim_end());
     }
 
     /// Prints a message.
     pub fn say(&self, text: impl Display) {
         if let Some(listener) = &self.listener {
-            listener.say(tame(&text.to_string()));
+            listener.take_message(tame_text(&text.to_string()));
         } else if !self.quiet {
-            eprintln!("{}", tame(&text.to_string()));
+            eprintln!("{}", tame_text(&text.to_string()));
         }
     }
 
     /// Prints an error.
-    pub fn error(&self, error: &impl Display) {
+    pub fn print_error(&self, error: &impl Display) {
         let red = io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none();
         eprintln!("{}: {}", if red { "\x1b[31merror\x1b[0m" } else { "error" }, tame_error(&error.to_string()));
     }
 
     /// A progress bar, hidden if standard error is not a terminal.
     #[must_use]
-    pub fn progress(&self, total: usize, what: &'static str) -> ProgressBar {
-        self.bar(total as u64, "{prefix} {bar:32} {pos}/{len}  {msg}{left}").with_prefix(what)
+    pub fn progress_bar(&self, total: usize, what: &'static str) -> ProgressBar {
+        self.make_bar(total as u64, "{prefix} {bar:32} {pos}/{len}  {msg}{left}").with_prefix(what)
     }
 
     /// A progress bar for items that are slow because of calls to models: the message counts the calls, the prefix counts the
     /// finished texts.
     #[must_use]
     pub fn progress_by_calls(&self, total: usize) -> ProgressBar {
-        self.bar(total as u64, "items {bar:24} {pos}/{len}  {msg}  {prefix}")
+        self.make_bar(total as u64, "items {bar:24} {pos}/{len}  {msg}  {prefix}")
     }
 
     /// Prints a line about the progress, if there is no terminal to show a bar on.
@@ -149,32 +149,32 @@ impl Output {
 
     /// A progress bar for bytes; its length is set later. Hidden if standard error is not a terminal.
     #[must_use]
-    pub fn bytes(&self) -> ProgressBar {
-        self.bar(0, "{prefix} {bar:32} {bytes}/{total_bytes}  {bytes_per_sec}{left}")
+    pub fn bytes_bar(&self) -> ProgressBar {
+        self.make_bar(0, "{prefix} {bar:32} {bytes}/{total_bytes}  {bytes_per_sec}{left}")
     }
 
-    fn bar(&self, total: u64, template: &str) -> ProgressBar {
+    fn make_bar(&self, total: u64, template: &str) -> ProgressBar {
         let bar = ProgressBar::new(total);
         if self.listener.is_some() || self.quiet || !io::stderr().is_terminal() {
             bar.set_draw_target(ProgressDrawTarget::hidden());
         }
         if let Some(listener) = &self.listener {
-            listener.bar(&bar);
+            listener.take_bar(&bar);
         }
-        bar.with_style(style(template))
+        bar.with_style(bar_style(template))
     }
 }
 
-fn style(template: &str) -> ProgressStyle {
+fn bar_style(template: &str) -> ProgressStyle {
     let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
     style.with_key("left", |state: &ProgressState, out: &mut dyn fmt::Write| {
         // If this cannot be written, the rest of the bar cannot either.
-        let _ = out.write_str(&left(state.eta()));
+        let _ = out.write_str(&remaining_text(state.eta()));
     })
 }
 
 /// The remaining time. It is not known before the first item is done, and empty then.
-fn left(eta: Duration) -> String {
+fn remaining_text(eta: Duration) -> String {
     if eta.is_zero() { String::new() } else { format!("  {:#} left", HumanDuration(eta.max(Duration::from_secs(1)))) }
 }
 
@@ -222,27 +222,27 @@ mod tests {
     #[test]
     fn a_bar_says_nothing_of_the_time_that_nobody_knows_yet() {
         let screen = Screen::default();
-        let bar = Output::new(false, true).progress(8, "items");
+        let bar = CommandOutput::new(false, true).progress_bar(8, "items");
         bar.set_draw_target(ProgressDrawTarget::term_like(Box::new(screen.clone())));
         bar.tick();
         let shown = screen.0.lock().unwrap().clone();
         assert!(shown.contains("0/8") && !shown.contains("left"), "{shown}");
-        assert_eq!([left(Duration::ZERO), left(Duration::from_millis(300))], ["", "  1s left"]);
-        assert_eq!(left(Duration::from_secs(90)), "  2m left");
+        assert_eq!([remaining_text(Duration::ZERO), remaining_text(Duration::from_millis(300))], ["", "  1s left"]);
+        assert_eq!(remaining_text(Duration::from_secs(90)), "  2m left");
     }
 
     #[test]
     fn errors_are_fit_for_a_terminal() {
-        assert_eq!(tame("a\x1b[31mb\nc"), "a\u{fffd}[31mb\nc");
+        assert_eq!(tame_text("a\x1b[31mb\nc"), "a\u{fffd}[31mb\nc");
         assert_eq!(tame_error(&"x".repeat(5000)).chars().count(), MOST_ERROR_CHARS + 4);
     }
 
     #[test]
     fn nothing_turns_the_line_round_or_hides_in_it() {
-        assert_eq!(tame("turn \u{202e}tfel\u{2069} now\u{200b}!\n"), "turn \u{fffd}tfel\u{fffd} now\u{fffd}!\n");
-        assert_eq!(tame("caf\u{e9} \u{4e2d}\u{6587}"), "caf\u{e9} \u{4e2d}\u{6587}");
+        assert_eq!(tame_text("turn \u{202e}tfel\u{2069} now\u{200b}!\n"), "turn \u{fffd}tfel\u{fffd} now\u{fffd}!\n");
+        assert_eq!(tame_text("caf\u{e9} \u{4e2d}\u{6587}"), "caf\u{e9} \u{4e2d}\u{6587}");
         let joined = "\u{c15}\u{c4d}\u{200c}\u{c37} \u{915}\u{94d}\u{200d}\u{937}";
-        assert_eq!((tame(joined), tame_json(joined)), (joined.to_owned(), joined.to_owned()));
+        assert_eq!((tame_text(joined), tame_json(joined)), (joined.to_owned(), joined.to_owned()));
         let json = serde_json::to_string("a\u{202e}b\u{7f}c\u{9b}d\u{e0041}\"").unwrap();
         let tamed = tame_json(&json);
         assert_eq!(tamed, r#""a\u202eb\u007fc\u009bd\udb40\udc41\"""#);

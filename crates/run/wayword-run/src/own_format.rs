@@ -2,17 +2,17 @@
 //! the program that wrote it, so that a later version can refuse a file that it would misread. docs/FORMATS.md describes what
 //! later versions promise to read.
 
-use crate::settings::Settings;
+use crate::settings::RunSettings;
 use serde::de::DeserializeOwned;
 use toml::{Table, Value};
 use wayword_checks::{detected::DetectorFigures, open::Calibration};
 
 /// The key of the format.
-const FORMAT: &str = "format";
+const FORMAT_KEY: &str = "format";
 /// The key of the version of the program.
-const WRITER: &str = "wayword";
+const WRITER_KEY: &str = "wayword";
 /// Longest name of a format or a version that an error repeats, characters.
-const LONGEST: usize = 60;
+const MAX_SHOWN_CHARS: usize = 60;
 
 /// The content of a file with this head. A file without a head is accepted as well: the first versions wrote none.
 pub trait OwnFormat: DeserializeOwned {
@@ -22,7 +22,7 @@ pub trait OwnFormat: DeserializeOwned {
     const NUMBER: Option<i64> = None;
 }
 
-impl OwnFormat for Settings {
+impl OwnFormat for RunSettings {
     const NAME: &str = "wayword-run/1";
 }
 
@@ -36,7 +36,7 @@ impl OwnFormat for DetectorFigures {
 
 /// Why a file of this program cannot be used.
 #[derive(Debug, PartialEq, Eq, thiserror::Error)]
-pub(crate) enum Unread {
+pub(crate) enum OwnFormatError {
     /// It has another format.
     #[error("its format is {found}{}, and this is version {}, which reads {known}", .by.as_ref().map_or_else(String::new, |by| format!(" and version {by} of this program wrote it")), env!("CARGO_PKG_VERSION"))]
     Other {
@@ -52,9 +52,9 @@ pub(crate) enum Unread {
     Broken(String),
 }
 
-impl Unread {
+impl OwnFormatError {
     /// The hint for the user; `otherwise` is the one for a broken file.
-    pub(crate) fn hint<'a>(&self, otherwise: &'a str) -> &'a str {
+    pub(crate) fn hint_or<'a>(&self, otherwise: &'a str) -> &'a str {
         match self {
             Self::Other { .. } => "use the version that wrote it, or give another file or folder",
             Self::Broken(_) => otherwise,
@@ -63,40 +63,43 @@ impl Unread {
 }
 
 /// The text of a file with the content `body`, below its head.
-pub fn headed<S: OwnFormat>(body: &str) -> String {
-    format!("{FORMAT} = \"{}\"\n{WRITER} = \"{}\"\n{body}", S::NAME, env!("CARGO_PKG_VERSION"))
+pub fn with_header<S: OwnFormat>(body: &str) -> String {
+    format!("{FORMAT_KEY} = \"{}\"\n{WRITER_KEY} = \"{}\"\n{body}", S::NAME, env!("CARGO_PKG_VERSION"))
 }
 
 /// Reads the content of a file.
 ///
 /// # Errors
 /// When it is not TOML, has another format, or breaks its own.
-pub(crate) fn read<S: OwnFormat>(text: &str) -> Result<S, Unread> {
-    body::<S>(text)?.try_into().map_err(|error| Unread::Broken(error.to_string().trim().to_owned()))
+pub(crate) fn parse_document<S: OwnFormat>(text: &str) -> Result<S, OwnFormatError> {
+    parse_body::<S>(text)?.try_into().map_err(|error| OwnFormatError::Broken(error.to_string().trim().to_owned()))
 }
 
 /// Checks only the head of a file.
 ///
 /// # Errors
 /// When it is not TOML, or has another format.
-pub(crate) fn check<S: OwnFormat>(text: &str) -> Result<(), Unread> {
-    body::<S>(text).map(drop)
+pub(crate) fn check_header<S: OwnFormat>(text: &str) -> Result<(), OwnFormatError> {
+    parse_body::<S>(text).map(drop)
 }
 
 /// The table below the head, after a check that the format is the right one.
-fn body<S: OwnFormat>(text: &str) -> Result<Table, Unread> {
-    let mut table: Table = toml::from_str(text).map_err(|error| Unread::Broken(error.to_string().trim().to_owned()))?;
-    let by = table.remove(WRITER);
-    match table.remove(FORMAT) {
+fn parse_body<S: OwnFormat>(text: &str) -> Result<Table, OwnFormatError> {
+    let mut table: Table =
+        toml::from_str(text).map_err(|error| OwnFormatError::Broken(error.to_string().trim().to_owned()))?;
+    let by = table.remove(WRITER_KEY);
+    match table.remove(FORMAT_KEY) {
         None => Ok(table),
         Some(Value::String(format)) if format == S::NAME => Ok(table),
         Some(Value::Integer(number)) if S::NUMBER == Some(number) => Ok(table),
-        Some(found) => Err(Unread::Other { found: short(&found), by: by.as_ref().map(short), known: S::NAME }),
+        Some(found) => {
+            Err(OwnFormatError::Other { found: short_value(&found), by: by.as_ref().map(short_value), known: S::NAME })
+        }
     }
 }
 
-fn short(value: &Value) -> String {
-    value.to_string().chars().take(LONGEST).collect()
+fn short_value(value: &Value) -> String {
+    value.to_string().chars().take(MAX_SHOWN_CHARS).collect()
 }
 
 #[cfg(test)]
@@ -106,20 +109,20 @@ mod tests {
     const BODY: &str = "detector = \"hf/a\"\nplatforms = []\nfound_from = 0.5\n[all]\nshown = 1\nfound = 1\nabsent = 1\n\
                         alarms = 1\nmissed_before = 1\nmissed_again = 1\nruns = [1]\n";
 
-    fn figures(text: &str) -> Result<DetectorFigures, Unread> {
-        read(text)
+    fn figures(text: &str) -> Result<DetectorFigures, OwnFormatError> {
+        parse_document(text)
     }
 
     #[test]
     fn parse_document_accepts_its_own_head_and_files_without_a_head() {
-        let written = headed::<DetectorFigures>(BODY);
+        let written = with_header::<DetectorFigures>(BODY);
         assert!(written.starts_with("format = \"wayword-detector-figures/1\"\nwayword = \""), "{written}");
         assert_eq!(figures(&written).unwrap(), figures(BODY).unwrap());
     }
 
     #[test]
     fn a_later_format_is_refused_with_the_version_that_wrote_it() {
-        let later = headed::<DetectorFigures>(BODY)
+        let later = with_header::<DetectorFigures>(BODY)
             .replace("figures/1", "figures/2")
             .replace(env!("CARGO_PKG_VERSION"), "7.0.3");
         let told = figures(&later).unwrap_err().to_string();
@@ -129,16 +132,16 @@ mod tests {
                 .all(|part| told.contains(part)),
             "{told}"
         );
-        let other = figures(&headed::<Settings>(BODY)).unwrap_err();
-        assert!(matches!(&other, Unread::Other { .. }), "another kind of file: {other}");
-        assert!(other.hint("").contains("use the version that wrote it"));
+        let other = figures(&with_header::<RunSettings>(BODY)).unwrap_err();
+        assert!(matches!(&other, OwnFormatError::Other { .. }), "another kind of file: {other}");
+        assert!(other.hint_or("").contains("use the version that wrote it"));
     }
 
     #[test]
     fn a_format_that_is_no_name_is_refused_and_not_repeated_at_length() {
         let told = figures(&format!("format = \"{}\"", "x".repeat(5000))).unwrap_err().to_string();
         assert!(told.len() < 300, "{told}");
-        assert!(matches!(figures("format = 1"), Err(Unread::Other { .. })));
-        assert!(matches!(figures("format = "), Err(Unread::Broken(_))));
+        assert!(matches!(figures("format = 1"), Err(OwnFormatError::Other { .. })));
+        assert!(matches!(figures("format = "), Err(OwnFormatError::Broken(_))));
     }
 }

@@ -1,6 +1,6 @@
 //! Encodes, writes and reads the pictures of a run's frames, JPEG files named ITEM_FRAME.jpg.
 
-use crate::error::Error;
+use crate::error::CommandError;
 use image::{ExtendedColorType, ImageEncoder, ImageError, ImageFormat, ImageReader, codecs::jpeg::JpegEncoder};
 use std::{
     fs::{self, File},
@@ -14,7 +14,7 @@ const JPEG_QUALITY: u8 = 80;
 
 /// The picture of a frame as the bytes of a JPEG file.
 #[derive(Debug, Clone)]
-pub struct Picture {
+pub struct FrameJpeg {
     frame: usize,
     jpeg: Vec<u8>,
 }
@@ -23,16 +23,16 @@ pub struct Picture {
 ///
 /// # Errors
 /// When a picture cannot be encoded as JPEG.
-pub fn encode(ahead: &[View]) -> Result<Vec<Picture>, Error> {
+pub fn encode_pictures(ahead: &[View]) -> Result<Vec<FrameJpeg>, CommandError> {
     let images = ahead.iter().enumerate().filter_map(|(frame, view)| Some((frame, view.image.as_deref()?)));
     let encoded = images.map(|(frame, image)| {
-        let jpeg = jpeg(image, JPEG_QUALITY).map_err(|error| {
-            Error::usage(
+        let jpeg = encode_jpeg(image, JPEG_QUALITY).map_err(|error| {
+            CommandError::usage(
                 format!("the picture of frame {frame} cannot be written as JPEG: {error}"),
                 "report this as a bug",
             )
         })?;
-        Ok(Picture { frame, jpeg })
+        Ok(FrameJpeg { frame, jpeg })
     });
     encoded.collect()
 }
@@ -41,16 +41,16 @@ pub fn encode(ahead: &[View]) -> Result<Vec<Picture>, Error> {
 ///
 /// # Errors
 /// When it has no pixels, or too many for JPEG.
-pub fn jpeg(image: &Image, quality: u8) -> Result<Vec<u8>, ImageError> {
+pub fn encode_jpeg(image: &Image, quality: u8) -> Result<Vec<u8>, ImageError> {
     let mut jpeg = Vec::new();
     let encoder = JpegEncoder::new_with_quality(&mut jpeg, quality);
-    encoder.write_image(image.rgb(), image.width_px(), image.height_px(), ExtendedColorType::Rgb8)?;
+    encoder.write_image(image.rgb_bytes(), image.width_px(), image.height_px(), ExtendedColorType::Rgb8)?;
     Ok(jpeg)
 }
 
 /// The file of the picture of a frame.
 #[must_use]
-pub fn file(folder: &Path, item: &str, frame: usize) -> PathBuf {
+pub fn picture_file(folder: &Path, item: &str, frame: usize) -> PathBuf {
     folder.join(format!("{item}_{frame}.jpg"))
 }
 
@@ -60,7 +60,7 @@ pub const MOST_BYTES: u64 = 4 << 20;
 pub const MOST_SIDE_PX: u32 = 4096;
 
 /// A picture as it lies in a run's folder.
-pub struct Kept {
+pub struct StoredPicture {
     /// The bytes of the JPEG file.
     pub jpeg: Vec<u8>,
     pub width_px: u32,
@@ -68,8 +68,8 @@ pub struct Kept {
 }
 
 /// The picture of a frame (from 0) of an item; `None` if it is missing, larger than `most_bytes`, or not a JPEG.
-pub fn kept(folder: &Path, item: &str, frame: usize, most_bytes: u64) -> Option<Kept> {
-    let path = inside(folder, &format!("{item}_{frame}.jpg"))?;
+pub fn read_picture(folder: &Path, item: &str, frame: usize, most_bytes: u64) -> Option<StoredPicture> {
+    let path = file_inside(folder, &format!("{item}_{frame}.jpg"))?;
     // Links are not followed, because one could lead out of the folder.
     let found = fs::symlink_metadata(&path).ok()?;
     if !found.is_file() || found.len() > MOST_BYTES.min(most_bytes) {
@@ -80,19 +80,19 @@ pub fn kept(folder: &Path, item: &str, frame: usize, most_bytes: u64) -> Option<
     let (width_px, height_px) =
         ImageReader::with_format(Cursor::new(&jpeg), ImageFormat::Jpeg).into_dimensions().ok()?;
     let is_fit = |side: u32| (1..=MOST_SIDE_PX).contains(&side);
-    (is_fit(width_px) && is_fit(height_px)).then_some(Kept { jpeg, width_px, height_px })
+    (is_fit(width_px) && is_fit(height_px)).then_some(StoredPicture { jpeg, width_px, height_px })
 }
 
-impl Kept {
+impl StoredPicture {
     /// Its pixels; `None` if the file is damaged.
-    pub fn pixels(&self) -> Option<Image> {
+    pub fn decode_pixels(&self) -> Option<Image> {
         let decoded = image::load_from_memory_with_format(&self.jpeg, ImageFormat::Jpeg).ok()?.into_rgb8();
         Image::new(decoded.width(), decoded.height(), decoded.into_raw()).ok()
     }
 }
 
 /// A file directly inside a folder, or `None` if its name leads elsewhere: ids of paths are free text.
-fn inside(folder: &Path, name: &str) -> Option<PathBuf> {
+fn file_inside(folder: &Path, name: &str) -> Option<PathBuf> {
     let mut parts = Path::new(name).components();
     match (parts.next(), parts.next()) {
         (Some(Component::Normal(only)), None) if only == name => Some(folder.join(only)),
@@ -104,14 +104,14 @@ fn inside(folder: &Path, name: &str) -> Option<PathBuf> {
 ///
 /// # Errors
 /// When a file cannot be written.
-pub fn keep(folder: &Path, item: &str, pictures: &[Picture]) -> Result<bool, Error> {
+pub fn write_pictures(folder: &Path, item: &str, pictures: &[FrameJpeg]) -> Result<bool, CommandError> {
     if pictures.is_empty() {
         return Ok(false);
     }
-    fs::create_dir_all(folder).map_err(Error::io(folder, "make"))?;
-    for Picture { frame, jpeg } in pictures {
-        let path = file(folder, item, *frame);
-        fs::write(&path, jpeg).map_err(Error::io(&path, "write"))?;
+    fs::create_dir_all(folder).map_err(CommandError::io(folder, "make"))?;
+    for FrameJpeg { frame, jpeg } in pictures {
+        let path = picture_file(folder, item, *frame);
+        fs::write(&path, jpeg).map_err(CommandError::io(&path, "write"))?;
     }
     Ok(true)
 }

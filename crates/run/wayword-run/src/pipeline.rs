@@ -2,39 +2,39 @@
 
 use crate::{
     at_once::at_once,
-    error::Error,
-    follow::{Followed, GOES_UNKNOWN, KnownScenes, Told, rejection},
-    item::Item,
-    looking_for::Lookout,
-    pictures::{self, Picture},
-    platforms::Remembering,
+    error::CommandError,
+    follow::{FollowedPath, FollowerFindings, GOES_UNKNOWN, KnownScenes, ambiguity_rejection},
+    item::RunItem,
+    looking_for::DetectorLookout,
+    pictures::{self, FrameJpeg},
+    platforms::RememberingPlatform,
     run_folder::WorldData,
-    settings::{Settings, Sources, TargetMode},
-    styles::Measured,
-    team::Team,
+    settings::{EvidenceSources, RunSettings, TargetMode},
+    styles::MeasuredStyle,
+    team::RoleTeam,
 };
 use std::collections::BTreeMap;
-use wayword_checks::{Checked, Evidence, Memory, Source};
-use wayword_core::{Ambiguity, Caption, Frame, Gaze, ModelError, Path, Platform, PlatformError, SceneId, View};
-use wayword_ledger::Occasion;
+use wayword_checks::{Evidence, EvidenceSource, TextFindings, WalkMemory};
+use wayword_core::{Caption, Frame, ModelError, Path, Platform, PlatformError, SceneId, TextAmbiguity, View, ViewGaze};
+use wayword_ledger::CallContext;
 use wayword_synthesis::{
-    detection::{alone, seek},
-    observe::{Planned, gazes_around, observe_with, talk_about},
-    offline::{around, describe},
-    repair::{Follow, Order, Outcome, write_and_repair},
-    walk::Walk,
+    detection::{detector_only, seek_along_path},
+    observe::{PlannedView, gazes_around, observe_with, talk_about},
+    offline::{describe_target, list_around_frame},
+    repair::{InstructionOrder, TextFollower, WritingOutcome, write_and_repair},
+    walk::ObservedWalk,
     writer::FramePicture,
 };
 
 /// The result of an item.
 #[derive(Debug)]
-pub struct Made {
+pub struct MadeItem {
     /// The path and what was seen along it.
-    pub walk: Walk,
+    pub walk: ObservedWalk,
     /// As many per style as each path gets, in the order of the run's styles.
-    pub outcomes: Vec<Outcome>,
+    pub outcomes: Vec<WritingOutcome>,
     /// The picture ahead of each frame, if the platform has pictures.
-    pub pictures: Vec<Picture>,
+    pub pictures: Vec<FrameJpeg>,
 }
 
 /// The platform of a run, with the recorded hashes of its files.
@@ -50,39 +50,39 @@ pub struct RunPlatform<'a> {
 
 /// The texts to write for an item.
 #[derive(Clone, Copy)]
-pub struct Ordered<'a> {
+pub struct ItemTextOrder<'a> {
     /// Their styles.
-    pub styles: &'a [Measured],
+    pub styles: &'a [MeasuredStyle],
     /// For styles in this map, the number of the one candidate to write; all candidates are written for the others.
     pub only: &'a BTreeMap<String, u32>,
 }
 
 /// The texts of an item, before they are written into the run folder.
 #[derive(Debug)]
-pub struct Written {
+pub struct WrittenItem {
     /// The path and what was seen along it.
-    pub walk: Walk,
+    pub walk: ObservedWalk,
     /// As many per style as each path gets, in the order of the run's styles.
-    pub outcomes: Vec<Outcome>,
+    pub outcomes: Vec<WritingOutcome>,
     /// The view ahead of each frame.
     ahead: Vec<View>,
 }
 
-/// Makes an item: its texts, and the pictures along its path. See [`write()`].
+/// Makes an item: its texts, and the pictures along its path. See [`write_item()`].
 ///
 /// # Errors
-/// As for [`write()`].
-pub fn make(
-    item: &Item,
-    settings: &Settings,
+/// As for [`write_item()`].
+pub fn make_item(
+    item: &RunItem,
+    settings: &RunSettings,
     world: RunPlatform<'_>,
-    team: &Team,
-    styles: &[Measured],
+    team: &RoleTeam,
+    styles: &[MeasuredStyle],
     threads: usize,
-) -> Result<Made, Error> {
-    let order = Ordered { styles, only: &BTreeMap::new() };
-    let Written { walk, outcomes, ahead } = write(item, settings, world, team, order, threads)?;
-    Ok(Made { walk, outcomes, pictures: pictures::encode(&ahead)? })
+) -> Result<MadeItem, CommandError> {
+    let order = ItemTextOrder { styles, only: &BTreeMap::new() };
+    let WrittenItem { walk, outcomes, ahead } = write_item(item, settings, world, team, order, threads)?;
+    Ok(MadeItem { walk, outcomes, pictures: pictures::encode_pictures(&ahead)? })
 }
 
 /// Writes an item's instructions. Up to `threads` views are described at the same time, and up to as many styles written; the
@@ -91,55 +91,57 @@ pub fn make(
 /// # Errors
 /// When its path does not fit its scene, the files of the scene have changed since the run began, a view cannot be had, or a model
 /// gives no answer.
-pub fn write(
-    item: &Item,
-    settings: &Settings,
+pub fn write_item(
+    item: &RunItem,
+    settings: &RunSettings,
     world: RunPlatform<'_>,
-    team: &Team,
-    Ordered { styles, only }: Ordered<'_>,
+    team: &RoleTeam,
+    ItemTextOrder { styles, only }: ItemTextOrder<'_>,
     threads: usize,
-) -> Result<Written, Error> {
+) -> Result<WrittenItem, CommandError> {
     let RunPlatform { platform, data, scenes } = world;
-    let world = Remembering::new(platform);
-    let mut path = path(item, settings, &world)?;
-    describe_target(&mut path, platform, scenes)?;
+    let world = RememberingPlatform::new(platform);
+    let mut path = item_path(item, settings, &world)?;
+    describe_path_target(&mut path, platform, scenes)?;
     if let Some(data) = data {
-        data.check(platform, &path.scene)?;
+        data.check_scene(platform, &path.scene)?;
     }
     let observers = team.observers();
-    let talk = |views: &[Planned]| -> Result<Vec<Caption>, ModelError> {
+    let talk = |views: &[PlannedView]| -> Result<Vec<Caption>, ModelError> {
         // The other views are described although one fails, so the error is always that of the first failing view in order.
         let ends = |told: &Result<Caption, ModelError>| told.as_ref().is_err_and(ModelError::ends_run);
         at_once(views, threads, |planned| talk_about(&planned.view, observers), ends).into_iter().collect()
     };
     let mut observations = observe_with(&world, &path, settings.frames, observers, &talk)?;
     if let Some(lookout) = team.lookout() {
-        let looked = Occasion::with_purpose("detect", || seek(&world, &path, &mut observations, lookout.seeker()))?;
+        let looked = CallContext::with_purpose("detect", || {
+            seek_along_path(&world, &path, &mut observations, lookout.to_seeker())
+        })?;
         lookout.has_looked_at(looked);
     }
-    let walk = Walk::new(path, observations);
-    let detector = team.lookout().map(Lookout::name);
-    let mut evidence = evidence(&walk, &world, settings.evidence, detector)?;
+    let walk = ObservedWalk::new(path, observations);
+    let detector = team.lookout().map(DetectorLookout::name);
+    let mut evidence = collect_evidence(&walk, &world, settings.evidence, detector)?;
     // With labels, the writer's memory has everything that they list around each frame; with a model, what its captions name.
-    let sees_labels = team.observers().answerer.name() == "labels" && evidence.source == Source::Labels;
-    let memory = if sees_labels { Memory::of(&evidence, &walk.path) } else { walk.memory() };
+    let sees_labels = team.observers().answerer.name() == "labels" && evidence.source == EvidenceSource::Labels;
+    let memory = if sees_labels { WalkMemory::from_path(&evidence, &walk.path) } else { walk.memory() };
     let scene = match evidence.source {
-        Source::Labels => Some(scenes.get(platform, &walk.path.scene)?),
+        EvidenceSource::Labels => Some(scenes.get_or_survey(platform, &walk.path.scene)?),
         _ => None,
     };
     if let Some(scene) = &scene {
-        evidence.beyond = scene.listed.beyond(&walk.path);
+        evidence.beyond = scene.listed.beyond_end(&walk.path);
     }
     let followed = match scene.as_deref() {
         None if evidence.motion.is_known() => Err("the texts are not checked against labels"),
         None => Err(GOES_UNKNOWN),
-        scene => Followed::new(scene, &walk.path, &evidence),
+        scene => FollowedPath::new(scene, &walk.path, &evidence),
     };
-    let follower = Follower { followed, evidence: &evidence, rejects_ambiguous: settings.reject_ambiguous };
-    let ahead = ahead(&world, &walk.path)?;
-    let shown = if settings.roles.write_sees { shown(&ahead, &settings.roles.write)? } else { Vec::new() };
-    let of_style = |Measured { style, profile, hash }: &Measured| {
-        let order = Order {
+    let follower = PathFollower { followed, evidence: &evidence, rejects_ambiguous: settings.reject_ambiguous };
+    let ahead = views_ahead(&world, &walk.path)?;
+    let shown = if settings.roles.write_sees { shown_pictures(&ahead, &settings.roles.write)? } else { Vec::new() };
+    let of_style = |MeasuredStyle { style, profile, hash }: &MeasuredStyle| {
+        let order = InstructionOrder {
             walk: &walk,
             memory: &memory,
             evidence: &evidence,
@@ -154,23 +156,24 @@ pub fn write(
             earlier: &[],
             pictures: &shown,
         };
-        texts(team, order, settings.per_path)
+        write_texts(team, order, settings.per_path)
     };
-    let ends = |texts: &Result<Vec<Outcome>, ModelError>| texts.as_ref().is_err_and(ModelError::ends_run);
+    let ends = |texts: &Result<Vec<WritingOutcome>, ModelError>| texts.as_ref().is_err_and(ModelError::ends_run);
     let outcomes = at_once(styles, threads, of_style, ends).into_iter().collect::<Result<Vec<_>, _>>()?;
-    Ok(Written { walk, outcomes: outcomes.into_iter().flatten().collect(), ahead })
+    Ok(WrittenItem { walk, outcomes: outcomes.into_iter().flatten().collect(), ahead })
 }
 
 /// The texts of one walk in one style. Each has to differ from those before it.
-fn texts(team: &Team, order: Order<'_>, number: usize) -> Result<Vec<Outcome>, ModelError> {
+fn write_texts(team: &RoleTeam, order: InstructionOrder<'_>, number: usize) -> Result<Vec<WritingOutcome>, ModelError> {
     let (mut outcomes, mut earlier) = (Vec::new(), Vec::new());
     for _ in 0..number {
-        let outcome = write_and_repair(team.writers(), team.observers(), Order { earlier: &earlier, ..order })?;
+        let outcome =
+            write_and_repair(team.writers(), team.observers(), InstructionOrder { earlier: &earlier, ..order })?;
         earlier.push(match &outcome {
-            Outcome::Accepted(instruction) | Outcome::Rejected { last: Some(instruction), .. } => {
+            WritingOutcome::Accepted(instruction) | WritingOutcome::Rejected { last: Some(instruction), .. } => {
                 instruction.text.clone()
             }
-            Outcome::Rejected { last: None, .. } => String::new(),
+            WritingOutcome::Rejected { last: None, .. } => String::new(),
         });
         outcomes.push(outcome);
     }
@@ -185,7 +188,7 @@ pub(crate) const MOST_SHOWN: usize = 16;
 ///
 /// # Errors
 /// When there are none.
-fn shown(ahead: &[View], writer: &str) -> Result<Vec<FramePicture>, ModelError> {
+fn shown_pictures(ahead: &[View], writer: &str) -> Result<Vec<FramePicture>, ModelError> {
     let pictures = ahead.iter().enumerate().filter_map(|(frame, view)| Some((frame, view.image.clone()?)));
     let all: Vec<FramePicture> = pictures.map(|(frame, image)| FramePicture { frame, image }).collect();
     if all.is_empty() {
@@ -201,22 +204,22 @@ fn shown(ahead: &[View], writer: &str) -> Result<Vec<FramePicture>, ModelError> 
 }
 
 /// Follows the texts of one path.
-struct Follower<'a> {
+struct PathFollower<'a> {
     /// The path, or the reason why it cannot be followed.
-    followed: Result<Followed<'a>, &'static str>,
+    followed: Result<FollowedPath<'a>, &'static str>,
     evidence: &'a Evidence,
     rejects_ambiguous: bool,
 }
 
-impl Follow for Follower<'_> {
-    fn follow(&self, text: &str, checked: &mut Checked) -> Ambiguity {
+impl TextFollower for PathFollower<'_> {
+    fn follow(&self, text: &str, checked: &mut TextFindings) -> TextAmbiguity {
         let told = match &self.followed {
-            Ok(followed) => followed.route(text),
-            Err(why) => Told::unknown(why),
+            Ok(followed) => followed.judge_route(text),
+            Err(why) => FollowerFindings::not_followed(why),
         };
         told.add_to(checked);
-        let ambiguity = told.ambiguity(text, self.evidence);
-        checked.add(rejection(&ambiguity).filter(|_| self.rejects_ambiguous));
+        let ambiguity = told.text_ambiguity(text, self.evidence);
+        checked.add_findings(ambiguity_rejection(&ambiguity).filter(|_| self.rejects_ambiguous));
         ambiguity
     }
 
@@ -229,8 +232,12 @@ impl Follow for Follower<'_> {
 ///
 /// # Errors
 /// When it does not fit its scene.
-pub fn path(item: &Item, settings: &Settings, world: &Remembering<'_>) -> Result<Path, Error> {
-    let mut path = item.path(settings, world)?;
+pub fn item_path(
+    item: &RunItem,
+    settings: &RunSettings,
+    world: &RememberingPlatform<'_>,
+) -> Result<Path, CommandError> {
+    let mut path = item.find_path(settings, world)?;
     if settings.target == TargetMode::Free {
         path.target = None;
     }
@@ -239,14 +246,15 @@ pub fn path(item: &Item, settings: &Settings, world: &Remembering<'_>) -> Result
 
 /// Fills in the description that distinguishes the target of a path from everything else in its building; if the building has no
 /// list of objects, from everything around the path's end.
-fn describe_target(path: &mut Path, platform: &dyn Platform, scenes: &KnownScenes) -> Result<(), Error> {
+fn describe_path_target(path: &mut Path, platform: &dyn Platform, scenes: &KnownScenes) -> Result<(), CommandError> {
     let (Some(target), Some(last)) = (&mut path.target, path.frames.last()) else { return Ok(()) };
-    let seen = around(last, &labels_at(platform, &path.scene, last, &Gaze::around(last.pose.heading))?);
-    if !seen.knows(last) {
+    let seen =
+        list_around_frame(last, &labels_at(platform, &path.scene, last, &ViewGaze::around_heading(last.pose.heading))?);
+    if !seen.knows_frame(last) {
         return Ok(());
     }
-    let scene = scenes.get(platform, &path.scene)?;
-    describe(target, last, if scene.listing.knows(last) { &scene.listing } else { &seen });
+    let scene = scenes.get_or_survey(platform, &path.scene)?;
+    describe_target(target, last, if scene.listing.knows_frame(last) { &scene.listing } else { &seen });
     Ok(())
 }
 
@@ -254,7 +262,7 @@ fn describe_target(path: &mut Path, platform: &dyn Platform, scenes: &KnownScene
 ///
 /// # Errors
 /// When a view cannot be had.
-pub fn panoramas(platform: &dyn Platform, path: &Path) -> Result<Vec<Vec<View>>, PlatformError> {
+pub fn path_panoramas(platform: &dyn Platform, path: &Path) -> Result<Vec<Vec<View>>, PlatformError> {
     let views = |frame: &Frame| labels_at(platform, &path.scene, frame, &gazes_around(path, frame));
     path.frames.iter().map(views).collect()
 }
@@ -263,32 +271,32 @@ fn labels_at(
     platform: &dyn Platform,
     scene: &SceneId,
     frame: &Frame,
-    gazes: &[Gaze],
+    gazes: &[ViewGaze],
 ) -> Result<Vec<View>, PlatformError> {
     gazes.iter().map(|gaze| platform.look_without_picture(scene, frame, *gaze)).collect()
 }
 
 /// The view ahead of each frame.
-fn ahead(platform: &dyn Platform, path: &Path) -> Result<Vec<View>, PlatformError> {
-    let look = |frame: &Frame| platform.look(&path.scene, frame, Gaze::quarter(frame.pose.heading));
+fn views_ahead(platform: &dyn Platform, path: &Path) -> Result<Vec<View>, PlatformError> {
+    let look = |frame: &Frame| platform.look_from(&path.scene, frame, ViewGaze::quarter_view(frame.pose.heading));
     path.frames.iter().map(look).collect()
 }
 
 /// Collects the evidence that texts are checked against: labels if the settings want them and the platform has them, else
 /// captions and the finds of the detector of that name, else only the path.
-fn evidence(
-    walk: &Walk,
+fn collect_evidence(
+    walk: &ObservedWalk,
     platform: &dyn Platform,
-    sources: Sources,
+    sources: EvidenceSources,
     detector: Option<&str>,
 ) -> Result<Evidence, PlatformError> {
     // Collecting labels takes longer than everything else, so they are collected only if they are used.
     let labels = match sources.labels {
-        true => Evidence::from_labels(&walk.path, &panoramas(platform, &walk.path)?),
+        true => Evidence::from_labels(&walk.path, &path_panoramas(platform, &walk.path)?),
         false => None,
     };
     let heard = || match detector.filter(|_| sources.detector && !sources.captions) {
-        Some(detector) => Evidence::from_detector(&walk.path, &alone(&walk.observations, detector)),
+        Some(detector) => Evidence::from_detector(&walk.path, &detector_only(&walk.observations, detector)),
         None => walk.evidence(),
     };
     Ok(labels.or_else(heard).unwrap_or_else(|| Evidence::of_path_alone(&walk.path)))

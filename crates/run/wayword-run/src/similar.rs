@@ -1,18 +1,18 @@
 //! Suggests a name for a mistyped one.
 
 /// Least similarity of a suggestion, from 0 to 1: the same as in clap's own suggestions.
-const ALIKE: f64 = 0.7;
+const MIN_SIMILARITY: f64 = 0.7;
 
 /// The name most similar to a word, if any is similar enough.
-pub(crate) fn similar<'n>(word: &str, names: impl IntoIterator<Item = &'n str>) -> Option<&'n str> {
+pub(crate) fn most_similar<'n>(word: &str, names: impl IntoIterator<Item = &'n str>) -> Option<&'n str> {
     let word = word.to_lowercase();
     let rated = names.into_iter().map(|name| (strsim::jaro(&word, name), name));
-    rated.filter(|(alike, _)| *alike > ALIKE).max_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, name)| name)
+    rated.filter(|(alike, _)| *alike > MIN_SIMILARITY).max_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, name)| name)
 }
 
 /// The suggestion as "; did you mean \"r2r\"?", or an empty text if no name is similar.
 pub(crate) fn did_you_mean<'n>(word: &str, names: impl IntoIterator<Item = &'n str>) -> String {
-    similar(word, names).map_or_else(String::new, |name| format!("; did you mean {name:?}?"))
+    most_similar(word, names).map_or_else(String::new, |name| format!("; did you mean {name:?}?"))
 }
 
 #[cfg(test)]
@@ -21,9 +21,9 @@ mod tests {
 
     #[test]
     fn the_nearest_name_is_found_and_none_where_all_are_far() {
-        assert_eq!(similar("revery", ["r2r", "reverie"]), Some("reverie"));
-        assert_eq!(similar("R2R", ["r2r", "reverie"]), Some("r2r"));
-        assert_eq!(similar("poem", ["r2r", "reverie"]), None);
+        assert_eq!(most_similar("revery", ["r2r", "reverie"]), Some("reverie"));
+        assert_eq!(most_similar("R2R", ["r2r", "reverie"]), Some("r2r"));
+        assert_eq!(most_similar("poem", ["r2r", "reverie"]), None);
         assert_eq!(did_you_mean("hause", ["house"]), "; did you mean \"house\"?");
         assert_eq!(did_you_mean("moon", ["r2r"]), "");
     }

@@ -3,46 +3,50 @@
 
 use crate::{
     calibration,
-    calls::Calls,
-    error::Error,
-    looking_for::Lookout,
-    settings::{Finish, LABELS, Settings, is_model},
+    calls::ModelCalls,
+    error::CommandError,
+    looking_for::DetectorLookout,
+    settings::{FailureFinish, LABELS_ROLE, RunSettings, is_model},
     text_file,
 };
 use std::{fs, path::Path, sync::Arc};
 use wayword_checks::open::Calibration;
-use wayword_core::{Answerer, LanguageModel, ModelError, Platform, Reply, Request};
-use wayword_ledger::Occasion;
+use wayword_core::{LanguageModel, ModelError, ModelReply, ModelRequest, Platform, ViewAnswerer};
+use wayword_ledger::CallContext;
 use wayword_synthesis::{
-    dialogue::{Asker, Mode, RulesAsker, RulesSummariser, Summariser},
+    dialogue::{CaptionSummariser, DialogueMode, QuestionAsker, RulesAsker, RulesSummariser},
     models::{ModelAnswerer, ModelAsker, ModelSummariser, ModelWriter},
-    observe::Observers,
-    offline::Labels,
-    prompts::{Manner, Prompts},
-    repair::Writers,
-    writer::{RulesWriter, Writer},
+    observe::ObservationRoles,
+    offline::LabelAnswerer,
+    prompts::{PromptManner, Prompts},
+    repair::WriterPair,
+    writer::{InstructionWriter, RulesWriter},
 };
 
 /// The players of the roles of a run.
-pub struct Team {
-    asker: Box<dyn Asker>,
-    answerer: Box<dyn Answerer>,
-    summariser: Box<dyn Summariser>,
-    writer: Box<dyn Writer>,
+pub struct RoleTeam {
+    asker: Box<dyn QuestionAsker>,
+    answerer: Box<dyn ViewAnswerer>,
+    summariser: Box<dyn CaptionSummariser>,
+    writer: Box<dyn InstructionWriter>,
     finisher: Option<RulesWriter>,
-    mode: Mode,
+    mode: DialogueMode,
     prompts_hash: Option<String>,
-    lookout: Option<Lookout>,
+    lookout: Option<DetectorLookout>,
     /// The name of the lookout's detector with the meaning of its scores, for provenance.
     detector: Option<String>,
 }
 
-impl Team {
+impl RoleTeam {
     /// The roles that the settings name. `calls` is needed if a model plays one.
     ///
     /// # Errors
     /// When a model cannot be reached by its name, a prompt cannot be used, or a calibration has no effect.
-    pub fn new(settings: &Settings, calls: Option<&Calls>, platform: &dyn Platform) -> Result<Self, Error> {
+    pub fn new(
+        settings: &RunSettings,
+        calls: Option<&ModelCalls>,
+        platform: &dyn Platform,
+    ) -> Result<Self, CommandError> {
         Self::of_sample(settings, calls, platform, 0)
     }
 
@@ -51,29 +55,33 @@ impl Team {
     /// # Errors
     /// As for [`Self::new`].
     pub fn of_sample(
-        settings: &Settings,
-        calls: Option<&Calls>,
+        settings: &RunSettings,
+        calls: Option<&ModelCalls>,
         platform: &dyn Platform,
         sample: u32,
-    ) -> Result<Self, Error> {
-        let labels =
-            Labels { list_everything: platform.lists_everything(), calibration: calibration(settings, platform)? };
-        let prompts = Arc::new(prompts(settings)?);
+    ) -> Result<Self, CommandError> {
+        let labels = LabelAnswerer {
+            list_everything: platform.lists_everything(),
+            calibration: settings_calibration(settings, platform)?,
+        };
+        let prompts = Arc::new(settings_prompts(settings)?);
         let roles = &settings.roles;
-        let model = |name: &str, purpose: &'static str| -> Result<Option<Arc<dyn LanguageModel>>, Error> {
+        let model = |name: &str, purpose: &'static str| -> Result<Option<Arc<dyn LanguageModel>>, CommandError> {
             match calls.filter(|_| is_model(name)) {
-                Some(calls) => Ok(Some(Arc::new(Purposeful { model: sampled(calls.model(name)?, sample), purpose }))),
+                Some(calls) => {
+                    Ok(Some(Arc::new(PurposeModel { model: sample_model(calls.open_model(name)?, sample), purpose })))
+                }
                 None => Ok(None),
             }
         };
-        let prompts_hash = (!roles.models().is_empty()).then(|| prompts.hash().to_owned());
+        let prompts_hash = (!roles.model_names().is_empty()).then(|| prompts.hash().to_owned());
         let prompts = || Arc::clone(&prompts);
         let sees = model(&roles.see, "see")?;
         let doubts = sees.is_some();
         // Without a dialogue there is no asker and no summariser.
         let in_dialogue = |name: &str, purpose| if settings.has_dialogue() { model(name, purpose) } else { Ok(None) };
         let writes = model(&roles.write, "write")?;
-        let finisher = writes.is_some() && roles.finish == Finish::Rules;
+        let finisher = writes.is_some() && roles.finish == FailureFinish::Rules;
         Ok(Self {
             asker: match in_dialogue(&roles.ask, "ask")? {
                 Some(model) => Box::new(ModelAsker::new(model, prompts())),
@@ -86,9 +94,9 @@ impl Team {
             },
             answerer: match sees {
                 Some(model) => {
-                    let manner = calls.map_or(Ok(Manner::Chat), |calls| calls.manner(&roles.see))?;
-                    if settings.perception.is_structured() && manner != Manner::Chat {
-                        return Err(Error::usage(
+                    let manner = calls.map_or(Ok(PromptManner::Chat), |calls| calls.prompt_manner(&roles.see))?;
+                    if settings.perception.is_structured() && manner != PromptManner::Chat {
+                        return Err(CommandError::usage(
                             format!("{} answers in words alone, and --perception asks for JSON", roles.see),
                             "give --perception dialogue or single",
                         ));
@@ -102,7 +110,7 @@ impl Team {
                 None => Box::new(RulesWriter),
             },
             finisher: finisher.then_some(RulesWriter),
-            mode: settings.mode(),
+            mode: settings.dialogue_mode(),
             prompts_hash,
             lookout: None,
             detector: None,
@@ -111,21 +119,23 @@ impl Team {
 
     /// Adds a detector that looks along the paths.
     #[must_use]
-    pub fn with(self, lookout: Option<Lookout>) -> Self {
-        let named = |lookout: &Lookout| format!("{} ({})", lookout.name(), lookout.seeker().detector.scoring().means);
+    pub fn with_lookout(self, lookout: Option<DetectorLookout>) -> Self {
+        let named = |lookout: &DetectorLookout| {
+            format!("{} ({})", lookout.name(), lookout.to_seeker().detector.scoring().means)
+        };
         Self { detector: lookout.as_ref().map(named), lookout, ..self }
     }
 
     /// The detector that looks along the paths, if there is one.
     #[must_use]
-    pub fn lookout(&self) -> Option<&Lookout> {
+    pub fn lookout(&self) -> Option<&DetectorLookout> {
         self.lookout.as_ref()
     }
 
     /// Who asks, sees and summarises.
     #[must_use]
-    pub fn observers(&self) -> Observers<'_> {
-        Observers {
+    pub fn observers(&self) -> ObservationRoles<'_> {
+        ObservationRoles {
             asker: self.asker.as_ref(),
             answerer: self.answerer.as_ref(),
             summariser: self.summariser.as_ref(),
@@ -137,93 +147,98 @@ impl Team {
 
     /// Who writes, and who writes if that fails.
     #[must_use]
-    pub fn writers(&self) -> Writers<'_> {
-        let finisher = self.finisher.as_ref().map(|finisher| finisher as &dyn Writer);
-        Writers { writer: self.writer.as_ref(), finisher }
+    pub fn writers(&self) -> WriterPair<'_> {
+        let finisher = self.finisher.as_ref().map(|finisher| finisher as &dyn InstructionWriter);
+        WriterPair { writer: self.writer.as_ref(), finisher }
     }
 }
 
 /// Distance between the replicate numbers of two samples of a model: more than the number of times that any request is repeated
 /// within a run.
-const REPLICATES: u32 = 1 << 20;
+const REPLICATES_PER_SAMPLE: u32 = 1 << 20;
 
 /// A model with shifted replicate numbers, so that the ledger does not reuse the answers of another sample.
-struct Sampled {
+struct SampledModel {
     model: Arc<dyn LanguageModel>,
     sample: u32,
 }
 
 /// A model's sample of that number; the first is the model itself.
-fn sampled(model: Arc<dyn LanguageModel>, sample: u32) -> Arc<dyn LanguageModel> {
-    if sample == 0 { model } else { Arc::new(Sampled { model, sample }) }
+fn sample_model(model: Arc<dyn LanguageModel>, sample: u32) -> Arc<dyn LanguageModel> {
+    if sample == 0 { model } else { Arc::new(SampledModel { model, sample }) }
 }
 
-impl LanguageModel for Sampled {
+impl LanguageModel for SampledModel {
     fn name(&self) -> &str {
         self.model.name()
     }
 
-    fn complete(&self, requests: &[Request]) -> Vec<Result<Reply, ModelError>> {
-        let again =
-            |request: &Request| Request { replicate: request.replicate + self.sample * REPLICATES, ..request.clone() };
-        self.model.complete(&requests.iter().map(again).collect::<Vec<_>>())
+    fn complete_requests(&self, requests: &[ModelRequest]) -> Vec<Result<ModelReply, ModelError>> {
+        let again = |request: &ModelRequest| ModelRequest {
+            replicate: request.replicate + self.sample * REPLICATES_PER_SAMPLE,
+            ..request.clone()
+        };
+        self.model.complete_requests(&requests.iter().map(again).collect::<Vec<_>>())
     }
 }
 
 /// A model in a role. The spans of its calls have the role as their purpose.
-struct Purposeful {
+struct PurposeModel {
     model: Arc<dyn LanguageModel>,
     purpose: &'static str,
 }
 
-impl LanguageModel for Purposeful {
+impl LanguageModel for PurposeModel {
     fn name(&self) -> &str {
         self.model.name()
     }
 
-    fn complete(&self, requests: &[Request]) -> Vec<Result<Reply, ModelError>> {
-        Occasion::with_purpose(self.purpose, || self.model.complete(requests))
+    fn complete_requests(&self, requests: &[ModelRequest]) -> Vec<Result<ModelReply, ModelError>> {
+        CallContext::with_purpose(self.purpose, || self.model.complete_requests(requests))
     }
 }
 
 /// Reads the calibration that the settings name. Only the role `labels` uses it, so it is refused if a model sees, or if labels
 /// list everything.
-fn calibration(settings: &Settings, platform: &dyn Platform) -> Result<Option<Arc<Calibration>>, Error> {
+fn settings_calibration(
+    settings: &RunSettings,
+    platform: &dyn Platform,
+) -> Result<Option<Arc<Calibration>>, CommandError> {
     let Some(file) = &settings.calibration else { return Ok(None) };
     let lack = match () {
-        () if settings.roles.see != LABELS => {
+        () if settings.roles.see != LABELS_ROLE => {
             "only the answers of labels depend on it, and a model answers here".to_owned()
         }
         () if platform.lists_everything() => format!("the labels of platform {} list everything", platform.name()),
         () if !settings.has_dialogue() => "without a dialogue, labels are not asked for single things".to_owned(),
-        () => return Ok(Some(Arc::new(calibration::read(file, platform.name())?))),
+        () => return Ok(Some(Arc::new(calibration::read_calibration(file, platform.name())?))),
     };
-    Err(Error::usage(format!("--calibration {} has no effect: {lack}", file.display()), "leave it out"))
+    Err(CommandError::usage(format!("--calibration {} has no effect: {lack}", file.display()), "leave it out"))
 }
 
 /// The built-in prompts, replaced by those in the user's folder.
 ///
 /// # Errors
 /// When the folder has no prompts, or one of them cannot be used.
-pub fn prompts(settings: &Settings) -> Result<Prompts, Error> {
+pub fn settings_prompts(settings: &RunSettings) -> Result<Prompts, CommandError> {
     let own = settings.roles.prompts.as_deref().map_or_else(|| Ok(Vec::new()), own_prompts)?;
     Ok(Prompts::new(&own)?)
 }
 
 /// Every template of a folder. An unknown name is kept here and refused later, so that a misspelt template is not silently
 /// ignored.
-fn own_prompts(folder: &Path) -> Result<Vec<(String, String)>, Error> {
+fn own_prompts(folder: &Path) -> Result<Vec<(String, String)>, CommandError> {
     let mut own = Vec::new();
     let entries = fs::read_dir(folder).and_then(Iterator::collect::<Result<Vec<_>, _>>);
-    for entry in entries.map_err(Error::io(folder, "list the prompts of"))? {
+    for entry in entries.map_err(CommandError::io(folder, "list the prompts of"))? {
         let file = entry.path();
         if let (Some(name), Some("j2")) = (file.file_stem(), file.extension().and_then(|end| end.to_str())) {
-            own.push((name.to_string_lossy().into_owned(), text_file::read(&file, "read the prompt")?));
+            own.push((name.to_string_lossy().into_owned(), text_file::read_text_file(&file, "read the prompt")?));
         }
     }
     own.sort();
     if own.is_empty() {
-        return Err(Error::usage(
+        return Err(CommandError::usage(
             format!("--prompts {}: this folder has no prompt", folder.display()),
             format!("put one of these files into it: {}.j2", Prompts::names().collect::<Vec<_>>().join(".j2, ")),
         ));

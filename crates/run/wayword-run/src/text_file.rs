@@ -1,6 +1,6 @@
 //! Reads small text files of the user, up to a limit.
 
-use crate::error::Error;
+use crate::error::CommandError;
 use std::{
     fs::{self, File},
     io::Read,
@@ -15,19 +15,19 @@ const MOST_BYTES: u64 = 4 << 20;
 ///
 /// # Errors
 /// When it cannot be read, is not a plain file (but a pipe, say), is not UTF-8, or is larger than 4 MiB.
-pub fn read(path: &Path, what: &'static str) -> Result<String, Error> {
-    let wrong = |reason: &str, hint: &str| Error::usage(format!("{}: this {reason}", path.display()), hint);
-    let about = fs::metadata(path).map_err(Error::io(path, what))?;
-    if let Some(reason) = files::irregular(&about) {
+pub fn read_text_file(path: &Path, what: &'static str) -> Result<String, CommandError> {
+    let wrong = |reason: &str, hint: &str| CommandError::usage(format!("{}: this {reason}", path.display()), hint);
+    let about = fs::metadata(path).map_err(CommandError::io(path, what))?;
+    if let Some(reason) = files::describe_irregular(&about) {
         return Err(wrong(reason, "give a file"));
     }
     let mut bytes = Vec::new();
-    let file = File::open(path).map_err(Error::io(path, what))?;
-    file.take(MOST_BYTES + 1).read_to_end(&mut bytes).map_err(Error::io(path, what))?;
+    let file = File::open(path).map_err(CommandError::io(path, what))?;
+    file.take(MOST_BYTES + 1).read_to_end(&mut bytes).map_err(CommandError::io(path, what))?;
     if bytes.len() as u64 > MOST_BYTES {
         return Err(wrong("is larger than 4 MiB", "check that this is the right file"));
     }
-    files::text(bytes).map_err(|reason| wrong(reason, "check that this is the right file"))
+    files::decode_utf8(bytes).map_err(|reason| wrong(reason, "check that this is the right file"))
 }
 
 #[cfg(test)]
@@ -40,7 +40,7 @@ mod tests {
         let file = folder.path().join("settings.toml");
         let told = |bytes: &[u8]| {
             fs::write(&file, bytes).unwrap();
-            read(&file, "read the settings").map_err(|error| error.to_string())
+            read_text_file(&file, "read the settings").map_err(|error| error.to_string())
         };
         assert_eq!(told(b"\xef\xbb\xbfseed = 1"), Ok("seed = 1".to_owned()));
         assert_eq!(told(b"seed = 1"), Ok("seed = 1".to_owned()));
@@ -55,7 +55,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let pipe = folder.path().join("pipe");
         assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
-        assert!(read(&pipe, "read the settings").unwrap_err().to_string().contains("is a pipe or a device"));
-        assert!(read(folder.path(), "read the settings").unwrap_err().to_string().contains("is a folder"));
+        assert!(read_text_file(&pipe, "read the settings").unwrap_err().to_string().contains("is a pipe or a device"));
+        assert!(read_text_file(folder.path(), "read the settings").unwrap_err().to_string().contains("is a folder"));
     }
 }

@@ -3,7 +3,7 @@
 //! A command runs in its own thread, with the interpreter released, so that Python can go on. The calling thread looks every 50 ms
 //! for Ctrl-C and passes messages and progress to Python.
 
-use crate::raise::{raised, raised_of};
+use crate::raise::{exception_for, raised_of};
 use clap::Parser;
 use pyo3::prelude::*;
 use std::{
@@ -18,12 +18,12 @@ use std::{
     thread,
     time::{Duration, Instant},
 };
-use wayword::{cli::Cli, commands};
+use wayword::{cli::WaywordCli, commands};
 use wayword_platforms::process;
 use wayword_run::{
-    error::Error,
+    error::CommandError,
     interrupt,
-    output::{Listener, Output, ProgressBar},
+    output::{CommandOutput, CommandOutputListener, ProgressBar},
 };
 
 /// How often a call checks for Ctrl-C and reports its progress.
@@ -31,18 +31,18 @@ const LOOK_EVERY: Duration = Duration::from_millis(50);
 /// How long the end of the interpreter waits for a command of another thread.
 const FINISHED_WITHIN: Duration = Duration::from_secs(20);
 /// Stack of the thread that runs a command, bytes: as much as the main thread of a program has.
-const STACK: usize = 8 << 20;
+const THREAD_STACK_BYTES: usize = 8 << 20;
 
 /// Whether a command runs. Commands run one at a time, because an interrupt applies to the whole process.
-static RUNS: AtomicBool = AtomicBool::new(false);
+static IS_COMMAND_RUNNING: AtomicBool = AtomicBool::new(false);
 
 /// The turn of a command: while this value exists, no other command runs.
-struct Turn;
+struct CommandTurn;
 
-impl Turn {
+impl CommandTurn {
     /// Waits for other commands to end. A signal that Python received is raised here.
-    fn wait(py: Python<'_>) -> PyResult<Self> {
-        while RUNS.swap(true, Ordering::Acquire) {
+    fn wait_for_turn(py: Python<'_>) -> PyResult<Self> {
+        while IS_COMMAND_RUNNING.swap(true, Ordering::Acquire) {
             py.detach(|| thread::sleep(LOOK_EVERY));
             py.check_signals()?;
         }
@@ -50,9 +50,9 @@ impl Turn {
     }
 }
 
-impl Drop for Turn {
+impl Drop for CommandTurn {
     fn drop(&mut self) {
-        RUNS.store(false, Ordering::Release);
+        IS_COMMAND_RUNNING.store(false, Ordering::Release);
     }
 }
 
@@ -68,12 +68,13 @@ pub(crate) fn main(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
 pub(crate) fn call(py: Python<'_>, arguments: Vec<OsString>, hears: Py<PyAny>) -> PyResult<(u8, String)> {
     let name = arguments.first().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     let typed = std::iter::once(OsString::from("wayword")).chain(arguments);
-    let cli = Cli::try_parse_from(typed).map_err(|told| raised_of(py, "input", in_parts(&name, &told.to_string())))?;
-    let heard = Arc::new(Heard::default());
-    let output = Output::heard_by(Arc::clone(&heard) as Arc<dyn Listener>);
-    let exit =
-        waited(py, &heard, &hears, || commands::run(cli.command, &output))?.map_err(|error| raised(py, error))?;
-    Ok((exit as u8, lock(&heard.data).take().unwrap_or_default()))
+    let cli =
+        WaywordCli::try_parse_from(typed).map_err(|told| raised_of(py, "input", in_parts(&name, &told.to_string())))?;
+    let heard = Arc::new(CommandListener::default());
+    let output = CommandOutput::heard_by(Arc::clone(&heard) as Arc<dyn CommandOutputListener>);
+    let exit = run_in_turn(py, &heard, &hears, || commands::run_command(cli.command, &output))?
+        .map_err(|error| exception_for(py, error))?;
+    Ok((exit as u8, lock_mutex(&heard.data).take().unwrap_or_default()))
 }
 
 /// The message of the command line's parser, without its usage, and with a hint.
@@ -86,33 +87,33 @@ fn in_parts(command: &str, told: &str) -> (String, Option<String>, Option<String
 /// Sets the program that guards the children of this process, with its arguments. It starts the interpreter with this module.
 #[pyfunction]
 pub(crate) fn guarded_by(program: PathBuf, arguments: Vec<OsString>) {
-    process::this_program_is(process::Guardian { program, arguments });
+    process::this_program_is(process::GuardProgram { program, arguments });
 }
 
 /// Collects the messages, the progress and the result of a command.
 #[derive(Default)]
-struct Heard {
+struct CommandListener {
     data: Mutex<Option<String>>,
     said: Mutex<Vec<String>>,
     bar: Mutex<Option<ProgressBar>>,
 }
 
-impl Listener for Heard {
-    fn data(&self, json: String) {
-        *lock(&self.data) = Some(json);
+impl CommandOutputListener for CommandListener {
+    fn take_result(&self, json: String) {
+        *lock_mutex(&self.data) = Some(json);
     }
 
-    fn say(&self, text: String) {
-        lock(&self.said).push(text);
+    fn take_message(&self, text: String) {
+        lock_mutex(&self.said).push(text);
     }
 
-    fn bar(&self, bar: &ProgressBar) {
-        *lock(&self.bar) = Some(bar.clone());
+    fn take_bar(&self, bar: &ProgressBar) {
+        *lock_mutex(&self.bar) = Some(bar.clone());
     }
 }
 
 /// How a call of the Python object `hears` ended.
-enum Told {
+enum PythonOutcome {
     Well,
     /// Python received a signal.
     Signal(PyErr),
@@ -122,16 +123,16 @@ enum Told {
     Ended,
 }
 
-impl Heard {
+impl CommandListener {
     /// Passes the messages since the last call, and the progress, to Python.
-    fn tell(&self, hears: Option<&Py<PyAny>>) -> Told {
-        let said = std::mem::take(&mut *lock(&self.said));
-        let bar = lock(&self.bar).clone();
+    fn pass_to_python(&self, hears: Option<&Py<PyAny>>) -> PythonOutcome {
+        let said = std::mem::take(&mut *lock_mutex(&self.said));
+        let bar = lock_mutex(&self.bar).clone();
         let told = Python::try_attach(|py| {
             if let Err(error) = py.check_signals() {
-                return Told::Signal(error);
+                return PythonOutcome::Signal(error);
             }
-            let Some(hears) = hears else { return Told::Well };
+            let Some(hears) = hears else { return PythonOutcome::Well };
             let tell = || -> PyResult<()> {
                 for text in said {
                     hears.call_method1(py, "say", (text,))?;
@@ -142,47 +143,47 @@ impl Heard {
                 }
                 Ok(())
             };
-            tell().map_or_else(Told::Raised, |()| Told::Well)
+            tell().map_or_else(PythonOutcome::Raised, |()| PythonOutcome::Well)
         });
-        told.unwrap_or(Told::Ended)
+        told.unwrap_or(PythonOutcome::Ended)
     }
 }
 
 /// Runs a command in its turn.
-fn waited<T: Send>(
+fn run_in_turn<T: Send>(
     py: Python<'_>,
-    heard: &Heard,
+    heard: &CommandListener,
     hears: &Py<PyAny>,
-    work: impl FnOnce() -> Result<T, Error> + Send,
-) -> PyResult<Result<T, Error>> {
-    let _turn = Turn::wait(py)?;
-    interrupt::forget();
+    work: impl FnOnce() -> Result<T, CommandError> + Send,
+) -> PyResult<Result<T, CommandError>> {
+    let _turn = CommandTurn::wait_for_turn(py)?;
+    interrupt::forget_interrupt();
     let done = in_thread(py, heard, Some(hears), work);
     // Otherwise the children of other objects would not start again.
-    interrupt::forget();
+    interrupt::forget_interrupt();
     done
 }
 
 /// Does work that leaves no result behind, for example opening a world. Ctrl-C ends the children that the work waits for.
-pub(crate) fn patiently<T: Send>(
+pub(crate) fn run_patiently<T: Send>(
     py: Python<'_>,
-    work: impl FnOnce() -> Result<T, Error> + Send,
-) -> PyResult<Result<T, Error>> {
-    in_thread(py, &Heard::default(), None, work)
+    work: impl FnOnce() -> Result<T, CommandError> + Send,
+) -> PyResult<Result<T, CommandError>> {
+    in_thread(py, &CommandListener::default(), None, work)
 }
 
 /// Does work in a thread, with the interpreter released. The first Ctrl-C interrupts a command, which comes to its end; the next
 /// one, or the first where there is no command, ends the children that the work waits for. Then the exception is raised.
 fn in_thread<T: Send>(
     py: Python<'_>,
-    heard: &Heard,
+    heard: &CommandListener,
     hears: Option<&Py<PyAny>>,
-    work: impl FnOnce() -> Result<T, Error> + Send,
-) -> PyResult<Result<T, Error>> {
+    work: impl FnOnce() -> Result<T, CommandError> + Send,
+) -> PyResult<Result<T, CommandError>> {
     let (done, raised) = py.detach(|| {
         thread::scope(|scope| {
             let (ends, ended) = channel::<()>();
-            let worker = thread::Builder::new().stack_size(STACK).spawn_scoped(scope, move || {
+            let worker = thread::Builder::new().stack_size(THREAD_STACK_BYTES).spawn_scoped(scope, move || {
                 let result = work();
                 drop(ends);
                 result
@@ -192,17 +193,17 @@ fn in_thread<T: Send>(
             let mut is_ended = false;
             while ended.recv_timeout(LOOK_EVERY) == Err(RecvTimeoutError::Timeout) {
                 // After an exception no more messages are passed on.
-                match heard.tell(hears.filter(|_| raised.is_none())) {
-                    Told::Well => {}
-                    Told::Signal(error) => {
+                match heard.pass_to_python(hears.filter(|_| raised.is_none())) {
+                    PythonOutcome::Well => {}
+                    PythonOutcome::Signal(error) => {
                         is_ended |= raised.is_some() || hears.is_none();
                         raised.get_or_insert(error);
                     }
-                    Told::Raised(error) => raised = Some(error),
-                    Told::Ended => is_ended = true,
+                    PythonOutcome::Raised(error) => raised = Some(error),
+                    PythonOutcome::Ended => is_ended = true,
                 }
                 if hears.is_some() && (raised.is_some() || is_ended) {
-                    interrupt::ask();
+                    interrupt::ask_to_stop();
                 }
                 if is_ended {
                     process::end_all();
@@ -210,7 +211,7 @@ fn in_thread<T: Send>(
             }
             let done = worker.join();
             if raised.is_none()
-                && let Told::Signal(error) | Told::Raised(error) = heard.tell(hears)
+                && let PythonOutcome::Signal(error) | PythonOutcome::Raised(error) = heard.pass_to_python(hears)
             {
                 raised = Some(error);
             }
@@ -223,7 +224,7 @@ fn in_thread<T: Send>(
     match (done, raised) {
         (_, Some(error)) => Err(error),
         (Some(Ok(result)), None) => Ok(result),
-        (Some(Err(panic)), None) => Err(raised_of(py, "internal", (words(&*panic), None, None))),
+        (Some(Err(panic)), None) => Err(raised_of(py, "internal", (panic_text(&*panic), None, None))),
         (None, None) => Err(raised_of(py, "internal", ("no thread can be started".to_owned(), None, None))),
     }
 }
@@ -232,8 +233,8 @@ fn in_thread<T: Send>(
 #[pyfunction]
 pub(crate) fn finish(py: Python<'_>) {
     let begun = Instant::now();
-    while RUNS.load(Ordering::Acquire) && begun.elapsed() < FINISHED_WITHIN {
-        interrupt::ask();
+    while IS_COMMAND_RUNNING.load(Ordering::Acquire) && begun.elapsed() < FINISHED_WITHIN {
+        interrupt::ask_to_stop();
         py.detach(|| thread::sleep(LOOK_EVERY));
     }
     py.detach(process::end_all);
@@ -242,16 +243,16 @@ pub(crate) fn finish(py: Python<'_>) {
 /// The settings of a run folder, as JSON.
 #[pyfunction]
 pub(crate) fn settings(py: Python<'_>, folder: PathBuf) -> PyResult<String> {
-    let settings = wayword_run::run_folder::settings_of(&folder).map_err(|error| raised(py, error))?;
+    let settings = wayword_run::run_folder::settings_of(&folder).map_err(|error| exception_for(py, error))?;
     serde_json::to_string(&settings).map_err(|error| raised_of(py, "internal", (error.to_string(), None, None)))
 }
 
 /// The message of a panic.
-fn words(panic: &(dyn Any + Send)) -> String {
+fn panic_text(panic: &(dyn Any + Send)) -> String {
     let text = panic.downcast_ref::<String>().cloned();
     text.or_else(|| panic.downcast_ref::<&str>().map(|text| (*text).to_owned())).unwrap_or_default()
 }
 
-fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+fn lock_mutex<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -1,8 +1,8 @@
 //! Python's `Map`: the scenes of a platform, and the walks that fit a text.
 
 use crate::{
-    call::patiently,
-    raise::{raised, raised_of},
+    call::run_patiently,
+    raise::{exception_for, raised_of},
 };
 use pyo3::prelude::*;
 use std::{collections::BTreeMap, path::PathBuf};
@@ -10,7 +10,7 @@ use wayword_core::{Heading, Platform, SceneId, ViewpointId};
 use wayword_run::{
     follow::KnownScenes,
     meant::MeantWalk,
-    platforms::{self, Place},
+    platforms::{self, PlatformPlace},
 };
 
 /// The scenes of a platform, each surveyed when it is first asked for.
@@ -32,24 +32,26 @@ impl Map {
         island: Option<usize>,
         connectivity: Option<PathBuf>,
     ) -> PyResult<Self> {
-        let opened = patiently(py, || {
+        let opened = run_patiently(py, || {
             let (data, connectivity) = (data.as_deref(), connectivity.as_deref());
-            platforms::open_at(platform, Place { data, at, island, connectivity })
+            platforms::open_at(platform, PlatformPlace { data, at, island, connectivity })
         })?;
-        Ok(Self { platform: opened.map_err(|error| raised(py, error))?, scenes: KnownScenes::new() })
+        Ok(Self { platform: opened.map_err(|error| exception_for(py, error))?, scenes: KnownScenes::new() })
     }
 
     /// The names of the scenes.
     fn scenes(&self, py: Python<'_>) -> PyResult<Vec<String>> {
-        let scenes = patiently(py, || Ok(self.platform.scenes()?))?.map_err(|error| raised(py, error))?;
+        let scenes =
+            run_patiently(py, || Ok(self.platform.list_scenes()?))?.map_err(|error| exception_for(py, error))?;
         Ok(scenes.into_iter().map(|scene| scene.to_string()).collect())
     }
 
     /// The viewpoints of a scene: positions of the eye, metres.
     fn viewpoints(&self, py: Python<'_>, scene: &str) -> PyResult<BTreeMap<String, (f64, f64, f64)>> {
-        let scene = id(py, SceneId::new(scene))?;
-        let graph = patiently(py, || Ok(self.platform.graph(&scene)?))?.map_err(|error| raised(py, error))?;
-        let place = |id: &ViewpointId| Some((id.to_string(), graph.position(id)?.into()));
+        let scene = value_from_python(py, SceneId::new(scene))?;
+        let graph = run_patiently(py, || Ok(self.platform.graph_for_scene(&scene)?))?
+            .map_err(|error| exception_for(py, error))?;
+        let place = |id: &ViewpointId| Some((id.to_string(), graph.position_of(id)?.into()));
         Ok(graph.viewpoints().filter_map(place).collect())
     }
 
@@ -62,15 +64,17 @@ impl Map {
         most: usize,
     ) -> PyResult<Vec<(Vec<String>, f64)>> {
         let (scene, start, heading) = from;
-        let (scene, start) = (id(py, SceneId::new(scene))?, id(py, ViewpointId::new(start))?);
-        let heading = id(py, Heading::new(heading))?;
-        let found = patiently(py, || self.scenes.meant(&*self.platform, (&scene, &start, heading), text, most))?;
+        let (scene, start) =
+            (value_from_python(py, SceneId::new(scene))?, value_from_python(py, ViewpointId::new(start))?);
+        let heading = value_from_python(py, Heading::new(heading))?;
+        let found =
+            run_patiently(py, || self.scenes.meant_walks(&*self.platform, (&scene, &start, heading), text, most))?;
         let walk = |walk: MeantWalk| (walk.viewpoints.iter().map(ToString::to_string).collect(), walk.share);
-        Ok(found.map_err(|error| raised(py, error))?.into_iter().map(walk).collect())
+        Ok(found.map_err(|error| exception_for(py, error))?.into_iter().map(walk).collect())
     }
 }
 
 /// A value from Python, or the exception for an invalid one.
-fn id<T, E: ToString>(py: Python<'_>, made: Result<T, E>) -> PyResult<T> {
+fn value_from_python<T, E: ToString>(py: Python<'_>, made: Result<T, E>) -> PyResult<T> {
     made.map_err(|error| raised_of(py, "input", (error.to_string(), None, None)))
 }

@@ -1,8 +1,8 @@
-//! Python's `Judge` and `Scores`: reads trajectories from Python objects, scores them, and returns their figures.
+//! Python's `TrajectoryJudge` and `SubmissionScores`: reads trajectories from Python objects, scores them, and returns their figures.
 
 use crate::{
-    call::patiently,
-    raise::{raised, raised_of},
+    call::run_patiently,
+    raise::{exception_for, raised_of},
 };
 use pyo3::{
     exceptions::{PyLookupError, PyTypeError, PyValueError},
@@ -13,13 +13,13 @@ use pyo3::{
 use std::{collections::BTreeSet, ops::Range, path::PathBuf};
 use wayword_experiments::{
     episodes,
-    judge::{Judge as Episodes, Problems, Scores as Figures, Scoring},
+    judge::{SubmissionScores as Figures, SubmissionScoring, TrajectoryJudge as Episodes, TrajectoryProblems},
 };
 use wayword_formats::submission;
-use wayword_metrics::{Metric, Rule};
+use wayword_metrics::{TrajectoryMetric, TrajectorySuccessRule};
 use wayword_run::{
-    error::Error,
-    platforms::{self, Place},
+    error::CommandError,
+    platforms::{self, PlatformPlace},
 };
 
 /// The episodes that trajectories are scored by.
@@ -39,58 +39,58 @@ impl Judge {
         island: Option<usize>,
         connectivity: Option<PathBuf>,
     ) -> PyResult<Self> {
-        let judge = patiently(py, || -> Result<Episodes, Error> {
+        let judge = run_patiently(py, || -> Result<Episodes, CommandError> {
             let (data, connectivity) = (data.as_deref(), connectivity.as_deref());
-            let platform = platforms::open_at(platform, Place { data, at, island, connectivity })?;
-            Episodes::new(&episodes::read(&episodes, platform.as_ref())?, platform.as_ref())
+            let platform = platforms::open_at(platform, PlatformPlace { data, at, island, connectivity })?;
+            Episodes::new(&episodes::read_episodes(&episodes, platform.as_ref())?, platform.as_ref())
         })?;
-        judge.map(Self).map_err(|error| raised(py, error))
+        judge.map(Self).map_err(|error| exception_for(py, error))
     }
 
     /// How many instructions there are.
     fn __len__(&self) -> usize {
-        self.0.instructions()
+        self.0.instruction_count()
     }
 
     /// The figures of the trajectories in a file.
     fn score_file(&self, py: Python<'_>, file: PathBuf, partial: bool) -> PyResult<Scores> {
-        let scored = py.detach(|| self.0.score_all(&submission::read(&file), &BTreeSet::new(), partial));
-        scored.map(|(scores, _)| Scores(scores)).map_err(|problems| refused(py, &problems))
+        let scored = py.detach(|| self.0.score_all(&submission::read_submission(&file), &BTreeSet::new(), partial));
+        scored.map(|(scores, _)| Scores(scores)).map_err(|problems| problems_error(py, &problems))
     }
 
     /// The figures of trajectories: a list of `{"instr_id", "trajectory", "predObjId"}`, or a mapping from instructions to
     /// trajectories.
     fn score(&self, py: Python<'_>, submission: &Bound<'_, PyAny>, partial: bool) -> PyResult<Scores> {
-        let mut scoring = self.0.begin();
-        let mut handed = Part::default();
+        let mut scoring = self.0.begin_submission();
+        let mut handed = TrajectoryPart::default();
         each_trajectory(submission, |name, trajectory, object| {
-            handed.take(name, trajectory, object)?;
-            if handed.trajectories.len() == PART {
-                py.detach(|| handed.score(&mut scoring));
+            handed.take_trajectory(name, trajectory, object)?;
+            if handed.trajectories.len() == PART_TRAJECTORIES {
+                py.detach(|| handed.score_part(&mut scoring));
             }
             Ok(())
         })?;
         let scored = py.detach(|| {
-            handed.score(&mut scoring);
-            scoring.end(Problems::default(), partial)
+            handed.score_part(&mut scoring);
+            scoring.finish_submission(TrajectoryProblems::default(), partial)
         });
-        scored.map(Scores).map_err(|problems| refused(py, &problems))
+        scored.map(Scores).map_err(|problems| problems_error(py, &problems))
     }
 }
 
 /// The exception for a submission that is not scored.
-fn refused(py: Python<'_>, problems: &Problems) -> PyErr {
+fn problems_error(py: Python<'_>, problems: &TrajectoryProblems) -> PyErr {
     let told: Vec<(Option<&str>, &str)> =
-        problems.told().iter().map(|problem| (problem.instr_id.as_deref(), &*problem.problem)).collect();
+        problems.listed_problems().iter().map(|problem| (problem.instr_id.as_deref(), &*problem.problem)).collect();
     let made = py
         .import("wayword.errors")
         .and_then(|errors| errors.getattr("SubmissionError"))
-        .and_then(|class| class.call1((told, problems.count(), problems.missing())));
+        .and_then(|class| class.call1((told, problems.count(), problems.missing_count())));
     made.map_or_else(|error| error, PyErr::from_value)
 }
 
 /// The exception for a trajectory that cannot be read.
-fn unread(py: Python<'_>, at: usize, what: &str) -> PyErr {
+fn unread_error(py: Python<'_>, at: usize, what: &str) -> PyErr {
     let hint = "give {\"instr_id\": ..., \"trajectory\": [...]}, and \"predObjId\" where an object is named";
     raised_of(py, "submission", (what.to_owned(), Some(format!("trajectory {at}")), Some(hint.to_owned())))
 }
@@ -106,7 +106,7 @@ fn each_trajectory<'py>(
             let is_ours = error.is_instance_of::<PyTypeError>(py) || error.is_instance_of::<PyValueError>(py);
             // All other exceptions come from the caller's own iterators and are passed on.
             let is_ours = is_ours || error.is_instance_of::<PyLookupError>(py);
-            if is_ours { unread(py, at, &error.to_string()) } else { error }
+            if is_ours { unread_error(py, at, &error.to_string()) } else { error }
         }
     };
     if let Ok(mapping) = submission.cast::<PyDict>() {
@@ -117,9 +117,9 @@ fn each_trajectory<'py>(
     }
     for (at, entry) in submission.try_iter()?.enumerate() {
         let entry = entry?;
-        let entry = entry.cast::<PyDict>().map_err(|_| unread(py, at, "it is no dictionary"))?;
+        let entry = entry.cast::<PyDict>().map_err(|_| unread_error(py, at, "it is no dictionary"))?;
         let needed = |field: &Bound<'py, PyString>| {
-            entry.get_item(field)?.ok_or_else(|| unread(py, at, &format!("it has no {field}")))
+            entry.get_item(field)?.ok_or_else(|| unread_error(py, at, &format!("it has no {field}")))
         };
         let (name, trajectory) = (needed(intern!(py, "instr_id"))?, needed(intern!(py, "trajectory"))?);
         let object = entry.get_item(intern!(py, "predObjId"))?.filter(|object| !object.is_none());
@@ -129,104 +129,109 @@ fn each_trajectory<'py>(
 }
 
 /// How many trajectories are copied before they are scored: few, so that the copies stay in the processor's cache.
-const PART: usize = 256;
+const PART_TRAJECTORIES: usize = 256;
 
 /// A part of the trajectories from Python, copied, so that the interpreter can be released while they are scored.
 #[derive(Default)]
-struct Part {
+struct TrajectoryPart {
     /// All names, one after the other.
     names: String,
     /// The viewpoints of all trajectories.
     steps: Vec<Range<usize>>,
-    trajectories: Vec<Handed>,
+    trajectories: Vec<HandedTrajectory>,
 }
 
 /// One trajectory.
-struct Handed {
+struct HandedTrajectory {
     name: Range<usize>,
     steps: Range<usize>,
     object: Option<Range<usize>>,
 }
 
-impl Part {
+impl TrajectoryPart {
     /// Scores the trajectories, and is empty afterwards.
-    fn score(&mut self, scoring: &mut Scoring<'_>) {
+    fn score_part(&mut self, scoring: &mut SubmissionScoring<'_>) {
         for one in &self.trajectories {
-            let names = self.steps[one.steps.clone()].iter().map(|step| self.text(step));
-            scoring.take(self.text(&one.name), names, one.object.as_ref().map(|object| self.text(object)));
+            let names = self.steps[one.steps.clone()].iter().map(|step| self.text_at(step));
+            scoring.take_trajectory(
+                self.text_at(&one.name),
+                names,
+                one.object.as_ref().map(|object| self.text_at(object)),
+            );
         }
         self.names.clear();
         self.steps.clear();
         self.trajectories.clear();
     }
 
-    fn take(
+    fn take_trajectory(
         &mut self,
         name: &Bound<'_, PyAny>,
         trajectory: &Bound<'_, PyAny>,
         object: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<()> {
-        let name = self.keep(name)?;
+        let name = self.keep_text(name)?;
         let first = self.steps.len();
         if let Ok(list) = trajectory.cast::<PyList>() {
             for step in list.iter() {
-                self.step(&step)?;
+                self.take_step(&step)?;
             }
         } else if trajectory.is_instance_of::<PyString>() {
             return Err(PyTypeError::new_err("the trajectory is a text, and not a list of viewpoints"));
         } else {
             for step in trajectory.try_iter()? {
-                self.step(&step?)?;
+                self.take_step(&step?)?;
             }
         }
         // An object's id may be a number, as in the dataset.
-        let object = object.map(|object| object.str().and_then(|object| self.keep(object.as_any()))).transpose()?;
-        self.trajectories.push(Handed { name, steps: first..self.steps.len(), object });
+        let object =
+            object.map(|object| object.str().and_then(|object| self.keep_text(object.as_any()))).transpose()?;
+        self.trajectories.push(HandedTrajectory { name, steps: first..self.steps.len(), object });
         Ok(())
     }
 
     /// Takes a viewpoint, a viewpoint with angles, or several viewpoints, as VLN-DUET gives them.
-    fn step(&mut self, step: &Bound<'_, PyAny>) -> PyResult<()> {
+    fn take_step(&mut self, step: &Bound<'_, PyAny>) -> PyResult<()> {
         let is_more = if let Ok(pose) = step.cast::<PyTuple>() {
             // Borrowed, because a submission has many steps.
             let first = pose.get_borrowed_item(0)?;
-            self.viewpoint(&first)?;
+            self.take_viewpoint(&first)?;
             pose.len() > 1 && pose.get_borrowed_item(1)?.is_instance_of::<PyString>()
         } else if step.is_instance_of::<PyString>() {
-            return self.viewpoint(step);
+            return self.take_viewpoint(step);
         } else {
             let pose = step.cast::<PyList>()?;
-            self.viewpoint(&pose.get_item(0)?)?;
+            self.take_viewpoint(&pose.get_item(0)?)?;
             pose.len() > 1 && pose.get_item(1)?.is_instance_of::<PyString>()
         };
         if is_more {
             for viewpoint in step.try_iter()?.skip(1) {
-                self.viewpoint(&viewpoint?)?;
+                self.take_viewpoint(&viewpoint?)?;
             }
         }
         Ok(())
     }
 
-    fn viewpoint(&mut self, name: &Bound<'_, PyAny>) -> PyResult<()> {
-        let name = self.keep(name)?;
+    fn take_viewpoint(&mut self, name: &Bound<'_, PyAny>) -> PyResult<()> {
+        let name = self.keep_text(name)?;
         self.steps.push(name);
         Ok(())
     }
 
     /// Copies a text from Python, and returns its place in the copies.
-    fn keep(&mut self, text: &Bound<'_, PyAny>) -> PyResult<Range<usize>> {
+    fn keep_text(&mut self, text: &Bound<'_, PyAny>) -> PyResult<Range<usize>> {
         let first = self.names.len();
         self.names.push_str(text.cast::<PyString>()?.to_str()?);
         Ok(first..self.names.len())
     }
 
-    fn text(&self, at: &Range<usize>) -> &str {
+    fn text_at(&self, at: &Range<usize>) -> &str {
         self.names.get(at.clone()).unwrap_or_default()
     }
 }
 
 /// Mean, low, high, trajectories, paths.
-type Interval = (f64, f64, f64, usize, usize);
+type FigureInterval = (f64, f64, f64, usize, usize);
 
 /// The figures of trajectories, in the order of the episodes.
 #[pyclass(frozen, module = "wayword._wayword")]
@@ -241,33 +246,34 @@ impl Scores {
 
     /// The instructions.
     fn names(&self) -> Vec<&str> {
-        self.0.names().collect()
+        self.0.instruction_names().collect()
     }
 
     /// Scene and path of each: figures of one path are not independent.
     fn paths(&self) -> Vec<&str> {
-        self.0.paths().collect()
+        self.0.path_names().collect()
     }
 
     /// Whether a rule of success can be applied.
     fn has_rule(&self, py: Python<'_>, rule: &str) -> PyResult<bool> {
-        Ok(self.0.has(named(py, rule)?))
+        Ok(self.0.has_rule(parse_name(py, rule)?))
     }
 
     /// A figure of each trajectory, as 64-bit numbers in the machine's order; NaN where there is none.
     fn values<'py>(&self, py: Python<'py>, metric: &str, rule: &str) -> PyResult<Bound<'py, PyBytes>> {
-        let (metric, rule) = (named(py, metric)?, named(py, rule)?);
+        let (metric, rule) = (parse_name(py, metric)?, parse_name(py, rule)?);
         let values = py.detach(|| {
             let value = |value: Option<f64>| value.unwrap_or(f64::NAN).to_ne_bytes();
-            self.0.values(metric, rule).flat_map(value).collect::<Vec<u8>>()
+            self.0.metric_values(metric, rule).flat_map(value).collect::<Vec<u8>>()
         });
         Ok(PyBytes::new(py, &values))
     }
 
     /// The mean of a figure; `None` where no trajectory has it.
     fn mean(&self, py: Python<'_>, metric: &str, rule: &str) -> PyResult<Option<f64>> {
-        let (metric, rule): (Metric, Rule) = (named(py, metric)?, named(py, rule)?);
-        Ok(py.detach(|| self.0.mean(metric, rule)))
+        let (metric, rule): (TrajectoryMetric, TrajectorySuccessRule) =
+            (parse_name(py, metric)?, parse_name(py, rule)?);
+        Ok(py.detach(|| self.0.metric_mean(metric, rule)))
     }
 
     /// The mean with its 95 % interval.
@@ -278,14 +284,15 @@ impl Scores {
         rule: &str,
         resamples: usize,
         seed: u64,
-    ) -> PyResult<Option<Interval>> {
-        let (metric, rule): (Metric, Rule) = (named(py, metric)?, named(py, rule)?);
-        let estimate = py.detach(|| self.0.estimate(metric, rule, resamples, seed));
+    ) -> PyResult<Option<FigureInterval>> {
+        let (metric, rule): (TrajectoryMetric, TrajectorySuccessRule) =
+            (parse_name(py, metric)?, parse_name(py, rule)?);
+        let estimate = py.detach(|| self.0.metric_estimate(metric, rule, resamples, seed));
         Ok(estimate.map(|found| (found.mean, found.low, found.high, found.values, found.clusters)))
     }
 }
 
 /// A figure or a rule by its name in files.
-fn named<T: serde::de::DeserializeOwned>(py: Python<'_>, name: &str) -> PyResult<T> {
+fn parse_name<T: serde::de::DeserializeOwned>(py: Python<'_>, name: &str) -> PyResult<T> {
     serde_json::from_value(name.into()).map_err(|error| raised_of(py, "input", (error.to_string(), None, None)))
 }

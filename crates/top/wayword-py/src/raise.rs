@@ -1,11 +1,11 @@
 //! Turns errors into Python exceptions. Their classes are in `wayword/errors.py`.
 
 use pyo3::prelude::*;
-use wayword_run::{error::Error, explained::Explained};
+use wayword_run::{error::CommandError, explained::ErrorParts};
 
 /// The exception of an error.
-pub(crate) fn raised(py: Python<'_>, error: Error) -> PyErr {
-    let Explained { kind, what, place, hint } = Explained::of(&error);
+pub(crate) fn exception_for(py: Python<'_>, error: CommandError) -> PyErr {
+    let ErrorParts { kind, what, place, hint } = ErrorParts::from_error(&error);
     raised_of(py, kind, (what, place, hint))
 }
 

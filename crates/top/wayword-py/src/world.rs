@@ -3,7 +3,7 @@
 use crate::raise::raised_of;
 use pyo3::{prelude::*, types::PyBytes};
 use std::path::PathBuf;
-use wayword_platforms::process::{Inside, ProcessOptions};
+use wayword_platforms::process::{InsideWorld, ProcessOptions};
 use wayword_run::platforms::{forget_inside, put_inside};
 
 /// Registers a world under a name. `answer` takes a request and returns an answer, each a line of JSON as bytes. Returns the
@@ -18,7 +18,7 @@ pub(crate) fn put_world(
     height_px: Option<u32>,
     spacing_m: Option<f64>,
 ) -> PyResult<PathBuf> {
-    let inside = Inside::new(move |request| {
+    let inside = InsideWorld::new(move |request| {
         let answered = Python::try_attach(|py| {
             let answered = answer.call1(py, (PyBytes::new(py, request),)).and_then(|line| line.extract::<Vec<u8>>(py));
             // An exception that the world does not turn into an answer is reported like the last words of a child process.
@@ -27,7 +27,7 @@ pub(crate) fn put_world(
         // The interpreter is ending, and the thread that asked ends with it.
         answered.unwrap_or_default()
     });
-    let options = ProcessOptions::inside(name, inside).sized(width_px, height_px, spacing_m);
+    let options = ProcessOptions::for_inside_world(name, inside).with_sizes(width_px, height_px, spacing_m);
     let refused = |reason| raised_of(py, "platform", (reason, Some(name.to_owned()), None));
     Ok(put_inside(name, options.map_err(refused)?))
 }

@@ -6,22 +6,22 @@
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use std::time::Duration;
 use wayword_run::{
-    generate::{Summary, generate_into},
-    output::Output,
-    settings::{Asked, AskedPlatform, Draw, Walks},
+    generate::{RunSummary, generate_into},
+    output::CommandOutput,
+    settings::{AskedPlatform, AskedSettings, Draw, Walks},
 };
 
 /// A run into a new folder; the default is both styles.
-fn run(asked: Asked) -> Summary {
+fn run(asked: AskedSettings) -> RunSummary {
     let folder = tempfile::tempdir().expect("a folder for the run");
-    let job = asked.job().expect("settings that make sense");
-    generate_into(folder.path(), &job, &Output::new(true, true)).expect("the run succeeds")
+    let job = asked.into_job().expect("settings that make sense");
+    generate_into(folder.path(), &job, &CommandOutput::new(true, true)).expect("the run succeeds")
 }
 
 fn labels(criterion: &mut Criterion) {
     let data = tempfile::tempdir().expect("a folder for the building");
     wayword_testkit::write_building(data.path()).expect("the building is written");
-    let asked = |episodes: Option<&str>, paths: Option<usize>| Asked {
+    let asked = |episodes: Option<&str>, paths: Option<usize>| AskedSettings {
         platform: AskedPlatform {
             platform: Some("matterport".into()),
             data: Some(data.path().to_owned()),
@@ -33,7 +33,7 @@ fn labels(criterion: &mut Criterion) {
             hops: Some("3..7".into()),
             ..Walks::default()
         },
-        ..Asked::default()
+        ..AskedSettings::default()
     };
     let mut group = criterion.benchmark_group("run on labels, both styles");
     group.sample_size(10).measurement_time(Duration::from_secs(10));
@@ -50,10 +50,10 @@ fn labels(criterion: &mut Criterion) {
 }
 
 fn house(criterion: &mut Criterion) {
-    let asked = || Asked {
+    let asked = || AskedSettings {
         walks: Walks { paths: Some(1), scan: Some(vec!["house2-3".into()]), ..Walks::default() },
         draw: Draw { seed: Some(3), ..Draw::default() },
-        ..Asked::default()
+        ..AskedSettings::default()
     };
     let mut group = criterion.benchmark_group("run in a house, both styles");
     group.sample_size(10).measurement_time(Duration::from_secs(30));

@@ -1,14 +1,14 @@
 //! `wayword completions`: prints the completion script for a shell.
 
-use crate::cli::Cli;
+use crate::cli::WaywordCli;
 use clap::CommandFactory;
 use std::io::{self, Write};
-use wayword_run::error::{Error, Exit};
+use wayword_run::error::{CommandError, Exit};
 
-pub fn run(shell: clap_complete::Shell) -> Result<Exit, Error> {
+pub fn print_completions(shell: clap_complete::Shell) -> Result<Exit, CommandError> {
     // `clap_complete` panics when it cannot write. A closed pipe is not an error.
     let mut script = Vec::new();
-    clap_complete::generate(shell, &mut Cli::command(), "wayword", &mut script);
+    clap_complete::generate(shell, &mut WaywordCli::command(), "wayword", &mut script);
     let _ = io::stdout().write_all(&script);
     Ok(Exit::Done)
 }

@@ -3,23 +3,23 @@
 use clap::Args;
 use serde::Serialize;
 use std::{fmt, path::PathBuf};
-use wayword_core::{Climb, Move, Turn, Verdict};
-use wayword_formats::jsonl::{self, Record};
+use wayword_core::{ClimbDirection, PathMove, TurnKind, Verdict};
+use wayword_formats::jsonl::{self, InstructionRecord};
 use wayword_house::scene_name;
 use wayword_report::pages as report;
 use wayword_run::generate::generate_into;
 use wayword_run::{
-    count::count,
-    error::{Error, Exit},
-    output::Output,
+    count::count_phrase,
+    error::{CommandError, Exit},
+    output::CommandOutput,
     run_folder::{WalkRecord, file, read_lines},
-    settings::{Asked, Draw, Walks},
+    settings::{AskedSettings, Draw, Walks},
 };
 
 /// `wayword demo`.
 #[derive(Debug, Args)]
 #[command(after_long_help = "Examples:\n  wayword demo\n  wayword demo --seed 7 --out walk")]
-pub struct Demo {
+pub struct DemoArgs {
     /// Seed of the house and of the path through it.
     #[arg(long, default_value_t = 3)]
     pub seed: u64,
@@ -29,47 +29,47 @@ pub struct Demo {
 }
 
 /// The report of a demo shows its one path.
-const ITEMS: usize = 1;
+const DEMO_ITEMS: usize = 1;
 
-pub fn run(args: &Demo, output: &Output) -> Result<Exit, Error> {
-    let asked = Asked {
+pub fn run_demo(args: &DemoArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
+    let asked = AskedSettings {
         walks: Walks { scan: Some(vec![scene_name(args.seed)]), paths: Some(1), ..Walks::default() },
         draw: Draw { seed: Some(args.seed), ..Draw::default() },
-        ..Asked::default()
+        ..AskedSettings::default()
     };
     output.say(format_args!("generating {} and a path through it ...", scene_name(args.seed)));
-    let summary = generate_into(&args.out, &asked.job()?, output)?;
+    let summary = generate_into(&args.out, &asked.into_job()?, output)?;
     if let Some(reason) = &summary.stopped {
         output.say(format_args!("stopped before the end: {reason}"));
         return Ok(summary.exit);
     }
     let report = args.out.join(file::REPORT);
-    report::write(&args.out, &report, ITEMS)?;
-    let shown = Shown {
+    report::write_report(&args.out, &report, DEMO_ITEMS)?;
+    let shown = DemoOutput {
         walks: read_lines(&args.out.join(file::WALKS))?,
-        records: jsonl::read(&args.out.join(file::INSTRUCTIONS))?,
+        records: jsonl::read_records(&args.out.join(file::INSTRUCTIONS))?,
         report,
     };
-    output.data(&shown, &shown);
+    output.print_result(&shown, &shown);
     Ok(Exit::Done)
 }
 
 /// The output of the demo.
 #[derive(Serialize)]
-struct Shown {
+struct DemoOutput {
     walks: Vec<WalkRecord>,
-    records: Vec<Record>,
+    records: Vec<InstructionRecord>,
     report: PathBuf,
 }
 
-impl fmt::Display for Shown {
+impl fmt::Display for DemoOutput {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for walk in &self.walks {
             let length = walk.path.length_m().map_or_else(String::new, |length_m| format!("{length_m:.1} m in "));
-            writeln!(f, "{}: {length}{}", walk.path.id, count(walk.path.frames.len(), "frame"))?;
+            writeln!(f, "{}: {length}{}", walk.path.id, count_phrase(walk.path.frames.len(), "frame"))?;
             let moves = walk.path.moves();
             for (at, observation) in walk.observations.iter().enumerate() {
-                let then = moves.get(at).map_or(String::new(), motion);
+                let then = moves.get(at).map_or(String::new(), describe_move);
                 writeln!(f, "  {at:>2}  {}{then}", observation.summary)?;
             }
         }
@@ -94,19 +94,19 @@ impl fmt::Display for Shown {
 }
 
 /// The move after a frame, in brackets.
-fn motion(step: &Move) -> String {
+fn describe_move(step: &PathMove) -> String {
     let turn = match step.turn() {
-        Turn::Straight => None,
-        Turn::SlightLeft => Some("turn slightly left"),
-        Turn::SlightRight => Some("turn slightly right"),
-        Turn::Left => Some("turn left"),
-        Turn::Right => Some("turn right"),
-        Turn::Around => Some("turn around"),
+        TurnKind::Straight => None,
+        TurnKind::SlightLeft => Some("turn slightly left"),
+        TurnKind::SlightRight => Some("turn slightly right"),
+        TurnKind::Left => Some("turn left"),
+        TurnKind::Right => Some("turn right"),
+        TurnKind::Around => Some("turn around"),
     };
     let climb = match step.climb() {
-        Climb::Level => None,
-        Climb::Up => Some("go up"),
-        Climb::Down => Some("go down"),
+        ClimbDirection::Level => None,
+        ClimbDirection::Up => Some("go up"),
+        ClimbDirection::Down => Some("go down"),
     };
     let words: Vec<&str> = turn.into_iter().chain(climb).collect();
     if words.is_empty() { String::new() } else { format!("  [{}]", words.join(", ")) }

@@ -20,20 +20,20 @@ mod report_command;
 mod runs;
 
 use clap::Parser;
-use cli::Cli;
+use cli::WaywordCli;
 use std::ffi::OsString;
 use wayword_run::{
     error::Exit,
     interrupt,
-    output::{self, Output},
+    output::{self, CommandOutput},
 };
 /// Runs the program; `arguments` begins with its name. Returns the exit code.
 #[must_use]
 pub fn main(arguments: Vec<OsString>) -> u8 {
     wayword_platforms::process::stand_guard_if_asked(arguments.get(1..).unwrap_or_default());
-    let pending = interrupt::catch();
+    let pending = interrupt::catch_signals();
     leave_contained_panics_to_errors();
-    let cli = match Cli::try_parse_from(arguments) {
+    let cli = match WaywordCli::try_parse_from(arguments) {
         Ok(cli) => cli,
         Err(told) => {
             // A closed output is no error.
@@ -41,12 +41,12 @@ pub fn main(arguments: Vec<OsString>) -> u8 {
             return u8::try_from(told.exit_code()).unwrap_or(u8::MAX);
         }
     };
-    let output = Output::new(cli.json, cli.quiet);
-    interrupt::listen(pending, &output);
-    match commands::run(cli.command, &output) {
+    let output = CommandOutput::new(cli.json, cli.quiet);
+    interrupt::listen_for_signals(pending, &output);
+    match commands::run_command(cli.command, &output) {
         Ok(exit) => exit as u8,
         Err(error) => {
-            output.error(&error);
+            output.print_error(&error);
             match error.exit_code() {
                 // After an interrupt, a call that was not sent or a simulator that was ended looks like a failure.
                 Exit::Stopped | Exit::Lost if interrupt::is_asked() => Exit::Interrupted as u8,

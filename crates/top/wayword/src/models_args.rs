@@ -15,7 +15,7 @@ Models are kept in Hugging Face's cache, which its Python client shares: $HF_HUB
 ~/.cache/huggingface/hub. HF_ENDPOINT names another hub, HF_TOKEN holds a token for private and gated models, and with
 WAYWORD_OFFLINE=1 nothing is fetched. A model in a folder of your own is named hf/PATH, where PATH begins with / or ., as in
 hf/./models/blip.")]
-pub struct Models {
+pub struct ModelsArgs {
     /// What to do.
     #[command(subcommand)]
     pub command: ModelsCommand,

@@ -2,12 +2,12 @@
 
 use std::fmt::Write as _;
 use wayword_run::{
-    error::{Error, Exit},
-    output::Output,
+    error::{CommandError, Exit},
+    output::CommandOutput,
     platforms::PLATFORMS,
 };
 
-pub fn run(output: &Output) -> Result<Exit, Error> {
+pub fn list_platforms(output: &CommandOutput) -> Result<Exit, CommandError> {
     let mut text = String::new();
     for platform in PLATFORMS {
         let absent = if platform.is_here { "" } else { " (not in this build: --features full)" };
@@ -15,6 +15,6 @@ pub fn run(output: &Output) -> Result<Exit, Error> {
         let _ = writeln!(text, "{}{absent}: {}", platform.name, platform.what);
         let _ = writeln!(text, "    needs:  {}\n    offers: {}", platform.needs, platform.offers);
     }
-    output.data(&PLATFORMS, text);
+    output.print_result(&PLATFORMS, text);
     Ok(Exit::Done)
 }

@@ -8,8 +8,8 @@ use std::{
 use wayword_experiments::compare;
 use wayword_report::pages as report;
 use wayword_run::{
-    error::{Error, Exit},
-    output::Output,
+    error::{CommandError, Exit},
+    output::CommandOutput,
     run_folder::{file, refuse_unmerged},
 };
 
@@ -18,7 +18,7 @@ use wayword_run::{
 #[command(
     after_long_help = "Examples:\n  wayword report --run runs/val_seen\n  wayword report --run runs/val_seen --items 20 --out page.html"
 )]
-pub struct Report {
+pub struct ReportArgs {
     /// Run folder, or the folder of a comparison.
     #[arg(long, value_name = "DIR")]
     pub run: PathBuf,
@@ -33,27 +33,27 @@ pub struct Report {
 }
 
 /// Items of a run that are shown, unless `--items` gives another number.
-const ITEMS: usize = 1000;
+const MAX_REPORT_ITEMS: usize = 1000;
 /// Walks of a comparison that are shown, unless `--items` gives another number.
-const WALKS: usize = 100;
+const MAX_REPORT_WALKS: usize = 100;
 /// Most runs below a folder that an error names.
-const NAMED: usize = 3;
+const MAX_NAMED_ITEMS: usize = 3;
 
-pub fn run(args: &Report, output: &Output) -> Result<Exit, Error> {
+pub fn run_report(args: &ReportArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
     expect_run(&args.run)?;
     let out = args.out.clone().unwrap_or_else(|| args.run.join(file::REPORT));
     if compare::is_comparison(&args.run) {
-        let written = compare::write_of_folder(&args.run, &out, args.items.unwrap_or(WALKS))?;
-        output.data(&written, &written);
+        let written = compare::write_of_folder(&args.run, &out, args.items.unwrap_or(MAX_REPORT_WALKS))?;
+        output.print_result(&written, &written);
         return Ok(Exit::Done);
     }
-    let written = report::write(&args.run, &out, args.items.unwrap_or(ITEMS))?;
-    output.data(&written, &written);
+    let written = report::write_report(&args.run, &out, args.items.unwrap_or(MAX_REPORT_ITEMS))?;
+    output.print_result(&written, &written);
     Ok(Exit::Done)
 }
 
 /// Refuses a path that is not a run folder, and names the one that the user may mean.
-fn expect_run(folder: &Path) -> Result<(), Error> {
+fn expect_run(folder: &Path) -> Result<(), CommandError> {
     if is_run(folder) {
         return Ok(());
     }
@@ -71,7 +71,7 @@ fn expect_run(folder: &Path) -> Result<(), Error> {
         None if !within.is_empty() => format!("name one of the runs in it: --run {}", within.join(", --run ")),
         None => "give the --out folder of a `wayword generate` or `wayword compare`".to_owned(),
     };
-    Err(Error::usage(format!("--run {name}: {what}"), hint))
+    Err(CommandError::usage(format!("--run {name}: {what}"), hint))
 }
 
 fn is_run(folder: &Path) -> bool {
@@ -83,5 +83,5 @@ fn runs_within(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     let mut runs: Vec<_> = entries.map(|entry| entry.path()).filter(|path| is_run(path)).collect();
     runs.sort();
-    runs.iter().take(NAMED).map(|run| run.display().to_string()).collect()
+    runs.iter().take(MAX_NAMED_ITEMS).map(|run| run.display().to_string()).collect()
 }

@@ -10,7 +10,7 @@ use wayword_core::{Side, motion};
 
 /// A statement of the text.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Step {
+pub(super) enum AlignmentStep {
     /// A place, and the frames that show it, ascending.
     Place(Vec<usize>),
     /// A turn.
@@ -23,7 +23,7 @@ pub(super) enum Step {
 
 /// How far a text has got: the frame of its last place, the frame of its last turn, and the first move after that turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Progress {
+struct AlignmentProgress {
     place: usize,
     turn: usize,
     next_move: usize,
@@ -31,24 +31,28 @@ struct Progress {
 
 /// A state, the state of the layer before that it came from, and the frame of the step between them.
 #[derive(Debug, Clone, Copy)]
-struct Reached {
-    state: Progress,
+struct AlignmentState {
+    state: AlignmentProgress,
     before: usize,
     frame: Option<usize>,
 }
 
 /// The frame of each step, where all of them can be mapped to the path; else the first step at which no mapping of the
 /// steps before it can go on.
-pub(super) fn align(steps: &[Step], evidence: &Evidence) -> Result<Vec<Option<usize>>, usize> {
-    let bends = Bends::of(evidence);
-    let start = Reached { state: Progress { place: 0, turn: 0, next_move: 0 }, before: 0, frame: None };
-    let mut layers: Vec<Vec<Reached>> = vec![vec![start]];
+pub(super) fn align_steps(steps: &[AlignmentStep], evidence: &Evidence) -> Result<Vec<Option<usize>>, usize> {
+    let bends = PathBends::from_evidence(evidence);
+    let start = AlignmentState { state: AlignmentProgress { place: 0, turn: 0, next_move: 0 }, before: 0, frame: None };
+    let mut layers: Vec<Vec<AlignmentState>> = vec![vec![start]];
     for (at, step) in steps.iter().enumerate() {
         let now = layers.last().map_or(&[][..], Vec::as_slice);
         let next = now.iter().enumerate().flat_map(|(before, reached)| {
-            after(reached.state, step, &bends).into_iter().map(move |(state, frame)| Reached { state, before, frame })
+            states_after(reached.state, step, &bends).into_iter().map(move |(state, frame)| AlignmentState {
+                state,
+                before,
+                frame,
+            })
         });
-        let next = undominated(next.collect());
+        let next = drop_dominated(next.collect());
         if next.is_empty() {
             return Err(at);
         }
@@ -71,12 +75,12 @@ pub(super) fn align(steps: &[Step], evidence: &Evidence) -> Result<Vec<Option<us
 /// so whatever can follow the dominated state can follow the other one too, and the states that come of it dominate
 /// again. However long the text and the path are, a handful of states is kept; all of them would be as many as the
 /// square of the path's length.
-fn undominated(mut reached: Vec<Reached>) -> Vec<Reached> {
+fn drop_dominated(mut reached: Vec<AlignmentState>) -> Vec<AlignmentState> {
     // A state that dominates another one comes before it.
     reached.sort_by_key(|reached| reached.state);
-    let mut kept: Vec<Reached> = Vec::new();
+    let mut kept: Vec<AlignmentState> = Vec::new();
     for one in reached {
-        let dominates = |other: &Reached| {
+        let dominates = |other: &AlignmentState| {
             let (a, b) = (other.state, one.state);
             a.place <= b.place && a.turn <= b.turn && a.next_move <= b.next_move
         };
@@ -88,32 +92,41 @@ fn undominated(mut reached: Vec<Reached>) -> Vec<Reached> {
 }
 
 /// The states after a step, without most of those that another of them dominates.
-fn after(state: Progress, step: &Step, bends: &Bends) -> Vec<(Progress, Option<usize>)> {
+fn states_after(
+    state: AlignmentProgress,
+    step: &AlignmentStep,
+    bends: &PathBends,
+) -> Vec<(AlignmentProgress, Option<usize>)> {
     match step {
-        Step::Free => vec![(state, None)],
-        Step::Onward => {
+        AlignmentStep::Free => vec![(state, None)],
+        AlignmentStep::Onward => {
             if bends.moves {
                 vec![(state, None)]
             } else {
                 Vec::new()
             }
         }
-        Step::Place(frames) => {
+        AlignmentStep::Place(frames) => {
             let first = frames.partition_point(|frame| *frame < state.place.max(state.turn));
-            frames.get(first).map(|frame| (Progress { place: *frame, ..state }, Some(*frame))).into_iter().collect()
+            frames
+                .get(first)
+                .map(|frame| (AlignmentProgress { place: *frame, ..state }, Some(*frame)))
+                .into_iter()
+                .collect()
         }
-        Step::Turn(side) => {
+        AlignmentStep::Turn(side) => {
             // A place that the text names before a turn may be a hop ahead, because it can be seen from the frame of
             // the turn.
             let from = state.next_move.max(state.place.saturating_sub(1));
-            let turned = |(first, last): (usize, usize)| Progress { turn: first, next_move: last + 1, ..state };
-            bends.soonest(*side, from).into_iter().map(|bend| (turned(bend), Some(bend.0))).collect()
+            let turned =
+                |(first, last): (usize, usize)| AlignmentProgress { turn: first, next_move: last + 1, ..state };
+            bends.soonest_turns(*side, from).into_iter().map(|bend| (turned(bend), Some(bend.0))).collect()
         }
     }
 }
 
 /// The moves, and bends of moves, that turn: first and last move of each, ascending.
-struct Bends {
+struct PathBends {
     left: Vec<(usize, usize)>,
     right: Vec<(usize, usize)>,
     around: Vec<(usize, usize)>,
@@ -121,8 +134,8 @@ struct Bends {
     moves: bool,
 }
 
-impl Bends {
-    fn of(evidence: &Evidence) -> Self {
+impl PathBends {
+    fn from_evidence(evidence: &Evidence) -> Self {
         let deg: Vec<f64> = evidence.moves.iter().map(|step| step.turn_rad.to_degrees()).collect();
         let to = |side: Side| {
             let spans = (0..deg.len())
@@ -139,7 +152,7 @@ impl Bends {
 
     /// The turns to a side, from a move on, that begin before every other one has ended. A later turn never lets the
     /// text go farther.
-    fn soonest(&self, side: Side, from: usize) -> Vec<(usize, usize)> {
+    fn soonest_turns(&self, side: Side, from: usize) -> Vec<(usize, usize)> {
         let all = match side {
             Side::Left => &self.left,
             Side::Right => &self.right,
@@ -165,47 +178,50 @@ fn is_turn(side: Side, bend: &[f64]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evidence::Source;
+    use crate::evidence::EvidenceSource;
     use proptest::prelude::*;
     use std::time::{Duration, Instant};
-    use wayword_core::{Motion, Move};
+    use wayword_core::{PathMotion, PathMove};
 
     fn walk(turns_deg: &[f64]) -> Evidence {
-        let step = |deg: &f64| Move { turn_rad: deg.to_radians(), distance_m: 2.0, rise_m: 0.0 };
+        let step = |deg: &f64| PathMove { turn_rad: deg.to_radians(), distance_m: 2.0, rise_m: 0.0 };
         let moves = turns_deg.iter().map(step).collect();
         Evidence {
             frames: Vec::new(),
             moves,
-            motion: Motion::Known,
-            source: Source::Nothing,
-            beyond: crate::Beyond::default(),
+            motion: PathMotion::Known,
+            source: EvidenceSource::Nothing,
+            beyond: crate::EndSurroundings::default(),
         }
     }
 
     /// Tries every mapping of the steps, without any bound.
-    fn fits(steps: &[Step], state: Progress, turns_deg: &[f64]) -> bool {
+    fn fits(steps: &[AlignmentStep], state: AlignmentProgress, turns_deg: &[f64]) -> bool {
         let Some((step, rest)) = steps.split_first() else { return true };
         let moves = turns_deg.len();
         match step {
-            Step::Free => fits(rest, state, turns_deg),
-            Step::Onward => moves > 0 && fits(rest, state, turns_deg),
-            Step::Place(frames) => frames
+            AlignmentStep::Free => fits(rest, state, turns_deg),
+            AlignmentStep::Onward => moves > 0 && fits(rest, state, turns_deg),
+            AlignmentStep::Place(frames) => frames
                 .iter()
                 .filter(|frame| **frame >= state.place && **frame >= state.turn)
-                .any(|frame| fits(rest, Progress { place: *frame, ..state }, turns_deg)),
-            Step::Turn(side) => (state.next_move..moves)
+                .any(|frame| fits(rest, AlignmentProgress { place: *frame, ..state }, turns_deg)),
+            AlignmentStep::Turn(side) => (state.next_move..moves)
                 .flat_map(|first| (first..moves.min(first + motion::BEND_MOVES)).map(move |last| (first, last)))
                 .filter(|(first, last)| first + 1 >= state.place && is_turn(*side, &turns_deg[*first..=*last]))
-                .any(|(first, last)| fits(rest, Progress { turn: first, next_move: last + 1, ..state }, turns_deg)),
+                .any(|(first, last)| {
+                    fits(rest, AlignmentProgress { turn: first, next_move: last + 1, ..state }, turns_deg)
+                }),
         }
     }
 
-    fn step() -> impl Strategy<Value = Step> {
+    fn step() -> impl Strategy<Value = AlignmentStep> {
         prop_oneof![
-            prop::collection::btree_set(0..6_usize, 1..4).prop_map(|frames| Step::Place(frames.into_iter().collect())),
-            prop_oneof![Just(Side::Left), Just(Side::Right), Just(Side::Behind)].prop_map(Step::Turn),
-            Just(Step::Free),
-            Just(Step::Onward),
+            prop::collection::btree_set(0..6_usize, 1..4)
+                .prop_map(|frames| AlignmentStep::Place(frames.into_iter().collect())),
+            prop_oneof![Just(Side::Left), Just(Side::Right), Just(Side::Behind)].prop_map(AlignmentStep::Turn),
+            Just(AlignmentStep::Free),
+            Just(AlignmentStep::Onward),
         ]
     }
 
@@ -215,8 +231,8 @@ mod tests {
             steps in prop::collection::vec(step(), 0..6),
             turns in prop::collection::vec(prop_oneof![Just(0.0), Just(20.0), Just(-40.0), Just(70.0), Just(170.0)], 0..6),
         ) {
-            let start = Progress { place: 0, turn: 0, next_move: 0 };
-            let laid = align(&steps, &walk(&turns));
+            let start = AlignmentProgress { place: 0, turn: 0, next_move: 0 };
+            let laid = align_steps(&steps, &walk(&turns));
             prop_assert_eq!(laid.is_ok(), fits(&steps, start, &turns));
             let upto = laid.err().unwrap_or(steps.len());
             prop_assert!(fits(&steps[..upto], start, &turns));
@@ -227,9 +243,10 @@ mod tests {
     fn a_long_text_about_a_long_walk_back_and_forth_takes_no_time() {
         let began = Instant::now();
         let back_and_forth: Vec<f64> = (0..999).map(|at| if at % 2 == 0 { 180.0 } else { -90.0 }).collect();
-        let steps = [Step::Place((0..1000).collect()), Step::Turn(Side::Left)].into_iter().cycle().take(1400);
-        let steps: Vec<Step> = steps.collect();
-        assert!(align(&steps, &walk(&back_and_forth)).is_ok_and(|frames| frames.iter().all(Option::is_some)));
+        let steps =
+            [AlignmentStep::Place((0..1000).collect()), AlignmentStep::Turn(Side::Left)].into_iter().cycle().take(1400);
+        let steps: Vec<AlignmentStep> = steps.collect();
+        assert!(align_steps(&steps, &walk(&back_and_forth)).is_ok_and(|frames| frames.iter().all(Option::is_some)));
         assert!(began.elapsed() < Duration::from_secs(20), "{:?}", began.elapsed());
     }
 }

@@ -1,69 +1,73 @@
 //! Checks storeys and stairs: climbs that the path does not make, and storeys that it does not pass.
 
-use super::{finding, or_pass};
+use super::{new_finding, or_pass};
 use crate::evidence::Evidence;
-use wayword_core::{Check, Climb, Finding, Motion, Verdict};
-use wayword_language::reading::{Event, Floor, Reading, What};
+use wayword_core::{CheckFinding, CheckKind, ClimbDirection, PathMotion, Verdict};
+use wayword_language::reading::{EventContent, StoreyMention, TextEvent, TextReading};
 
-pub(super) fn floors(reading: &Reading, evidence: &Evidence) -> Vec<Finding> {
+pub(super) fn check_floors(reading: &TextReading, evidence: &Evidence) -> Vec<CheckFinding> {
     let stairs = reading.events.iter().filter_map(|event| {
         let (verdict, wrong) = match event.what {
-            What::Climb(climb) => (climbed(climb, evidence), format!("the path does not go {} any stairs", way(climb))),
-            What::Steps(climb) => (stepped(climb, evidence), format!("the path does not go {} any steps", way(climb))),
-            What::Storey(climb) => {
-                (storey(climb, evidence), format!("the path does not end {} any stairs", way(climb)))
+            EventContent::Climb(climb) => {
+                (verdict_on_climb(climb, evidence), format!("the path does not go {} any stairs", way_word(climb)))
+            }
+            EventContent::Steps(climb) => {
+                (verdict_on_steps(climb, evidence), format!("the path does not go {} any steps", way_word(climb)))
+            }
+            EventContent::Storey(climb) => {
+                (verdict_on_storey(climb, evidence), format!("the path does not end {} any stairs", way_word(climb)))
             }
             _ => return None,
         };
         let unknown = || "the program cannot check whether the path goes up or down".to_owned();
         let reason = if verdict == Verdict::Fail { wrong } else { unknown() };
-        (verdict != Verdict::Pass).then(|| finding(Check::Floors, verdict, reason, Some(event.span)))
+        (verdict != Verdict::Pass).then(|| new_finding(CheckKind::Floors, verdict, reason, Some(event.span)))
     });
-    or_pass(Check::Floors, stairs.chain(wrong_floors(reading, evidence)).collect())
+    or_pass(CheckKind::Floors, stairs.chain(wrong_floors(reading, evidence)).collect())
 }
 
 /// The first storey of a text that is wrong or cannot be checked.
-pub(super) fn wrong_floors(reading: &Reading, evidence: &Evidence) -> Option<Finding> {
+pub(super) fn wrong_floors(reading: &TextReading, evidence: &Evidence) -> Option<CheckFinding> {
     let levels: Vec<Option<u32>> = evidence.frames.iter().map(|frame| frame.level).collect();
-    wrong_floor(&told(reading), reading, &levels)
+    wrong_floor(&named_floors(reading), reading, &levels)
 }
 
-fn way(climb: Climb) -> &'static str {
-    if climb == Climb::Up { "up" } else { "down" }
+fn way_word(climb: ClimbDirection) -> &'static str {
+    if climb == ClimbDirection::Up { "up" } else { "down" }
 }
 
-fn climbed(climb: Climb, evidence: &Evidence) -> Verdict {
-    holds(!evidence.frames_with_climb(climb).is_empty(), evidence)
+fn verdict_on_climb(climb: ClimbDirection, evidence: &Evidence) -> Verdict {
+    climb_verdict(!evidence.frames_with_climb(climb).is_empty(), evidence)
 }
 
-fn stepped(climb: Climb, evidence: &Evidence) -> Verdict {
-    holds(evidence.steps(climb), evidence)
+fn verdict_on_steps(climb: ClimbDirection, evidence: &Evidence) -> Verdict {
+    climb_verdict(evidence.has_steps(climb), evidence)
 }
 
 /// A climb that the moves do not make is wrong where the motion is known.
-fn holds(climbs: bool, evidence: &Evidence) -> Verdict {
+fn climb_verdict(climbs: bool, evidence: &Evidence) -> Verdict {
     match (climbs, evidence.motion) {
         (true, _) => Verdict::Pass,
-        (false, Motion::Known) => Verdict::Fail,
-        (false, Motion::Unknown) => Verdict::Unverified,
+        (false, PathMotion::Known) => Verdict::Fail,
+        (false, PathMotion::Unknown) => Verdict::Unverified,
     }
 }
 
 /// "The bedroom upstairs" is right for a path that ends upstairs, wherever it starts.
-fn storey(climb: Climb, evidence: &Evidence) -> Verdict {
+fn verdict_on_storey(climb: ClimbDirection, evidence: &Evidence) -> Verdict {
     let ends_there = match evidence.frames.last().and_then(|frame| frame.level) {
-        Some(level) => (level >= 2) == (climb == Climb::Up),
-        None if climbed(climb, evidence) != Verdict::Pass => return Verdict::Unverified,
+        Some(level) => (level >= 2) == (climb == ClimbDirection::Up),
+        None if verdict_on_climb(climb, evidence) != Verdict::Pass => return Verdict::Unverified,
         None => true,
     };
-    if ends_there { Verdict::Pass } else { climbed(climb, evidence) }
+    if ends_there { Verdict::Pass } else { verdict_on_climb(climb, evidence) }
 }
 
 /// The storeys that a text names, in the order of the path.
-fn told(reading: &Reading) -> Vec<(&Event, Floor)> {
-    let mut told: Vec<(&Event, Floor)> = Vec::new();
+fn named_floors(reading: &TextReading) -> Vec<(&TextEvent, StoreyMention)> {
+    let mut told: Vec<(&TextEvent, StoreyMention)> = Vec::new();
     for event in &reading.events {
-        let What::Floor(floor) = event.what else { continue };
+        let EventContent::Floor(floor) = event.what else { continue };
         if floor.aside {
             continue;
         }
@@ -77,8 +81,12 @@ fn told(reading: &Reading) -> Vec<(&Event, Floor)> {
 
 /// The first wrong storey of a text. The path has to pass the storeys in their order, and to end on the last one where
 /// the text names that as the goal.
-fn wrong_floor(told: &[(&Event, Floor)], reading: &Reading, levels: &[Option<u32>]) -> Option<Finding> {
-    let wrong = |verdict: Verdict, (event, floor): &(&Event, Floor)| {
+fn wrong_floor(
+    told: &[(&TextEvent, StoreyMention)],
+    reading: &TextReading,
+    levels: &[Option<u32>],
+) -> Option<CheckFinding> {
+    let wrong = |verdict: Verdict, (event, floor): &(&TextEvent, StoreyMention)| {
         let name = floor.number.map_or("the top storey".to_owned(), |number| format!("storey {number}"));
         let touched = floor.number.is_some_and(|number| levels.contains(&Some(number)));
         let reason = match (verdict, touched) {
@@ -86,19 +94,21 @@ fn wrong_floor(told: &[(&Event, Floor)], reading: &Reading, levels: &[Option<u32
             (Verdict::Fail, false) => format!("the path is never on {name}"),
             _ => format!("the program cannot check whether the path is on {name}"),
         };
-        finding(Check::Floors, verdict, reason, Some(event.span))
+        new_finding(CheckKind::Floors, verdict, reason, Some(event.span))
     };
     let ends = |at: usize| {
         let (event, floor) = told[at];
         let goes_on = || {
             reading.events.iter().any(|other| {
-                matches!(other.what, What::Climb(_)) && other.span[0] > event.span[0] && other.clause != event.clause
+                matches!(other.what, EventContent::Climb(_))
+                    && other.span[0] > event.span[0]
+                    && other.clause != event.clause
             })
         };
         at + 1 == told.len() && !floor.leaves && !goes_on()
     };
     // The first storey of the text that no frame from there on allows.
-    let first_off = |allows: &dyn Fn(Option<u32>, Floor) -> bool| {
+    let first_off = |allows: &dyn Fn(Option<u32>, StoreyMention) -> bool| {
         let mut from = 0;
         told.iter().enumerate().position(|(at, (_, floor))| {
             let first = if ends(at) { levels.len().saturating_sub(1).max(from) } else { from };
@@ -108,8 +118,8 @@ fn wrong_floor(told: &[(&Event, Floor)], reading: &Reading, levels: &[Option<u32
         })
     };
     let highest = levels.iter().flatten().max().copied();
-    let certain = |level: Option<u32>, floor: Floor| floor.number.is_some() && level == floor.number;
-    let possible = |level: Option<u32>, floor: Floor| match (level, floor.number) {
+    let certain = |level: Option<u32>, floor: StoreyMention| floor.number.is_some() && level == floor.number;
+    let possible = |level: Option<u32>, floor: StoreyMention| match (level, floor.number) {
         (None, _) => true,
         (Some(level), Some(number)) => level == number,
         // The building may have higher storeys than the path, but a storey below the path's highest is not the top one.

@@ -1,14 +1,14 @@
 //! Checks the numbers of sentences and words that the style demands.
 
-use super::{finding, or_pass};
-use wayword_core::{Check, Constraints, Finding, Verdict};
+use super::{new_finding, or_pass};
+use wayword_core::{CheckFinding, CheckKind, StyleConstraints, Verdict};
 use wayword_language::text::{sentence_count, word_count};
 
-pub(super) fn form(text: &str, constraints: &Constraints) -> Vec<Finding> {
+pub(super) fn check_form(text: &str, constraints: &StyleConstraints) -> Vec<CheckFinding> {
     let (sentences, words) = (sentence_count(text), word_count(text));
     let counted = |count: usize, noun: &str| format!("{count} {noun}{}", if count == 1 { "" } else { "s" });
     let mut wrong = Vec::new();
-    let mut fail = |reason: String| wrong.push(finding(Check::Form, Verdict::Fail, reason, None));
+    let mut fail = |reason: String| wrong.push(new_finding(CheckKind::Form, Verdict::Fail, reason, None));
     if words == 0 {
         fail("it has no words".into());
     }
@@ -21,5 +21,5 @@ pub(super) fn form(text: &str, constraints: &Constraints) -> Vec<Finding> {
     if let Some(limit) = constraints.fewer_words_than.filter(|limit| words >= *limit) {
         fail(format!("{} where the style asks for fewer than {limit}", counted(words, "word")));
     }
-    or_pass(Check::Form, wrong)
+    or_pass(CheckKind::Form, wrong)
 }

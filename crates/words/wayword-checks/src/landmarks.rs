@@ -1,28 +1,28 @@
 //! Checks that each landmark of a text is shown by a frame of the path, on the side and in the colour that the text
 //! gives it.
 
-use super::{finding, or_pass, sides};
+use super::{new_finding, or_pass, sides};
 use crate::{
-    evidence::{Evidence, Source},
+    evidence::{Evidence, EvidenceSource},
     memory::frames_at_doors,
 };
 use std::collections::BTreeMap;
-use wayword_core::{Check, Finding, Verdict};
+use wayword_core::{CheckFinding, CheckKind, Verdict};
 use wayword_language::{
-    lexicon::{Class, agree, same_colour, same_room, thing},
-    reading::{Link, Place, Reading, What},
+    lexicon::{ThingClass, find_thing, names_agree, same_colour, same_room},
+    reading::{EventContent, PlaceLink, PlaceMention, TextReading},
 };
 
 /// The findings about the places of a text, and the frames that show them.
-pub(super) struct Places {
-    pub(super) findings: Vec<Finding>,
+pub(super) struct LandmarkFindings {
+    pub(super) findings: Vec<CheckFinding>,
     /// For each event of the reading, the frames that show it.
-    pub(super) shown: Vec<Shown>,
+    pub(super) shown: Vec<ShownFrames>,
 }
 
 /// The frames that show a place; both lists are empty for an event that is no place.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Shown {
+pub(super) struct ShownFrames {
     /// The frames that show it.
     pub(super) frames: Vec<usize>,
     /// The frames that may show it, because their objects or rooms are not known.
@@ -31,43 +31,53 @@ pub(super) struct Shown {
 
 /// Checks each place of a text. The object of a task (`object`) is left to the check of the task. If `made_up` is
 /// true, a place that no witness names counts as invented by the writer, and is wrong.
-pub(super) fn landmarks(reading: &Reading, evidence: &Evidence, object: Option<usize>, made_up: bool) -> Places {
+pub(super) fn check_landmarks(
+    reading: &TextReading,
+    evidence: &Evidence,
+    object: Option<usize>,
+    made_up: bool,
+) -> LandmarkFindings {
     let (mut findings, mut all_shown) = (Vec::new(), Vec::new());
-    let seen = Seen::of(evidence);
+    let seen = SightingIndex::from_evidence(evidence);
     for (at, event) in reading.events.iter().enumerate() {
-        let What::Place(place) = &event.what else {
-            all_shown.push(Shown::default());
+        let EventContent::Place(place) = &event.what else {
+            all_shown.push(ShownFrames::default());
             continue;
         };
         let is_object = object == Some(at);
-        let shown = if is_object { at_the_end(place, evidence) } else { seen.shown(place) };
-        let wrong = if is_object { None } else { presence(place, &shown, evidence, made_up) };
+        let shown = if is_object { at_the_end(place, evidence) } else { seen.frames_showing(place) };
+        let wrong = if is_object { None } else { wrong_presence(place, &shown, evidence, made_up) };
         findings.extend(
             wrong
                 .into_iter()
-                .chain(colour(place, &shown, evidence))
-                .map(|(verdict, reason)| finding(Check::Landmarks, verdict, reason, Some(event.span))),
+                .chain(wrong_colour(place, &shown, evidence))
+                .map(|(verdict, reason)| new_finding(CheckKind::Landmarks, verdict, reason, Some(event.span))),
         );
         all_shown.push(shown);
     }
-    if evidence.source == Source::Nothing && findings.is_empty() {
-        findings.push(finding(
-            Check::Landmarks,
+    if evidence.source == EvidenceSource::Nothing && findings.is_empty() {
+        findings.push(new_finding(
+            CheckKind::Landmarks,
             Verdict::Unverified,
             "the program does not know what can be seen along the path",
             None,
         ));
     }
-    Places { findings: or_pass(Check::Landmarks, findings), shown: all_shown }
+    LandmarkFindings { findings: or_pass(CheckKind::Landmarks, findings), shown: all_shown }
 }
 
 /// The mistake in where the text puts a place: it is nowhere along the path, or on another side.
-fn presence(place: &Place, shown: &Shown, evidence: &Evidence, made_up: bool) -> Option<(Verdict, String)> {
+fn wrong_presence(
+    place: &PlaceMention,
+    shown: &ShownFrames,
+    evidence: &Evidence,
+    made_up: bool,
+) -> Option<(Verdict, String)> {
     if shown.frames.is_empty() && is_beyond(place, evidence) {
         return None;
     }
     if shown.frames.is_empty() {
-        let verdict = absent(place, evidence, made_up);
+        let verdict = verdict_on_absence(place, evidence, made_up);
         return Some(match verdict {
             Verdict::Fail => (verdict, format!("no frame of the path shows {:?}", place.name)),
             _ => (verdict, format!("the program cannot check whether there is {:?}", place.name)),
@@ -78,7 +88,7 @@ fn presence(place: &Place, shown: &Shown, evidence: &Evidence, made_up: bool) ->
         return Some((Verdict::Unverified, reason));
     }
     let side = sides::wrong_side(place, &shown.frames, evidence)?;
-    let reason = format!("{:?} is not on the {} where the path passes it", place.name, sides::word(side));
+    let reason = format!("{:?} is not on the {} where the path passes it", place.name, sides::side_word(side));
     // Captions miss things, so one may be on the other side too. A writer that used only captions cannot know of it.
     let may_be_missed = evidence.source.leaves_out() && !made_up;
     Some((if may_be_missed { Verdict::Unverified } else { wrong_unless_elsewhere(shown) }, reason))
@@ -86,29 +96,32 @@ fn presence(place: &Place, shown: &Shown, evidence: &Evidence, made_up: bool) ->
 
 /// Whether a text mentions a room next to the one at the end, or a thing in it, only to identify that room or a thing
 /// there.
-pub(crate) fn is_beyond(place: &Place, evidence: &Evidence) -> bool {
+pub(crate) fn is_beyond(place: &PlaceMention, evidence: &Evidence) -> bool {
     // Every building has these.
     if matches!(&*place.name, "wall" | "floor" | "ceiling") && place.side.is_none() && place.colour.is_none() {
         return true;
     }
-    let tells_which = matches!(place.link, Link::Beside | Link::Within) && place.side.is_none();
+    let tells_which = matches!(place.link, PlaceLink::Beside | PlaceLink::Within) && place.side.is_none();
     let beyond = &evidence.beyond;
     let is_room = || place.is_room && beyond.rooms.iter().any(|room| same_room(room, &place.name));
-    let is_thing = || place.is_thing && beyond.things.iter().any(|thing| agree(thing, &place.name));
+    let is_thing = || place.is_thing && beyond.things.iter().any(|thing| names_agree(thing, &place.name));
     tells_which && (is_room() || is_thing())
 }
 
 /// The verdict on a place that is wrong at every frame that shows it. It may still be right at frames with unknown
 /// objects.
-fn wrong_unless_elsewhere(shown: &Shown) -> Verdict {
+fn wrong_unless_elsewhere(shown: &ShownFrames) -> Verdict {
     if shown.unknown.is_empty() { Verdict::Fail } else { Verdict::Unverified }
 }
 
 /// The mistake in the colour that the text gives a place.
-fn colour(place: &Place, shown: &Shown, evidence: &Evidence) -> Option<(Verdict, String)> {
+fn wrong_colour(place: &PlaceMention, shown: &ShownFrames, evidence: &Evidence) -> Option<(Verdict, String)> {
     let told = place.colour.as_ref()?;
-    let things =
-        shown.frames.iter().flat_map(|at| &evidence.frames[*at].things).filter(|thing| agree(&thing.name, &place.name));
+    let things = shown
+        .frames
+        .iter()
+        .flat_map(|at| &evidence.frames[*at].things)
+        .filter(|thing| names_agree(&thing.name, &place.name));
     let known: Vec<&String> = things.flat_map(|thing| thing.colour.iter().chain(&thing.more_colours)).collect();
     // "The brown chair" for a dark brown one is no mistake, nor is "cream" for beige.
     let fits = known.iter().any(|colour| same_colour(colour, told));
@@ -126,7 +139,7 @@ fn colour(place: &Place, shown: &Shown, evidence: &Evidence) -> Option<(Verdict,
 
 /// The evidence, sorted by name. A path shows a few dozen names over and over, so each place of a text is compared
 /// with each name once.
-struct Seen<'a> {
+struct SightingIndex<'a> {
     evidence: &'a Evidence,
     frames_of_things: BTreeMap<&'a str, Vec<usize>>,
     /// The frames on both sides of a door or doorway through which the walk leads.
@@ -138,8 +151,8 @@ fn is_door(name: &str) -> bool {
     matches!(name, "door" | "doorway" | "opening" | "entrance" | "exit" | "threshold")
 }
 
-impl<'a> Seen<'a> {
-    fn of(evidence: &'a Evidence) -> Self {
+impl<'a> SightingIndex<'a> {
+    fn from_evidence(evidence: &'a Evidence) -> Self {
         let mut frames_of_things: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
         for (at, frame) in evidence.frames.iter().enumerate() {
             for thing in &frame.things {
@@ -149,18 +162,18 @@ impl<'a> Seen<'a> {
         Self { evidence, frames_of_things, doors: frames_at_doors(evidence) }
     }
 
-    fn shown(&self, place: &Place) -> Shown {
+    fn frames_showing(&self, place: &PlaceMention) -> ShownFrames {
         let (mut frames, mut unknown) = (Vec::new(), Vec::new());
         if place.is_room {
             frames.extend(self.evidence.frames_in_room(&place.name));
             unknown.extend(self.evidence.frames_without_room());
         }
         if place.is_thing {
-            let agreeing = self.frames_of_things.iter().filter(|(name, _)| agree(name, &place.name));
+            let agreeing = self.frames_of_things.iter().filter(|(name, _)| names_agree(name, &place.name));
             frames.extend(agreeing.flat_map(|(_, frames)| frames));
             unknown.extend(self.evidence.frames_without_things());
         }
-        if thing(&place.name).is_some_and(|thing| thing.class == Class::Stairs) {
+        if find_thing(&place.name).is_some_and(|thing| thing.class == ThingClass::Stairs) {
             frames.extend(self.evidence.frames_on_stairs());
         }
         if is_door(&place.name) {
@@ -171,25 +184,25 @@ impl<'a> Seen<'a> {
         unknown.sort_unstable();
         unknown.dedup();
         unknown.retain(|frame| frames.binary_search(frame).is_err());
-        Shown { frames, unknown }
+        ShownFrames { frames, unknown }
     }
 }
 
-fn at_the_end(place: &Place, evidence: &Evidence) -> Shown {
+fn at_the_end(place: &PlaceMention, evidence: &Evidence) -> ShownFrames {
     let last = evidence.frames.len().saturating_sub(1);
-    let is_seen = evidence.final_things().iter().any(|thing| agree(&thing.name, &place.name));
-    Shown { frames: if is_seen { vec![last] } else { Vec::new() }, unknown: Vec::new() }
+    let is_seen = evidence.final_things().iter().any(|thing| names_agree(&thing.name, &place.name));
+    ShownFrames { frames: if is_seen { vec![last] } else { Vec::new() }, unknown: Vec::new() }
 }
 
 /// The verdict where no frame shows a place.
-fn absent(place: &Place, evidence: &Evidence, made_up: bool) -> Verdict {
+fn verdict_on_absence(place: &PlaceMention, evidence: &Evidence, made_up: bool) -> Verdict {
     let denied = || match made_up {
         true => evidence.names_no(&place.name),
         false => evidence.denies_thing(&place.name),
     };
     let thing_denied = place.is_thing && denied();
     // A room that the text calls near to something need not be on the path.
-    let room_denied = place.is_room && evidence.denies_room(&place.name) && place.link != Link::Beside;
+    let room_denied = place.is_room && evidence.denies_room(&place.name) && place.link != PlaceLink::Beside;
     // A name that may mean a thing or a room fails only where the thing is denied.
     if thing_denied || (room_denied && !place.is_thing) { Verdict::Fail } else { Verdict::Unverified }
 }

@@ -1,32 +1,32 @@
 //! Finds words that a text copied from the reference texts of its style. Otherwise a writer could score well by
 //! repeating them.
 
-use super::{Subject, finding, pass};
+use super::{CheckSubject, new_finding, pass_finding};
 use std::{
     collections::{BTreeSet, HashMap, HashSet, hash_map::DefaultHasher},
     hash::{Hash, Hasher},
 };
-use wayword_core::{Check, Finding, Verdict};
+use wayword_core::{CheckFinding, CheckKind, Verdict};
 use wayword_language::{
-    lexicon::{agree, normal, room_name, same_room},
+    lexicon::{names_agree, normalise_name, room_name, same_room},
     reading::vocabulary::{STOCK, TURNING, WALKING, ordinal_or_number},
-    text::{Token, tokens},
+    text::{TextToken, split_tokens},
 };
 
 /// This many words in a row that are in a reference too are a copy.
 pub const LONG_RUN: usize = 10;
 /// So are this many, where they speak of something that is not this text's own matter, and where fewer than
-/// [`FORMULA`] references hold them.
+/// [`FORMULA_REFERENCES`] references hold them.
 pub const SHARED_RUN: usize = 6;
 /// A run that this many references share is a formula, and no copy from one of them.
-pub const FORMULA: u8 = 3;
+pub const FORMULA_REFERENCES: u8 = 3;
 /// A run that our own writer avoids where it can, though it may be a formula.
 const AVOIDED_RUN: usize = 8;
 
 /// The runs of words of a style's reference texts, indexed once for all texts.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Copies {
-    /// How many references hold a run of [`SHARED_RUN`] words, up to [`FORMULA`].
+pub struct ReferenceRuns {
+    /// How many references hold a run of [`SHARED_RUN`] words, up to [`FORMULA_REFERENCES`].
     shared: HashMap<u64, u8>,
     avoided: HashSet<u64>,
     long: HashSet<u64>,
@@ -34,24 +34,24 @@ pub struct Copies {
 
 /// The subject of a text. Words for it are no copy, even if a reference has them too.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Matter<'a> {
+pub struct TextTopic<'a> {
     /// The name of its target.
     pub target: Option<&'a str>,
     /// The rooms where it ends.
     pub rooms: &'a [String],
 }
 
-impl Copies {
+impl ReferenceRuns {
     /// Indexes reference texts.
     #[must_use]
-    pub fn of(references: &[String]) -> Self {
+    pub fn from_references(references: &[String]) -> Self {
         let mut copies = Self::default();
         for reference in references {
             let words = word_tokens(reference);
-            let runs = |length: usize| words.windows(length).map(key);
+            let runs = |length: usize| words.windows(length).map(run_hash);
             for run in runs(SHARED_RUN).collect::<BTreeSet<u64>>() {
                 let count = copies.shared.entry(run).or_default();
-                *count = (*count + 1).min(FORMULA);
+                *count = (*count + 1).min(FORMULA_REFERENCES);
             }
             copies.avoided.extend(runs(AVOIDED_RUN));
             copies.long.extend(runs(LONG_RUN));
@@ -61,13 +61,13 @@ impl Copies {
 
     /// The byte range of the first run of a text that is copied.
     #[must_use]
-    pub fn copied(&self, text: &str, matter: Matter<'_>) -> Option<[usize; 2]> {
+    pub fn find_copy(&self, text: &str, matter: TextTopic<'_>) -> Option<[usize; 2]> {
         let words = word_tokens(text);
-        let says_something = |run: &[Token]| run.iter().any(|token| !STOCK.contains(&token.word.as_str()));
-        let is_long = |run: &&[Token]| says_something(run) && self.long.contains(&key(run));
-        let is_shared = |run: &&[Token]| {
-            let count = self.shared.get(&key(run)).copied().unwrap_or_default();
-            (1..FORMULA).contains(&count) && run.iter().any(|token| is_content(&token.word, matter))
+        let says_something = |run: &[TextToken]| run.iter().any(|token| !STOCK.contains(&token.word.as_str()));
+        let is_long = |run: &&[TextToken]| says_something(run) && self.long.contains(&run_hash(run));
+        let is_shared = |run: &&[TextToken]| {
+            let count = self.shared.get(&run_hash(run)).copied().unwrap_or_default();
+            (1..FORMULA_REFERENCES).contains(&count) && run.iter().any(|token| is_content(&token.word, matter))
         };
         let run = words.windows(LONG_RUN).find(is_long).or_else(|| words.windows(SHARED_RUN).find(is_shared))?;
         Some([run[0].span[0], run[run.len() - 1].span[1]])
@@ -75,29 +75,29 @@ impl Copies {
 
     /// The byte range of the first eight words in a row that a text shares with a reference.
     #[must_use]
-    pub fn much(&self, text: &str) -> Option<[usize; 2]> {
+    pub fn find_avoidable_copy(&self, text: &str) -> Option<[usize; 2]> {
         let words = word_tokens(text);
-        let run = words.windows(AVOIDED_RUN).find(|run| self.avoided.contains(&key(run)))?;
+        let run = words.windows(AVOIDED_RUN).find(|run| self.avoided.contains(&run_hash(run)))?;
         Some([run[0].span[0], run[AVOIDED_RUN - 1].span[1]])
     }
 }
 
-fn word_tokens(text: &str) -> Vec<Token> {
-    tokens(text).into_iter().filter(Token::is_word).collect()
+fn word_tokens(text: &str) -> Vec<TextToken> {
+    split_tokens(text).into_iter().filter(TextToken::is_word).collect()
 }
 
-fn key(run: &[Token]) -> u64 {
+fn run_hash(run: &[TextToken]) -> u64 {
     let mut hasher = DefaultHasher::new();
     run.iter().for_each(|token| token.word.hash(&mut hasher));
     hasher.finish()
 }
 
 /// Whether a word speaks of something other than the way, a storey, and the matter of the text.
-fn is_content(word: &str, matter: Matter<'_>) -> bool {
+fn is_content(word: &str, matter: TextTopic<'_>) -> bool {
     let is_of_way = STOCK.contains(&word) || WALKING.contains(&word) || TURNING.contains(&word);
     let is_of_storey = matches!(word, "level" | "floor" | "storey" | "story" | "upstairs" | "downstairs");
-    let is_part = |name: &str| normal(name).split(' ').any(|part| part == normal(word));
-    let is_target = || matter.target.is_some_and(|target| is_part(target) || agree(target, word));
+    let is_part = |name: &str| normalise_name(name).split(' ').any(|part| part == normalise_name(word));
+    let is_target = || matter.target.is_some_and(|target| is_part(target) || names_agree(target, word));
     let is_room = || {
         let is_word_of = |room: &String| is_part(room) || room_name(word).is_some() && same_room(room, word);
         word == "room" || matter.rooms.iter().any(is_word_of)
@@ -105,18 +105,18 @@ fn is_content(word: &str, matter: Matter<'_>) -> bool {
     !(is_of_way || is_of_storey || ordinal_or_number(word) || is_target() || is_room())
 }
 
-pub(super) fn leak(text: &str, subject: Subject<'_>) -> Finding {
+pub(super) fn check_leak(text: &str, subject: CheckSubject<'_>) -> CheckFinding {
     let rooms = subject.evidence.frames.last().map_or(&[][..], |frame| &frame.rooms);
-    let matter = Matter { target: subject.target.map(|target| target.name.as_str()), rooms };
+    let matter = TextTopic { target: subject.target.map(|target| target.name.as_str()), rooms };
     let copied = match subject.copies {
-        Some(copies) => copies.copied(text, matter),
-        None => Copies::of(&subject.style.references).copied(text, matter),
+        Some(copies) => copies.find_copy(text, matter),
+        None => ReferenceRuns::from_references(&subject.style.references).find_copy(text, matter),
     };
     match copied {
-        None => pass(Check::Leak),
+        None => pass_finding(CheckKind::Leak),
         Some(span) => {
             let reason = format!("{:?} is in a reference text too", &text[span[0]..span[1]]);
-            finding(Check::Leak, Verdict::Fail, reason, Some(span))
+            new_finding(CheckKind::Leak, Verdict::Fail, reason, Some(span))
         }
     }
 }
@@ -125,15 +125,15 @@ pub(super) fn leak(text: &str, subject: Subject<'_>) -> Finding {
 mod tests {
     use super::*;
 
-    fn copied<'a>(text: &'a str, references: &[&str], matter: Matter<'_>) -> Option<&'a str> {
+    fn copied<'a>(text: &'a str, references: &[&str], matter: TextTopic<'_>) -> Option<&'a str> {
         let references: Vec<String> = references.iter().map(|text| (*text).to_owned()).collect();
-        Copies::of(&references).copied(text, matter).map(|[from, to]| &text[from..to])
+        ReferenceRuns::from_references(&references).find_copy(text, matter).map(|[from, to]| &text[from..to])
     }
 
     #[test]
     fn six_words_in_a_row_are_a_copy_and_five_are_not() {
         let references = ["Walk past the old oak table, then stop."];
-        let none = Matter::default();
+        let none = TextTopic::default();
         assert_eq!(copied("Now walk past the old oak table", &references, none), Some("walk past the old oak table"));
         assert_eq!(copied("Walk past the old oak door", &references, none), None);
     }
@@ -142,10 +142,10 @@ mod tests {
     fn words_for_the_topic_are_no_copy() {
         let references = ["Go to the pantry on level 2 and salt the ham"];
         let rooms = ["pantry".to_owned()];
-        let own = Matter { target: Some("ham"), rooms: &rooms };
+        let own = TextTopic { target: Some("ham"), rooms: &rooms };
         let text = "Go to the pantry on level 2 and eat";
         assert_eq!(copied(text, &references, own), None);
-        assert_eq!(copied(text, &references, Matter::default()), Some("Go to the pantry on level"));
+        assert_eq!(copied(text, &references, TextTopic::default()), Some("Go to the pantry on level"));
     }
 
     #[test]
@@ -154,15 +154,16 @@ mod tests {
         let one = text.to_owned();
         let others = ["polish the brass rail beside the cat", "do polish the brass rail beside the dog"];
         assert!(
-            copied("polish the brass rail beside the fox", &[&one, others[0], others[1]], Matter::default()).is_none()
+            copied("polish the brass rail beside the fox", &[&one, others[0], others[1]], TextTopic::default())
+                .is_none()
         );
-        assert!(copied("polish the brass rail beside the fox", &[&one, others[0]], Matter::default()).is_some());
-        assert!(copied(text, &[&one, &one, &one, &one], Matter::default()).is_some());
+        assert!(copied("polish the brass rail beside the fox", &[&one, others[0]], TextTopic::default()).is_some());
+        assert!(copied(text, &[&one, &one, &one, &one], TextTopic::default()).is_some());
     }
 
     #[test]
     fn a_stock_phrase_of_function_words_is_no_copy() {
         let references = ["It is at the end of the one on the left."];
-        assert_eq!(copied("It is at the end of the rug", &references, Matter::default()), None);
+        assert_eq!(copied("It is at the end of the rug", &references, TextTopic::default()), None);
     }
 }

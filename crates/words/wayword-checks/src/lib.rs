@@ -27,55 +27,56 @@ mod witnesses;
 mod world;
 
 use std::collections::BTreeSet;
-use wayword_core::{Check, Finding, Mention, MentionKind, Style, Target, Verdict};
+use wayword_core::{CheckFinding, CheckKind, InstructionStyle, MentionKind, PathTarget, TextMention, Verdict};
 use wayword_language::{
-    lexicon::{agree, normal, same_colour},
-    reading::{Event, Reading, What, read},
+    lexicon::{names_agree, normalise_name, same_colour},
+    reading::{EventContent, TextEvent, TextReading, read_instruction},
 };
 
 pub use evidence::{
-    Beyond, Building, Distance, Evidence, FrameEvidence, NEAR_M, Perhaps, SeenThing, Source, Surroundings,
+    BuildingInventory, EndSurroundings, Evidence, EvidenceSource, FrameEvidence, ListedDistance, NEAR_M,
+    PathSurroundings, SeenThing, UnsureSightings,
 };
-pub use leak::{Copies, FORMULA, LONG_RUN, Matter, SHARED_RUN};
-pub use memory::Memory;
-pub use witnesses::{Testimony, lift};
-pub use world::{Reach, Turns, World};
+pub use leak::{FORMULA_REFERENCES, LONG_RUN, ReferenceRuns, SHARED_RUN, TextTopic};
+pub use memory::WalkMemory;
+pub use witnesses::{Testimony, lift_confirmed};
+pub use world::{CheckWorld, TurnJudge, WorldReach};
 
 /// A text's evidence, style and world: everything that it is checked against.
 #[derive(Debug, Clone, Copy)]
-pub struct Subject<'a> {
+pub struct CheckSubject<'a> {
     /// The rooms, objects and moves of the path.
     pub evidence: &'a Evidence,
     /// The style that the text has to follow.
-    pub style: &'a Style,
+    pub style: &'a InstructionStyle,
     /// The object that its task has to be about, where one was given.
-    pub target: Option<&'a Target>,
+    pub target: Option<&'a PathTarget>,
     /// The meaning of missing evidence.
-    pub world: World,
+    pub world: CheckWorld,
     /// Knowledge of an open world beyond the frames.
-    pub reach: Reach<'a>,
+    pub reach: WorldReach<'a>,
     /// The judge of the turns in an open world.
-    pub turns: Turns,
+    pub turns: TurnJudge,
     /// The language that the text's file names for it, as a tag: "en-IN".
     pub tag: Option<&'a str>,
     /// Whether the writer saw the pictures, and not only their captions.
     pub writer_sees: bool,
     /// The index of the style's reference texts; where there is none, it is made for each text.
-    pub copies: Option<&'a Copies>,
+    pub copies: Option<&'a ReferenceRuns>,
 }
 
-impl<'a> Subject<'a> {
+impl<'a> CheckSubject<'a> {
     /// A text that was written from this evidence.
     #[must_use]
-    pub fn closed(evidence: &'a Evidence, style: &'a Style, target: Option<&'a Target>) -> Self {
-        let reach = Reach::default();
+    pub fn closed_world(evidence: &'a Evidence, style: &'a InstructionStyle, target: Option<&'a PathTarget>) -> Self {
+        let reach = WorldReach::default();
         Self {
             evidence,
             style,
             target,
-            world: World::Closed,
+            world: CheckWorld::Closed,
             reach,
-            turns: Turns::default(),
+            turns: TurnJudge::default(),
             tag: None,
             writer_sees: false,
             copies: None,
@@ -84,36 +85,36 @@ impl<'a> Subject<'a> {
 
     /// The same, with the index of the style's reference texts.
     #[must_use]
-    pub fn with_copies(self, copies: &'a Copies) -> Self {
+    pub fn with_copies(self, copies: &'a ReferenceRuns) -> Self {
         Self { copies: Some(copies), ..self }
     }
 
     /// A text by another author.
     #[must_use]
-    pub fn open(evidence: &'a Evidence, style: &'a Style, reach: Reach<'a>) -> Self {
-        Self { world: World::Open, reach, ..Self::closed(evidence, style, None) }
+    pub fn open_world(evidence: &'a Evidence, style: &'a InstructionStyle, reach: WorldReach<'a>) -> Self {
+        Self { world: CheckWorld::Open, reach, ..Self::closed_world(evidence, style, None) }
     }
 }
 
 /// A checked text.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Checked {
+pub struct TextFindings {
     /// Every check's outcome; a check that failed several times has several findings.
-    pub findings: Vec<Finding>,
+    pub findings: Vec<CheckFinding>,
     /// The landmarks, rooms, turns, storeys and target that the text mentions, each with its frame.
-    pub mentions: Vec<Mention>,
+    pub mentions: Vec<TextMention>,
     /// The world that it was checked in.
-    pub world: World,
+    pub world: CheckWorld,
 }
 
-impl Checked {
+impl TextFindings {
     /// The verdict of all checks together: the worst of them. In a closed world, an unverified route is left out, so a
     /// text can pass in spite of such a finding: the other checks know everything that such a text may claim.
     #[must_use]
     pub fn verdict(&self) -> Verdict {
-        let is_left_out = |finding: &&Finding| {
-            let is_unfollowed = finding.check == Check::Route && finding.verdict == Verdict::Unverified;
-            self.world == World::Closed && is_unfollowed
+        let is_left_out = |finding: &&CheckFinding| {
+            let is_unfollowed = finding.check == CheckKind::Route && finding.verdict == Verdict::Unverified;
+            self.world == CheckWorld::Closed && is_unfollowed
         };
         let counted = self.findings.iter().filter(|finding| !is_left_out(finding));
         counted.map(|finding| finding.verdict).max().unwrap_or(Verdict::Unverified)
@@ -122,52 +123,52 @@ impl Checked {
 
 /// Checks a text.
 #[must_use]
-pub fn check(text: &str, subject: Subject<'_>) -> Checked {
-    held(text, subject, false)
+pub fn check_text(text: &str, subject: CheckSubject<'_>) -> TextFindings {
+    check_against(text, subject, false)
 }
 
 /// Runs all checks. `from_captions_alone`: the text was written from the captions alone, so a thing that none of them
 /// names was made up.
-fn held(text: &str, subject: Subject<'_>, from_captions_alone: bool) -> Checked {
-    let whole = read(text, &names(subject.evidence));
-    let reading = whole.clone().claims();
-    let mut findings = form::form(text, &subject.style.constraints);
+fn check_against(text: &str, subject: CheckSubject<'_>, from_captions_alone: bool) -> TextFindings {
+    let whole = read_instruction(text, &known_names(subject.evidence));
+    let reading = whole.clone().into_claims();
+    let mut findings = form::check_form(text, &subject.style.constraints);
     let ends_in_task = subject.style.constraints.ends_in_task;
     if ends_in_task {
-        findings.push(task::task(&reading, subject));
+        findings.push(task::check_task(&reading, subject));
     }
     // Where the style asks for no task, the object of one is a landmark like any other.
     let object = reading.task.as_ref().and_then(|task| task.object).filter(|_| ends_in_task);
-    let places = landmarks::landmarks(&reading, subject.evidence, object, from_captions_alone);
-    let walk = order::order(&reading, subject.evidence, &places.shown);
+    let places = landmarks::check_landmarks(&reading, subject.evidence, object, from_captions_alone);
+    let walk = order::check_order(&reading, subject.evidence, &places.shown);
     match subject.world {
-        World::Closed => {
+        CheckWorld::Closed => {
             findings.extend(places.findings);
-            if let Some(wrong) = goal::goal(&reading, subject.evidence, object) {
+            if let Some(wrong) = goal::check_goal(&reading, subject.evidence, object) {
                 add_worse(&mut findings, wrong);
             }
             findings.extend(walk.findings);
-            findings.extend(floors::floors(&reading, subject.evidence));
+            findings.extend(floors::check_floors(&reading, subject.evidence));
         }
-        World::Open => findings.extend(open::open(text, &whole, &reading, subject)),
+        CheckWorld::Open => findings.extend(open::check_open(text, &whole, &reading, subject)),
     }
-    findings.extend(coverage::coverage(&reading, reading.language.or_tagged(subject.tag)));
-    findings.push(leak::leak(text, subject));
+    findings.extend(coverage::check_coverage(&reading, reading.language.or_tagged(subject.tag)));
+    findings.push(leak::check_leak(text, subject));
     findings.sort_by_key(|finding| finding.check);
-    Checked { mentions: mentions(&reading, &walk.frames), findings, world: subject.world }
+    TextFindings { mentions: collect_mentions(&reading, &walk.frames), findings, world: subject.world }
 }
 
-/// Checks a text that this program wrote. It is stricter than [`check`]: where the motion is unknown, the writer must
+/// Checks a text that this program wrote. It is stricter than [`check_text`]: where the motion is unknown, the writer must
 /// have invented any turn, side, storey or distance that the text names, while another author may have been at the
 /// place.
 #[must_use]
-pub fn check_own(text: &str, subject: Subject<'_>) -> Checked {
-    let from_captions_alone = subject.evidence.source == Source::Captions && !subject.writer_sees;
-    let mut checked = held(text, subject, from_captions_alone);
+pub fn check_own(text: &str, subject: CheckSubject<'_>) -> TextFindings {
+    let from_captions_alone = subject.evidence.source == EvidenceSource::Captions && !subject.writer_sees;
+    let mut checked = check_against(text, subject, from_captions_alone);
     if subject.evidence.motion.is_known() {
         return checked;
     }
-    let made_up = made_up::made_up(text, &names(subject.evidence));
+    let made_up = made_up::find_made_up(text, &known_names(subject.evidence));
     let replaced: BTreeSet<_> = made_up.iter().flat_map(|by| [(by.check, None), (by.check, by.span)]).collect();
     checked
         .findings
@@ -181,11 +182,11 @@ pub fn check_own(text: &str, subject: Subject<'_>) -> Checked {
 /// side, a colour or a neighbour ("the lamp by the desk") narrows them down.
 #[must_use]
 pub fn objects_meant(text: &str, evidence: &Evidence) -> usize {
-    let reading = read(text, &names(evidence)).claims();
+    let reading = read_instruction(text, &known_names(evidence)).into_claims();
     let Some(at) = reading.task.as_ref().and_then(|task| task.object) else { return 0 };
-    let What::Place(place) = &reading.events[at].what else { return 0 };
+    let EventContent::Place(place) = &reading.events[at].what else { return 0 };
     let things = evidence.final_things();
-    let alike: Vec<_> = things.iter().filter(|thing| agree(&thing.name, &place.name)).collect();
+    let alike: Vec<_> = things.iter().filter(|thing| names_agree(&thing.name, &place.name)).collect();
     let is_meant = |thing: &&&SeenThing| {
         let is_on_side = |side| thing.turn_rad.is_none_or(|turn_rad| sides::lies_on(side, turn_rad));
         let colours = || thing.colour.iter().chain(&thing.more_colours);
@@ -196,8 +197,8 @@ pub fn objects_meant(text: &str, evidence: &Evidence) -> usize {
     let has_neighbour = reading.events.get(at + 1).is_some_and(|next| {
         let between = text.get(reading.events[at].span[1]..next.span[0]);
         let is_joined = between.is_some_and(|words| words.len() <= MOST_BETWEEN && !words.contains(['.', ',', ';']));
-        let is_there = |name: &str| things.iter().any(|thing| agree(&thing.name, name));
-        matches!(&next.what, What::Place(other) if is_joined && other.is_thing && is_there(&other.name))
+        let is_there = |name: &str| things.iter().any(|thing| names_agree(&thing.name, name));
+        matches!(&next.what, EventContent::Place(other) if is_joined && other.is_thing && is_there(&other.name))
     });
     if has_neighbour { meant.min(1) } else { meant.max(usize::from(!alike.is_empty())) }
 }
@@ -206,36 +207,43 @@ pub fn objects_meant(text: &str, evidence: &Evidence) -> usize {
 const MOST_BETWEEN: usize = 24;
 
 /// The names of all objects that are known along a path. The reader has to recognise them.
-fn names(evidence: &Evidence) -> BTreeSet<String> {
-    let things = evidence.frames.iter().flat_map(|frame| frame.things.iter().map(|thing| normal(&thing.name)));
+fn known_names(evidence: &Evidence) -> BTreeSet<String> {
+    let things = evidence.frames.iter().flat_map(|frame| frame.things.iter().map(|thing| normalise_name(&thing.name)));
     things.filter(|name| !name.is_empty()).collect()
 }
 
-fn mentions(reading: &Reading, frames: &[Option<usize>]) -> Vec<Mention> {
+fn collect_mentions(reading: &TextReading, frames: &[Option<usize>]) -> Vec<TextMention> {
     let object = reading.task.as_ref().and_then(|task| task.object);
-    let kind = |at: usize, event: &Event| match &event.what {
-        What::Place(_) if object == Some(at) => Some(MentionKind::Target),
-        What::Place(place) if place.is_room => Some(MentionKind::Room),
-        What::Place(_) => Some(MentionKind::Landmark),
-        What::Turn(_) | What::Onward => Some(MentionKind::Turn),
-        What::Climb(_) | What::Steps(_) | What::Storey(_) | What::Floor(_) => Some(MentionKind::Floor),
-        What::Stop | What::Face { .. } | What::Compass { .. } | What::Distance { .. } => None,
+    let kind = |at: usize, event: &TextEvent| match &event.what {
+        EventContent::Place(_) if object == Some(at) => Some(MentionKind::Target),
+        EventContent::Place(place) if place.is_room => Some(MentionKind::Room),
+        EventContent::Place(_) => Some(MentionKind::Landmark),
+        EventContent::Turn(_) | EventContent::Onward => Some(MentionKind::Turn),
+        EventContent::Climb(_) | EventContent::Steps(_) | EventContent::Storey(_) | EventContent::Floor(_) => {
+            Some(MentionKind::Floor)
+        }
+        EventContent::Stop
+        | EventContent::Face { .. }
+        | EventContent::Compass { .. }
+        | EventContent::Distance { .. } => None,
     };
     let told = reading.events.iter().zip(frames).enumerate();
-    told.filter_map(|(at, (event, frame))| Some(Mention { span: event.span, kind: kind(at, event)?, frame: (*frame)? }))
-        .collect()
+    told.filter_map(|(at, (event, frame))| {
+        Some(TextMention { span: event.span, kind: kind(at, event)?, frame: (*frame)? })
+    })
+    .collect()
 }
 
-impl Checked {
+impl TextFindings {
     /// Adds findings of another judge. A check that passed before and fails or is unverified now no longer passes. A
     /// finding is skipped if the same check already has the same verdict on the same words.
-    pub fn add(&mut self, found: impl IntoIterator<Item = Finding>) {
+    pub fn add_findings(&mut self, found: impl IntoIterator<Item = CheckFinding>) {
         for finding in found {
-            let is_same = |other: &Finding| match (other.span, finding.span) {
+            let is_same = |other: &CheckFinding| match (other.span, finding.span) {
                 (Some(a), Some(b)) => a[0] < b[1] && b[0] < a[1],
                 _ => false,
             };
-            let alike = |other: &&Finding| other.check == finding.check && other.verdict == finding.verdict;
+            let alike = |other: &&CheckFinding| other.check == finding.check && other.verdict == finding.verdict;
             if self.findings.iter().filter(alike).any(is_same) {
                 continue;
             }
@@ -249,8 +257,8 @@ impl Checked {
 }
 
 /// Adds the finding of a second look by the same check, unless the first look was at least as bad.
-fn add_worse(findings: &mut Vec<Finding>, wrong: Finding) {
-    let is_same = |other: &Finding| other.check == wrong.check && other.span == wrong.span;
+fn add_worse(findings: &mut Vec<CheckFinding>, wrong: CheckFinding) {
+    let is_same = |other: &CheckFinding| other.check == wrong.check && other.span == wrong.span;
     if findings.iter().any(|other| is_same(other) && other.verdict >= wrong.verdict) {
         return;
     }
@@ -259,16 +267,21 @@ fn add_worse(findings: &mut Vec<Finding>, wrong: Finding) {
 }
 
 /// The finding of a check without mistakes.
-fn pass(check: Check) -> Finding {
-    Finding { check, verdict: Verdict::Pass, reason: String::new(), span: None }
+fn pass_finding(check: CheckKind) -> CheckFinding {
+    CheckFinding { check, verdict: Verdict::Pass, reason: String::new(), span: None }
 }
 
 /// A finding of a mistake, or of missing evidence.
-fn finding(check: Check, verdict: Verdict, reason: impl Into<String>, span: Option<[usize; 2]>) -> Finding {
-    Finding { check, verdict, reason: reason.into(), span }
+fn new_finding(
+    check: CheckKind,
+    verdict: Verdict,
+    reason: impl Into<String>,
+    span: Option<[usize; 2]>,
+) -> CheckFinding {
+    CheckFinding { check, verdict, reason: reason.into(), span }
 }
 
 /// The findings of one check: a pass where there are none.
-fn or_pass(check: Check, findings: Vec<Finding>) -> Vec<Finding> {
-    if findings.is_empty() { vec![pass(check)] } else { findings }
+fn or_pass(check: CheckKind, findings: Vec<CheckFinding>) -> Vec<CheckFinding> {
+    if findings.is_empty() { vec![pass_finding(check)] } else { findings }
 }

@@ -1,8 +1,8 @@
 //! Tests of the checks, on texts about invented paths.
 
-use super::{Subject, check, check_own, objects_meant};
-use crate::evidence::{Evidence, FrameEvidence, SeenThing, Source};
-use wayword_core::{Check, Constraints, Motion, Move, Style, Verdict};
+use super::{CheckSubject, check_own, check_text, objects_meant};
+use crate::evidence::{Evidence, EvidenceSource, FrameEvidence, SeenThing};
+use wayword_core::{CheckKind, InstructionStyle, PathMotion, PathMove, StyleConstraints, Verdict};
 
 /// A frame in a room (empty where it is not known), with things (`None` where they are not known), on a storey (0 where
 /// it is not known).
@@ -19,15 +19,15 @@ fn frame(room: &str, things: Option<&[&str]>, level: u32) -> FrameEvidence {
 
 /// The evidence of a path: frames, with a turn (degrees) and a rise (metres) before each but the first.
 fn walk(frames: Vec<FrameEvidence>, moves: &[(f64, f64)]) -> Evidence {
-    let step = |(deg, rise_m): &(f64, f64)| Move { turn_rad: deg.to_radians(), distance_m: 2.0, rise_m: *rise_m };
+    let step = |(deg, rise_m): &(f64, f64)| PathMove { turn_rad: deg.to_radians(), distance_m: 2.0, rise_m: *rise_m };
     let knows = frames.iter().any(|frame| !frame.rooms.is_empty() || frame.knows_things);
-    let source = if knows { Source::Labels } else { Source::Nothing };
+    let source = if knows { EvidenceSource::Labels } else { EvidenceSource::Nothing };
     Evidence {
         frames,
         moves: moves.iter().map(step).collect(),
-        motion: Motion::Known,
+        motion: PathMotion::Known,
         source,
-        beyond: crate::Beyond::default(),
+        beyond: crate::EndSurroundings::default(),
     }
 }
 
@@ -41,21 +41,21 @@ fn to_the_bedroom() -> Evidence {
     walk(frames, &[(0.0, 0.0), (90.0, 0.0)])
 }
 
-fn style(ends_in_task: bool) -> Style {
-    let constraints = Constraints { ends_in_task, ..Constraints::default() };
-    Style { name: "any".into(), constraints, ..Style::default() }
+fn style(ends_in_task: bool) -> InstructionStyle {
+    let constraints = StyleConstraints { ends_in_task, ..StyleConstraints::default() };
+    InstructionStyle { name: "any".into(), constraints, ..InstructionStyle::default() }
 }
 
 /// The verdict on a text, with the checks that it fails, or where it fails none, those that are unverified.
-fn told(text: &str, evidence: &Evidence) -> (Verdict, Vec<Check>) {
+fn told(text: &str, evidence: &Evidence) -> (Verdict, Vec<CheckKind>) {
     told_in(text, evidence, &style(false))
 }
 
-fn told_in(text: &str, evidence: &Evidence, style: &Style) -> (Verdict, Vec<Check>) {
-    let checked = check(text, Subject::closed(evidence, style, None));
+fn told_in(text: &str, evidence: &Evidence, style: &InstructionStyle) -> (Verdict, Vec<CheckKind>) {
+    let checked = check_text(text, CheckSubject::closed_world(evidence, style, None));
     let verdict = checked.verdict();
     let worst = checked.findings.iter().filter(|finding| finding.verdict == verdict && verdict != Verdict::Pass);
-    let mut checks: Vec<Check> = worst.map(|finding| finding.check).collect();
+    let mut checks: Vec<CheckKind> = worst.map(|finding| finding.check).collect();
     checks.dedup();
     (verdict, checks)
 }
@@ -66,12 +66,12 @@ fn passes(text: &str, evidence: &Evidence) {
 }
 
 #[track_caller]
-fn fails(check: Check, text: &str, evidence: &Evidence) {
+fn fails(check: CheckKind, text: &str, evidence: &Evidence) {
     assert_eq!(told(text, evidence), (Verdict::Fail, vec![check]), "{text}");
 }
 
 #[track_caller]
-fn is_unverified(check: Check, text: &str, evidence: &Evidence) {
+fn is_unverified(check: CheckKind, text: &str, evidence: &Evidence) {
     assert_eq!(told(text, evidence), (Verdict::Unverified, vec![check]), "{text}");
 }
 
@@ -79,39 +79,39 @@ fn is_unverified(check: Check, text: &str, evidence: &Evidence) {
 fn the_object_of_an_unrequested_task_is_a_landmark() {
     let path = to_the_bedroom();
     passes("Walk to the bedroom and clean the lamp.", &path);
-    fails(Check::Landmarks, "Walk to the bedroom and clean the piano.", &path);
-    fails(Check::Order, "Walk to the bedroom and clean the sofa.", &path);
+    fails(CheckKind::Landmarks, "Walk to the bedroom and clean the piano.", &path);
+    fails(CheckKind::Order, "Walk to the bedroom and clean the sofa.", &path);
     // Where a task is asked for, only the check of the task speaks about its object.
     let task = told_in("Walk to the bedroom and clean the piano", &path, &style(true));
-    assert_eq!(task, (Verdict::Fail, vec![Check::Task]));
+    assert_eq!(task, (Verdict::Fail, vec![CheckKind::Task]));
 }
 
 #[test]
 fn a_place_may_be_at_a_frame_with_unknown_objects() {
     let known = to_the_bedroom();
-    fails(Check::Landmarks, "Walk past the piano into the bedroom.", &known);
-    fails(Check::Landmarks, "Walk through the kitchen into the bedroom.", &known);
+    fails(CheckKind::Landmarks, "Walk past the piano into the bedroom.", &known);
+    fails(CheckKind::Landmarks, "Walk through the kitchen into the bedroom.", &known);
     let mut unknown = known.clone();
     unknown.frames[1] = frame("", None, 1);
-    is_unverified(Check::Landmarks, "Walk past the piano into the bedroom.", &unknown);
-    is_unverified(Check::Landmarks, "Walk through the kitchen into the bedroom.", &unknown);
+    is_unverified(CheckKind::Landmarks, "Walk past the piano into the bedroom.", &unknown);
+    is_unverified(CheckKind::Landmarks, "Walk through the kitchen into the bedroom.", &unknown);
     // The final viewpoint is known, and that is all that its task needs.
     let task = |text: &str| told_in(text, &unknown, &style(true));
-    assert_eq!(task("Go to the bedroom and clean the piano"), (Verdict::Fail, vec![Check::Task]));
+    assert_eq!(task("Go to the bedroom and clean the piano"), (Verdict::Fail, vec![CheckKind::Task]));
     // A viewpoint with an empty list of objects shows none.
     let mut bare = known;
     bare.frames[1] = frame("hallway", Some(&[]), 1);
-    fails(Check::Landmarks, "Walk past the piano into the bedroom.", &bare);
+    fails(CheckKind::Landmarks, "Walk past the piano into the bedroom.", &bare);
 }
 
 #[test]
 fn an_order_that_the_unknown_may_save_is_not_denied() {
     let text = "Walk past the lamp and pass the rug, then stop.";
-    fails(Check::Order, text, &to_the_bedroom());
+    fails(CheckKind::Order, text, &to_the_bedroom());
     let mut path = to_the_bedroom();
     path.frames.push(frame("", None, 1));
     path.moves.push(path.moves[0]);
-    is_unverified(Check::Order, text, &path);
+    is_unverified(CheckKind::Order, text, &path);
 }
 
 #[test]
@@ -123,7 +123,7 @@ fn a_room_that_the_walker_is_in_has_to_be_on_the_path() {
         "Come from the kitchen and walk down the hallway.",
         "Walk down the hallway and wait at the kitchen.",
     ] {
-        fails(Check::Landmarks, text, &path);
+        fails(CheckKind::Landmarks, text, &path);
     }
     for text in [
         "Walk to the bedroom next to the kitchen.",
@@ -131,7 +131,7 @@ fn a_room_that_the_walker_is_in_has_to_be_on_the_path() {
         "Walk to the bedroom across from the kitchen.",
         "Walk to the bedroom near the kitchen.",
     ] {
-        is_unverified(Check::Landmarks, text, &path);
+        is_unverified(CheckKind::Landmarks, text, &path);
     }
 }
 
@@ -153,8 +153,8 @@ fn a_place_that_only_locates_a_goal_is_free_in_the_order() {
     ] {
         passes(text, &path);
     }
-    fails(Check::Order, "Walk past the sofa through the bedroom into the bathroom.", &path);
-    fails(Check::Order, "Go to the bathroom and walk past the sofa.", &path);
+    fails(CheckKind::Order, "Walk past the sofa through the bedroom into the bathroom.", &path);
+    fails(CheckKind::Order, "Go to the bathroom and walk past the sofa.", &path);
 }
 
 /// A level path on one storey.
@@ -174,18 +174,18 @@ fn by_stairs(from: u32, to: u32) -> Evidence {
 fn a_command_to_climb_needs_a_climb() {
     for text in ["Go upstairs and stop in the bathroom.", "Walk up one floor and stop in the bathroom."] {
         passes(text, &by_stairs(1, 2));
-        fails(Check::Floors, text, &flat(2));
+        fails(CheckKind::Floors, text, &flat(2));
     }
-    fails(Check::Floors, "Go downstairs. Wait in the bathroom.", &flat(1));
+    fails(CheckKind::Floors, "Go downstairs. Wait in the bathroom.", &flat(1));
     let low = walk(flat(1).frames, &[(0.0, 0.3)]);
     passes("Walk up two steps and stop in the bathroom.", &low);
-    fails(Check::Floors, "Walk up the stairs and stop in the bathroom.", &low);
-    fails(Check::Floors, "Walk up two steps and stop in the bathroom.", &flat(1));
+    fails(CheckKind::Floors, "Walk up the stairs and stop in the bathroom.", &low);
+    fails(CheckKind::Floors, "Walk up two steps and stop in the bathroom.", &flat(1));
     // A text may say "upstairs" of a place when the walker is upstairs already.
     passes("Go to the bathroom upstairs.", &flat(2));
     passes("Go to the bathroom downstairs.", &flat(1));
-    fails(Check::Floors, "Go to the bathroom upstairs.", &flat(1));
-    is_unverified(Check::Floors, "Go to the bathroom upstairs.", &flat(0));
+    fails(CheckKind::Floors, "Go to the bathroom upstairs.", &flat(1));
+    is_unverified(CheckKind::Floors, "Go to the bathroom upstairs.", &flat(0));
 }
 
 #[test]
@@ -199,22 +199,26 @@ fn floors_are_passed_in_their_order_up_to_the_last() {
     ] {
         passes(text, &by_stairs(from, to));
     }
-    fails(Check::Floors, "Walk from the second floor to the first floor.", &by_stairs(1, 2));
-    fails(Check::Floors, "Start on the second floor and walk to the bathroom on the first floor.", &by_stairs(1, 2));
-    fails(Check::Floors, "Walk to the bathroom on the first floor.", &by_stairs(1, 2));
+    fails(CheckKind::Floors, "Walk from the second floor to the first floor.", &by_stairs(1, 2));
+    fails(
+        CheckKind::Floors,
+        "Start on the second floor and walk to the bathroom on the first floor.",
+        &by_stairs(1, 2),
+    );
+    fails(CheckKind::Floors, "Walk to the bathroom on the first floor.", &by_stairs(1, 2));
     for text in ["Go to the bathroom on the 7th floor.", "Go to the bathroom on floor 12."] {
-        fails(Check::Floors, text, &flat(1));
-        is_unverified(Check::Floors, text, &flat(0));
+        fails(CheckKind::Floors, text, &flat(1));
+        is_unverified(CheckKind::Floors, text, &flat(0));
     }
 }
 
 #[test]
 fn how_many_floors_there_are_is_not_known() {
-    is_unverified(Check::Floors, "Go to the bathroom on the top floor.", &by_stairs(1, 2));
-    fails(Check::Floors, "Go to the bathroom on the top floor.", &by_stairs(2, 1));
-    is_unverified(Check::Landmarks, "Go to the basement.", &flat(1));
-    fails(Check::Landmarks, "Go to the basement.", &flat(2));
-    is_unverified(Check::Landmarks, "Go to the basement bathroom.", &flat(1));
+    is_unverified(CheckKind::Floors, "Go to the bathroom on the top floor.", &by_stairs(1, 2));
+    fails(CheckKind::Floors, "Go to the bathroom on the top floor.", &by_stairs(2, 1));
+    is_unverified(CheckKind::Landmarks, "Go to the basement.", &flat(1));
+    fails(CheckKind::Landmarks, "Go to the basement.", &flat(2));
+    is_unverified(CheckKind::Landmarks, "Go to the basement bathroom.", &flat(1));
 }
 
 #[test]
@@ -225,8 +229,8 @@ fn denied_actions_are_not_checked() {
 #[test]
 fn walking_on_fails_on_a_path_without_moves() {
     let standing = walk(vec![frame("kitchen", Some(&["sink"]), 1)], &[]);
-    fails(Check::Turns, "Walk straight ahead and stop at the sink.", &standing);
-    fails(Check::Turns, "Continue through the kitchen and stop at the sink.", &standing);
+    fails(CheckKind::Turns, "Walk straight ahead and stop at the sink.", &standing);
+    fails(CheckKind::Turns, "Continue through the kitchen and stop at the sink.", &standing);
     passes("Stop at the sink.", &standing);
 }
 
@@ -234,7 +238,7 @@ fn walking_on_fails_on_a_path_without_moves() {
 fn on_video() -> Evidence {
     let mut path = to_the_bedroom();
     path.frames.iter_mut().for_each(|frame| frame.level = None);
-    Evidence { moves: Vec::new(), motion: Motion::Unknown, ..path }
+    Evidence { moves: Vec::new(), motion: PathMotion::Unknown, ..path }
 }
 
 #[test]
@@ -244,7 +248,7 @@ fn turns_floors_and_sides_of_an_unknown_motion_are_unverified() {
         "Walk past the sofa and turn left into the bedroom.",
         "Turn around and walk to the bedroom.",
     ] {
-        is_unverified(Check::Turns, text, &on_video());
+        is_unverified(CheckKind::Turns, text, &on_video());
     }
     for text in [
         "Go up the stairwell into the bedroom.",
@@ -252,31 +256,31 @@ fn turns_floors_and_sides_of_an_unknown_motion_are_unverified() {
         "Go to the bedroom upstairs.",
         "Go to the bedroom on the second floor.",
     ] {
-        is_unverified(Check::Floors, text, &on_video());
+        is_unverified(CheckKind::Floors, text, &on_video());
     }
     let mut sided = on_video();
     sided.frames[1].things[0].turn_rad = Some(-0.3);
     for side in ["left", "right"] {
-        is_unverified(Check::Landmarks, &format!("Walk past the sofa on your {side} into the bedroom."), &sided);
+        is_unverified(CheckKind::Landmarks, &format!("Walk past the sofa on your {side} into the bedroom."), &sided);
     }
     let task = told_in("Go to the bedroom and clean the lamp on your left", &on_video(), &style(true));
-    assert_eq!(task, (Verdict::Unverified, vec![Check::Task]));
+    assert_eq!(task, (Verdict::Unverified, vec![CheckKind::Task]));
 }
 
 #[test]
 fn places_of_an_unknown_motion_are_checked_in_their_order() {
     passes("Walk straight past the sofa into the bedroom and stop at the bed.", &on_video());
-    fails(Check::Landmarks, "Walk past the piano into the bedroom.", &on_video());
-    fails(Check::Order, "Walk past the lamp and pass the rug, then stop.", &on_video());
-    fails(Check::Order, "Turn left at the lamp and pass the rug, then stop.", &on_video());
+    fails(CheckKind::Landmarks, "Walk past the piano into the bedroom.", &on_video());
+    fails(CheckKind::Order, "Walk past the lamp and pass the rug, then stop.", &on_video());
+    fails(CheckKind::Order, "Turn left at the lamp and pass the rug, then stop.", &on_video());
     let picture = Evidence { frames: vec![frame("kitchen", Some(&["sink"]), 0)], ..on_video() };
-    fails(Check::Turns, "Walk straight ahead and stop at the sink.", &picture);
+    fails(CheckKind::Turns, "Walk straight ahead and stop at the sink.", &picture);
 }
 
 #[test]
 fn check_own_fails_statements_about_an_unknown_motion() {
     let own = |text: &str, evidence: &Evidence| {
-        let checked = check_own(text, Subject::closed(evidence, &style(false), None));
+        let checked = check_own(text, CheckSubject::closed_world(evidence, &style(false), None));
         let failed = checked.findings.into_iter().filter(|finding| finding.verdict == Verdict::Fail);
         failed
             .map(|finding| (finding.check, finding.span.map(|[from, to]| text[from..to].to_owned())))
@@ -284,22 +288,22 @@ fn check_own_fails_statements_about_an_unknown_motion() {
     };
     let video = on_video();
     for (text, check, words) in [
-        ("Walk past the sofa and turn right into the bedroom.", Check::Turns, "right"),
-        ("Walk past the sofa, do not turn left, and stop at the bed.", Check::Turns, "left"),
-        ("Walk straight past the sofa into the bedroom.", Check::Turns, "straight"),
-        ("Walk past the sofa, go 3 metres and stop at the bed.", Check::Turns, "3 metres"),
-        ("Walk past the sofa, go 3m and stop at the bed.", Check::Turns, "3m"),
-        ("Walk past the sofa and a few steps on to the bed.", Check::Turns, "few steps"),
-        ("Walk past the sofa and go upstairs to the bed.", Check::Floors, "upstairs"),
-        ("Walk past the sofa to the bedroom on the second floor.", Check::Floors, "second floor"),
-        ("Walk past the sofa on your left into the bedroom.", Check::Landmarks, "sofa"),
+        ("Walk past the sofa and turn right into the bedroom.", CheckKind::Turns, "right"),
+        ("Walk past the sofa, do not turn left, and stop at the bed.", CheckKind::Turns, "left"),
+        ("Walk straight past the sofa into the bedroom.", CheckKind::Turns, "straight"),
+        ("Walk past the sofa, go 3 metres and stop at the bed.", CheckKind::Turns, "3 metres"),
+        ("Walk past the sofa, go 3m and stop at the bed.", CheckKind::Turns, "3m"),
+        ("Walk past the sofa and a few steps on to the bed.", CheckKind::Turns, "few steps"),
+        ("Walk past the sofa and go upstairs to the bed.", CheckKind::Floors, "upstairs"),
+        ("Walk past the sofa to the bedroom on the second floor.", CheckKind::Floors, "second floor"),
+        ("Walk past the sofa on your left into the bedroom.", CheckKind::Landmarks, "sofa"),
     ] {
         let told = own(text, &video);
         assert!(
             told.iter().any(|(by, span)| *by == check && span.as_ref().is_some_and(|span| span.contains(words))),
             "{text}: {told:?}"
         );
-        assert!(own(text, &to_the_bedroom()).iter().all(|(by, _)| *by != Check::Landmarks), "{text}");
+        assert!(own(text, &to_the_bedroom()).iter().all(|(by, _)| *by != CheckKind::Landmarks), "{text}");
     }
     for text in [
         "Walk past the sofa into the bedroom and stop at the foot of the bed.",
@@ -309,8 +313,8 @@ fn check_own_fails_statements_about_an_unknown_motion() {
         assert_eq!(own(text, &video), [], "{text}");
     }
     // Each check has one outcome: the finding before about the same words is gone.
-    let checked = check_own("Turn left to the bed.", Subject::closed(&video, &style(false), None));
-    let turns = checked.findings.iter().filter(|finding| finding.check == Check::Turns);
+    let checked = check_own("Turn left to the bed.", CheckSubject::closed_world(&video, &style(false), None));
+    let turns = checked.findings.iter().filter(|finding| finding.check == CheckKind::Turns);
     assert_eq!(turns.map(|finding| finding.verdict).collect::<Vec<_>>(), [Verdict::Fail]);
 }
 
@@ -345,10 +349,10 @@ fn a_text_stops_at_a_thing_that_is_near_the_end() {
     at(&mut path, 1.8);
     passes("Walk into the bedroom and stop by the lamp.", &path);
     at(&mut path, 3.4);
-    fails(Check::Landmarks, "Walk into the bedroom and stop by the lamp.", &path);
+    fails(CheckKind::Landmarks, "Walk into the bedroom and stop by the lamp.", &path);
     passes("Walk into the bedroom, past the lamp.", &path);
     // A thing that is seen on the way, but not where the path ends.
-    fails(Check::Landmarks, "Walk down the hallway and stop at the sofa.", &path);
+    fails(CheckKind::Landmarks, "Walk down the hallway and stop at the sofa.", &path);
 }
 
 #[test]
@@ -356,8 +360,8 @@ fn the_room_that_is_the_goal_is_that_of_the_last_frame() {
     let path = to_the_bedroom();
     passes("Walk past the sofa and stop in the bedroom.", &path);
     passes("Walk down the hallway. Turn right and stop by the bed.", &path);
-    fails(Check::Landmarks, "Walk past the sofa and stop in the hallway.", &path);
-    fails(Check::Landmarks, "Go to the hallway and stop by the lamp.", &path);
+    fails(CheckKind::Landmarks, "Walk past the sofa and stop in the hallway.", &path);
+    fails(CheckKind::Landmarks, "Go to the hallway and stop by the lamp.", &path);
 }
 
 #[test]
@@ -373,8 +377,8 @@ fn a_colour_before_a_thing_is_read_and_checked() {
     ] {
         passes(text, &path);
     }
-    fails(Check::Landmarks, "Walk past the sofa into the bedroom and stop at the white dresser.", &path);
+    fails(CheckKind::Landmarks, "Walk past the sofa into the bedroom and stop at the white dresser.", &path);
     path.frames[2].things.push(dresser("white"));
     passes("Walk past the sofa into the bedroom and stop at the white dresser.", &path);
-    fails(Check::Landmarks, "Walk past the sofa into the bedroom and stop at the green dresser.", &path);
+    fails(CheckKind::Landmarks, "Walk past the sofa into the bedroom and stop at the green dresser.", &path);
 }

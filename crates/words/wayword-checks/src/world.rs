@@ -1,11 +1,11 @@
 //! The closed and the open world of a check: the two meanings of missing evidence.
 
-use crate::{evidence::Surroundings, open::Calibration};
-use wayword_core::Provenance;
+use crate::{evidence::PathSurroundings, open::Calibration};
+use wayword_core::TextProvenance;
 
 /// The meaning of missing evidence.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub enum World {
+pub enum CheckWorld {
     /// The text was written from this evidence: a thing that the evidence does not show is wrong.
     #[default]
     Closed,
@@ -13,7 +13,7 @@ pub enum World {
     Open,
 }
 
-impl World {
+impl CheckWorld {
     /// Its name, in files and on the screen.
     #[must_use]
     pub fn name(self) -> &'static str {
@@ -27,8 +27,13 @@ impl World {
     /// against the evidence that is at hand now, and the questions about it were answered from the source of that
     /// evidence.
     #[must_use]
-    pub fn of_record(provenance: &Provenance, made_on: &str, platform: &str, source: crate::Source) -> Self {
-        let labels = crate::Source::Labels;
+    pub fn of_record(
+        provenance: &TextProvenance,
+        made_on: &str,
+        platform: &str,
+        source: crate::EvidenceSource,
+    ) -> Self {
+        let labels = crate::EvidenceSource::Labels;
         let answered = source != labels || provenance.answerer == labels.name();
         let matches = made_on == platform && provenance.checked_against == source.name() && answered;
         if matches { Self::Closed } else { Self::Open }
@@ -37,9 +42,9 @@ impl World {
 
 /// Knowledge of an open world beyond the frames of the path. Without it, fewer things can be decided.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Reach<'a> {
+pub struct WorldReach<'a> {
     /// The listed objects and rooms around the path and elsewhere in the building.
-    pub surroundings: Option<&'a Surroundings>,
+    pub surroundings: Option<&'a PathSurroundings>,
     /// Shares by the names of objects and rooms, made from a file that the user has.
     pub calibration: Option<&'a Calibration>,
 }
@@ -47,14 +52,14 @@ pub struct Reach<'a> {
 /// The judge of the turns of a text in an open world. Turns fit a path or not only together with the rest of the walk,
 /// so they are judged by a comparison of whole walks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Turns {
-    /// A comparison of whole walks, which adds its findings ([`crate::Checked::add`]).
+pub enum TurnJudge {
+    /// A comparison of whole walks, which adds its findings ([`crate::TextFindings::add_findings`]).
     JudgedElsewhere,
     /// No comparison, for this reason: the turns are unverified.
     NotJudged(&'static str),
 }
 
-impl Default for Turns {
+impl Default for TurnJudge {
     fn default() -> Self {
         Self::NotJudged("no walks are compared")
     }

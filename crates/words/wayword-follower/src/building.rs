@@ -1,27 +1,27 @@
 //! The follower's knowledge of a building: all of it from a survey, or the part that was seen on the way.
 
-use crate::near::{Near, Nearness};
+use crate::near::{PlaceNearness, PlaceQuery};
 use std::{
     cmp::Reverse,
     collections::BTreeMap,
     sync::{Arc, Mutex, PoisonError},
 };
-use wayword_core::{DVec3, Survey};
-use wayword_language::lexicon::{normal, thing};
+use wayword_core::{DVec3, ViewpointSurvey};
+use wayword_language::lexicon::{find_thing, normalise_name};
 
 /// The known part of a building. Positions are metres, z up, in any one frame of reference.
 #[derive(Debug, Default)]
-pub struct Building {
-    pub(crate) viewpoints: Vec<Viewpoint>,
-    pub(crate) things: Vec<Thing>,
+pub struct KnownBuilding {
+    pub(crate) viewpoints: Vec<BuildingViewpoint>,
+    pub(crate) things: Vec<BuildingThing>,
     /// Number of storeys, where the platform knows them; else 0.
     pub(crate) levels: u32,
-    near: Mutex<BTreeMap<Nearness, Arc<Near>>>,
+    near: Mutex<BTreeMap<PlaceQuery, Arc<PlaceNearness>>>,
 }
 
 /// A viewpoint.
 #[derive(Debug, Clone)]
-pub(crate) struct Viewpoint {
+pub(crate) struct BuildingViewpoint {
     pub(crate) position: DVec3,
     pub(crate) neighbours: Vec<usize>,
     pub(crate) room: Option<String>,
@@ -35,7 +35,7 @@ pub(crate) struct Viewpoint {
 
 /// An object.
 #[derive(Debug, Clone)]
-pub(crate) struct Thing {
+pub(crate) struct BuildingThing {
     pub(crate) name: String,
     pub(crate) position: DVec3,
     /// The viewpoints from which it is seen.
@@ -44,7 +44,7 @@ pub(crate) struct Thing {
 
 /// A place on a path.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Place {
+pub struct PathPlace {
     /// The eye's position, metres.
     pub position: DVec3,
     /// The room, where it is known.
@@ -60,14 +60,14 @@ const SHORT_M: f64 = 0.3;
 /// The least slope of a hop that is stairs.
 const STAIRS_SLOPE: f64 = 0.25;
 
-impl Building {
+impl KnownBuilding {
     /// The building of a survey. A viewpoint's number is its place in the survey.
     #[must_use]
-    pub fn of(survey: &Survey) -> Self {
+    pub fn from_survey(survey: &ViewpointSurvey) -> Self {
         let mut building = Self::default();
         for viewpoint in survey.viewpoints() {
             let (room, neighbours) = (viewpoint.known.room.clone(), viewpoint.neighbours.clone());
-            building.viewpoints.push(Viewpoint {
+            building.viewpoints.push(BuildingViewpoint {
                 position: viewpoint.position,
                 neighbours,
                 room,
@@ -76,11 +76,11 @@ impl Building {
                 climbs: [false; 2],
             });
         }
-        let mut things: BTreeMap<&str, Thing> = BTreeMap::new();
+        let mut things: BTreeMap<&str, BuildingThing> = BTreeMap::new();
         for (at, viewpoint) in survey.viewpoints().iter().enumerate() {
             for label in viewpoint.known.things.iter().flatten() {
-                let thing = things.entry(label.object.as_str()).or_insert_with(|| Thing {
-                    name: normal(&label.name),
+                let thing = things.entry(label.object.as_str()).or_insert_with(|| BuildingThing {
+                    name: normalise_name(&label.name),
                     position: label.position.unwrap_or(viewpoint.position),
                     seen_from: Vec::new(),
                 });
@@ -97,7 +97,7 @@ impl Building {
 
     /// The building along a path, without the rest: a viewpoint for each of its frames, one after another.
     #[must_use]
-    pub fn along(path: Vec<Place>) -> Self {
+    pub fn along_path(path: Vec<PathPlace>) -> Self {
         let mut building = Self::default();
         let last = path.len().saturating_sub(1);
         for (at, place) in path.into_iter().enumerate() {
@@ -106,11 +106,12 @@ impl Building {
             for (name, direction) in place.things {
                 let off =
                     direction.map_or(DVec3::ZERO, |rad| DVec3::new(libm::sin(rad), libm::cos(rad), 0.0) * NEARBY_M);
-                let (name, position) = (normal(&name), place.position + off);
-                building.things.push(Thing { name, position, seen_from: vec![at] });
+                let (name, position) = (normalise_name(&name), place.position + off);
+                building.things.push(BuildingThing { name, position, seen_from: vec![at] });
             }
             let (position, room) = (place.position, place.room);
-            let viewpoint = Viewpoint { position, neighbours, room, level: None, is_known: true, climbs: [false; 2] };
+            let viewpoint =
+                BuildingViewpoint { position, neighbours, room, level: None, is_known: true, climbs: [false; 2] };
             building.viewpoints.push(viewpoint);
         }
         building.find_stairs();
@@ -134,7 +135,7 @@ impl Building {
     }
 
     /// Discards the computed distances, because the building has changed.
-    pub(crate) fn changed(&mut self) {
+    pub(crate) fn forget_nearness(&mut self) {
         self.near.get_mut().unwrap_or_else(PoisonError::into_inner).clear();
         self.find_stairs();
     }
@@ -152,12 +153,12 @@ impl Building {
     }
 
     /// The distance of each viewpoint from a named place. It is computed once for each name.
-    pub(crate) fn near(&self, what: &Nearness) -> Arc<Near> {
+    pub(crate) fn find_nearness(&self, what: &PlaceQuery) -> Arc<PlaceNearness> {
         let mut near = self.near.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(known) = near.get(what) {
             return Arc::clone(known);
         }
-        let found = Arc::new(Near::find(self, what));
+        let found = Arc::new(PlaceNearness::for_query(self, what));
         near.insert(what.clone(), Arc::clone(&found));
         found
     }
@@ -174,15 +175,15 @@ impl Building {
         own_room.or_else(|| {
             let apart = here.map(|thing| thing.name.as_str());
             let mut apart: Vec<&str> = apart.filter(|name| others.iter().all(|other| !sees(*other, name))).collect();
-            apart.sort_by_key(|name| (Reverse(thing(name).map_or(0, |thing| thing.salience)), *name));
+            apart.sort_by_key(|name| (Reverse(find_thing(name).map_or(0, |thing| thing.salience)), *name));
             apart.first().copied()
         })
     }
 
     /// The distance between two viewpoints, metres.
     #[must_use]
-    pub fn distance(&self, a: usize, b: usize) -> f64 {
-        self.hop(a, b).1
+    pub fn distance_m(&self, a: usize, b: usize) -> f64 {
+        self.hop_between(a, b).1
     }
 
     /// How many viewpoints lie in rooms of the name that a viewpoint's room has: 0 few, 2 many.
@@ -195,28 +196,28 @@ impl Building {
 
     /// The turns to the neighbours of a viewpoint for a walker that looks along `heading_rad`, radians, positive right.
     /// Neighbours at the same place are left out.
-    pub(crate) fn turns(&self, viewpoint: usize, heading_rad: f64) -> Vec<f64> {
+    pub(crate) fn turns_from(&self, viewpoint: usize, heading_rad: f64) -> Vec<f64> {
         let turn = |to: &usize| {
-            let (bearing_rad, length_m) = self.hop(viewpoint, *to);
-            bearing_rad.filter(|_| length_m > SHORT_M).map(|rad| wrapped(rad - heading_rad))
+            let (bearing_rad, length_m) = self.hop_between(viewpoint, *to);
+            bearing_rad.filter(|_| length_m > SHORT_M).map(|rad| wrap_angle(rad - heading_rad))
         };
         self.viewpoints[viewpoint].neighbours.iter().filter_map(turn).collect()
     }
 
     /// The direction of a hop, radians from +y clockwise, and its length over ground and in space, metres.
-    pub(crate) fn hop(&self, from: usize, to: usize) -> (Option<f64>, f64) {
+    pub(crate) fn hop_between(&self, from: usize, to: usize) -> (Option<f64>, f64) {
         let off = self.viewpoints[to].position - self.viewpoints[from].position;
-        (bearing(off), off.length())
+        (offset_bearing(off), off.length())
     }
 }
 
 /// The direction of an offset, radians from +y clockwise; `None` straight up or down.
-pub(crate) fn bearing(off: DVec3) -> Option<f64> {
+pub(crate) fn offset_bearing(off: DVec3) -> Option<f64> {
     (libm::hypot(off.x, off.y) > 1e-6).then(|| libm::atan2(off.x, off.y))
 }
 
 /// An angle in (-π, π].
-pub(crate) fn wrapped(rad: f64) -> f64 {
+pub(crate) fn wrap_angle(rad: f64) -> f64 {
     use std::f64::consts::{PI, TAU};
     let rad = rad.rem_euclid(TAU);
     if rad > PI { rad - TAU } else { rad }

@@ -4,12 +4,12 @@
 //! A text with "left" where the walk turns right fits better with that one word changed. Only the known walk is
 //! examined, so no graph is needed.
 
-use crate::{building::Building, guide::Guide, one_walk::OneWalk, weights::Weights};
-use wayword_core::{Climb, Side};
+use crate::{building::KnownBuilding, guide::Guide, one_walk::OneWalk, weights::FeatureWeights};
+use wayword_core::{ClimbDirection, Side};
 
 /// A change of one step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Kind {
+pub enum StepChangeKind {
     /// A turn to the other side.
     Turn,
     /// A turn left out.
@@ -24,9 +24,9 @@ pub enum Kind {
 
 /// A change of one step, and its gain.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Change {
+pub struct StepChange {
     /// The kind of change.
-    pub kind: Kind,
+    pub kind: StepChangeKind,
     /// The step, by its number.
     pub step: usize,
     /// The byte range of the changed words: those of the turn, or of the whole step.
@@ -40,17 +40,23 @@ pub struct Change {
 /// `walk` lists the viewpoints of the walk, and `heading_rad` is the direction of the walker at its start (radians from
 /// +y, clockwise).
 #[must_use]
-pub fn changes(guide: &Guide, building: &Building, walk: &[usize], heading_rad: f64, weights: &Weights) -> Vec<Change> {
+pub fn rank_changes(
+    guide: &Guide,
+    building: &KnownBuilding,
+    walk: &[usize],
+    heading_rad: f64,
+    weights: &FeatureWeights,
+) -> Vec<StepChange> {
     let known = OneWalk::new(building, walk, heading_rad, weights);
     let as_told = known.score(guide);
-    let mut changes: Vec<Change> = variants(guide)
+    let mut changes: Vec<StepChange> = single_changes(guide)
         .into_iter()
         .map(|(kind, step, changed)| {
             let gain = known.score(&changed) - as_told;
             let told = &guide.steps[step].step;
-            let turns = matches!(kind, Kind::Turn | Kind::NoTurn);
+            let turns = matches!(kind, StepChangeKind::Turn | StepChangeKind::NoTurn);
             let span = told.turn_span.filter(|_| turns).unwrap_or(told.span);
-            Change { kind, step, span, gain: if gain.is_nan() { 0.0 } else { gain } }
+            StepChange { kind, step, span, gain: if gain.is_nan() { 0.0 } else { gain } }
         })
         .collect();
     changes.sort_by(|a, b| b.gain.total_cmp(&a.gain).then(a.step.cmp(&b.step)));
@@ -59,12 +65,16 @@ pub fn changes(guide: &Guide, building: &Building, walk: &[usize], heading_rad: 
 
 /// The texts that differ from one by a turn to the other side.
 #[must_use]
-pub fn flipped(guide: &Guide) -> Vec<Guide> {
-    variants(guide).into_iter().filter(|(kind, ..)| *kind == Kind::Turn).map(|(_, _, changed)| changed).collect()
+pub fn flip_turns(guide: &Guide) -> Vec<Guide> {
+    single_changes(guide)
+        .into_iter()
+        .filter(|(kind, ..)| *kind == StepChangeKind::Turn)
+        .map(|(_, _, changed)| changed)
+        .collect()
 }
 
 /// The texts that differ from one by a single change.
-fn variants(guide: &Guide) -> Vec<(Kind, usize, Guide)> {
+fn single_changes(guide: &Guide) -> Vec<(StepChangeKind, usize, Guide)> {
     let mut variants = Vec::new();
     for (step, told) in guide.steps.iter().enumerate() {
         let mut add = |kind, change: &dyn Fn(&mut Guide)| {
@@ -73,20 +83,20 @@ fn variants(guide: &Guide) -> Vec<(Kind, usize, Guide)> {
             variants.push((kind, step, changed));
         };
         if let Some(side @ (Side::Left | Side::Right)) = told.step.turn {
-            add(Kind::Turn, &|guide| guide.steps[step].step.turn = Some(other(side)));
+            add(StepChangeKind::Turn, &|guide| guide.steps[step].step.turn = Some(other_side(side)));
         }
         if told.step.turn.is_some() {
-            add(Kind::NoTurn, &|guide| guide.steps[step].leave_out_turn());
+            add(StepChangeKind::NoTurn, &|guide| guide.steps[step].leave_out_turn());
         }
         if told.step.turn.is_none() && (told.step.side.is_some() || told.mentions.iter().any(|at| at.side.is_some())) {
-            add(Kind::Side, &|guide| guide.steps[step].change_sides(other));
+            add(StepChangeKind::Side, &|guide| guide.steps[step].change_sides(other_side));
         }
-        if let Some(climb @ (Climb::Up | Climb::Down)) = told.step.climb {
-            let opposite = if climb == Climb::Up { Climb::Down } else { Climb::Up };
-            add(Kind::Climb, &|guide| guide.steps[step].step.climb = Some(opposite));
+        if let Some(climb @ (ClimbDirection::Up | ClimbDirection::Down)) = told.step.climb {
+            let opposite = if climb == ClimbDirection::Up { ClimbDirection::Down } else { ClimbDirection::Up };
+            add(StepChangeKind::Climb, &|guide| guide.steps[step].step.climb = Some(opposite));
         }
         if guide.len() > 1 {
-            add(Kind::NoStep, &|guide| {
+            add(StepChangeKind::NoStep, &|guide| {
                 guide.steps.remove(step);
             });
         }
@@ -94,7 +104,7 @@ fn variants(guide: &Guide) -> Vec<(Kind, usize, Guide)> {
     variants
 }
 
-fn other(side: Side) -> Side {
+fn other_side(side: Side) -> Side {
     match side {
         Side::Left => Side::Right,
         Side::Right => Side::Left,

@@ -3,10 +3,10 @@
 //! once.
 
 use crate::{
-    features::{MOST_HOPS, Stretch, ending, stretch},
-    guide::Trial,
-    tree::Tree,
-    weights::Weights,
+    features::{MOST_HOPS, WalkStretch, ending_features, stretch_features},
+    guide::GuideTrial,
+    tree::WalkTree,
+    weights::FeatureWeights,
 };
 
 /// Largest product of a text's steps and the number of walks. Beyond it the text should not be followed, because the
@@ -15,7 +15,7 @@ pub const MOST_WORK: usize = 2_000_000;
 
 /// The scores of an instruction for all walks of a tree.
 #[derive(Debug, Clone)]
-pub struct Fit {
+pub struct WalkFit {
     /// For each number of steps, from none to all, and each node: the log of the sum over all ways in which these steps
     /// lead there.
     sums: Vec<Vec<f64>>,
@@ -25,10 +25,10 @@ pub struct Fit {
     endings: Vec<f64>,
 }
 
-impl Fit {
+impl WalkFit {
     /// Fits an instruction to all walks of a tree.
     #[must_use]
-    pub fn new(trial: &Trial<'_>, tree: &Tree, weights: &Weights) -> Self {
+    pub fn new(trial: &GuideTrial<'_>, tree: &WalkTree, weights: &FeatureWeights) -> Self {
         let (nodes, steps) = (tree.len(), trial.guide.len());
         let mut sums = vec![vec![f64::NEG_INFINITY; nodes]; steps + 1];
         sums[0][0] = 0.0;
@@ -43,12 +43,12 @@ impl Fit {
             let (before, after) = (&before[step], &mut after[0]);
             for end in 0..nodes {
                 let reached =
-                    tree.back(end).take(MOST_HOPS + 1).enumerate().filter(|(_, from)| before[*from].is_finite());
+                    tree.nodes_back(end).take(MOST_HOPS + 1).enumerate().filter(|(_, from)| before[*from].is_finite());
                 for (hops, from) in reached {
                     found.clear();
-                    stretch(trial, step, &Stretch::to(tree, end, hops), &mut found);
-                    let speaks = weights.of(&found);
-                    stretches[place(nodes, step, end, hops)] = speaks;
+                    stretch_features(trial, step, &WalkStretch::to_node(tree, end, hops), &mut found);
+                    let speaks = weights.sum_of(&found);
+                    stretches[stretch_index(nodes, step, end, hops)] = speaks;
                     after[end] = log_sum(after[end], before[from] + speaks);
                 }
             }
@@ -56,8 +56,8 @@ impl Fit {
         let endings = (0..nodes)
             .map(|end| {
                 found.clear();
-                ending(trial, tree, end, &mut found);
-                weights.of(&found)
+                ending_features(trial, tree, end, &mut found);
+                weights.sum_of(&found)
             })
             .collect();
         Self { sums, stretches, endings }
@@ -71,7 +71,7 @@ impl Fit {
     }
 
     /// The log of the sum over all ways in which the first `steps` steps lead to a node.
-    pub(crate) fn sum(&self, steps: usize, node: usize) -> f64 {
+    pub(crate) fn sum_after(&self, steps: usize, node: usize) -> f64 {
         self.sums[steps][node]
     }
 
@@ -79,8 +79,8 @@ impl Fit {
     /// goal by the node's score. `by_sums` has the derivatives by the sums after some of the steps; it may be empty.
     pub(crate) fn add_slope(
         &self,
-        trial: &Trial<'_>,
-        tree: &Tree,
+        trial: &GuideTrial<'_>,
+        tree: &WalkTree,
         by_score: &[f64],
         by_sums: &[Vec<f64>],
         slope: &mut [f64],
@@ -88,24 +88,24 @@ impl Fit {
         let nodes = tree.len();
         let mut found = Vec::new();
         let mut by_sum = by_score.to_vec();
-        for (end, by_score) in by_score.iter().enumerate().filter(|(_, by_score)| by_score.abs() > SMALL) {
+        for (end, by_score) in by_score.iter().enumerate().filter(|(_, by_score)| by_score.abs() > NEGLIGIBLE_SHARE) {
             found.clear();
-            ending(trial, tree, end, &mut found);
+            ending_features(trial, tree, end, &mut found);
             found.iter().for_each(|feature| slope[*feature as usize] += by_score);
         }
         for step in (0..trial.guide.len()).rev() {
             let mut by_sum_before = vec![0.0; nodes];
-            for (end, by_sum) in by_sum.iter().enumerate().filter(|(_, by_sum)| by_sum.abs() > SMALL) {
-                for (hops, from) in tree.back(end).take(MOST_HOPS + 1).enumerate() {
-                    let speaks = self.stretches[place(nodes, step, end, hops)];
+            for (end, by_sum) in by_sum.iter().enumerate().filter(|(_, by_sum)| by_sum.abs() > NEGLIGIBLE_SHARE) {
+                for (hops, from) in tree.nodes_back(end).take(MOST_HOPS + 1).enumerate() {
+                    let speaks = self.stretches[stretch_index(nodes, step, end, hops)];
                     if speaks == f64::NEG_INFINITY {
                         continue;
                     }
                     let share = by_sum * (self.sums[step][from] + speaks - self.sums[step + 1][end]).exp();
                     by_sum_before[from] += share;
-                    if share.abs() > SMALL {
+                    if share.abs() > NEGLIGIBLE_SHARE {
                         found.clear();
-                        stretch(trial, step, &Stretch::to(tree, end, hops), &mut found);
+                        stretch_features(trial, step, &WalkStretch::to_node(tree, end, hops), &mut found);
                         found.iter().for_each(|feature| slope[*feature as usize] += share);
                     }
                 }
@@ -119,9 +119,9 @@ impl Fit {
 }
 
 /// Shares below this are ignored.
-const SMALL: f64 = 1e-6;
+const NEGLIGIBLE_SHARE: f64 = 1e-6;
 
-fn place(nodes: usize, step: usize, end: usize, hops: usize) -> usize {
+fn stretch_index(nodes: usize, step: usize, end: usize, hops: usize) -> usize {
     (step * nodes + end) * (MOST_HOPS + 1) + hops
 }
 

@@ -1,22 +1,22 @@
 //! An instruction in the form that a follower uses: its steps with the places that they name, and their location in a
 //! building.
 
-use crate::building::Building;
-use crate::near::{Near, Nearness};
+use crate::building::KnownBuilding;
+use crate::near::{PlaceNearness, PlaceQuery};
 use std::{collections::BTreeSet, sync::Arc};
 use wayword_core::Side;
 use wayword_language::{
     lexicon::same_room,
     reading::{
-        Reading, What, read,
-        steps::{Relation, Step, steps},
+        EventContent, TextReading, read_instruction,
+        steps::{InstructionStep, StepRelation, read_steps},
     },
 };
 
 /// An instruction, step by step, independent of a building.
 #[derive(Debug, Clone)]
 pub struct Guide {
-    pub(crate) steps: Vec<Told>,
+    pub(crate) steps: Vec<GuideStep>,
     /// The rooms that it names.
     rooms: Vec<String>,
     /// Whether it describes no way, but only a place to go to: "Go to the attic and dust the globe".
@@ -25,28 +25,28 @@ pub struct Guide {
 
 /// A step with the places that it names.
 #[derive(Debug, Clone)]
-pub(crate) struct Told {
-    pub(crate) step: Step,
-    pub(crate) kind: Kind,
-    pub(crate) mentions: Vec<Mention>,
+pub(crate) struct GuideStep {
+    pub(crate) step: InstructionStep,
+    pub(crate) kind: GuideStepKind,
+    pub(crate) mentions: Vec<GuideMention>,
 }
 
 /// A room or an object that a step names.
 #[derive(Debug, Clone)]
-pub(crate) struct Mention {
+pub(crate) struct GuideMention {
     /// The byte range of its name in the text; `None` if the step only implies that it leads outdoors.
     pub(crate) span: Option<[usize; 2]>,
-    pub(crate) relation: Relation,
+    pub(crate) relation: StepRelation,
     pub(crate) side: Option<Side>,
     /// Whether a turn happens at it.
     pub(crate) tells_turn: bool,
     /// Its possible meanings, the likeliest first.
-    pub(crate) meanings: Vec<Nearness>,
+    pub(crate) meanings: Vec<PlaceQuery>,
 }
 
 /// The kinds of steps, by their most important content.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Kind {
+pub(crate) enum GuideStepKind {
     Turn,
     SlightTurn,
     TurnAround,
@@ -65,12 +65,12 @@ pub(crate) enum Kind {
     Task,
 }
 
-impl Kind {
+impl GuideStepKind {
     /// Number of kinds.
     pub(crate) const COUNT: usize = 12;
 
-    fn of(step: &Step) -> Self {
-        let crosses = |relation| matches!(relation, Relation::OutOf | Relation::Into | Relation::Through);
+    fn for_step(step: &InstructionStep) -> Self {
+        let crosses = |relation| matches!(relation, StepRelation::OutOf | StepRelation::Into | StepRelation::Through);
         match step.turn {
             Some(Side::Left | Side::Right) if step.is_slight => Self::SlightTurn,
             Some(Side::Left | Side::Right) => Self::Turn,
@@ -86,31 +86,34 @@ impl Kind {
     }
 }
 
-impl Told {
+impl GuideStep {
     /// Whether it describes a part of the way: a turn, stairs, where to stop, a thing to pass.
     fn tells_way(&self) -> bool {
-        let is_way = |mention: &Mention| {
-            matches!(mention.relation, Relation::OutOf | Relation::Through | Relation::Past | Relation::Along)
+        let is_way = |mention: &GuideMention| {
+            matches!(
+                mention.relation,
+                StepRelation::OutOf | StepRelation::Through | StepRelation::Past | StepRelation::Along
+            )
         };
-        let Step { turn, climb, stops, is_straight, is_condition, .. } = &self.step;
+        let InstructionStep { turn, climb, stops, is_straight, is_condition, .. } = &self.step;
         turn.is_some() || climb.is_some() || *stops || *is_straight || *is_condition || self.mentions.iter().any(is_way)
     }
 
     /// Removes its turn.
     pub(crate) fn leave_out_turn(&mut self) {
         self.step.turn = None;
-        self.kind = Kind::of(&self.step);
+        self.kind = GuideStepKind::for_step(&self.step);
     }
 
     /// Changes its relation to one of its places.
-    pub(crate) fn change_relation(&mut self, place: usize, relation: Relation) {
+    pub(crate) fn change_relation(&mut self, place: usize, relation: StepRelation) {
         if let Some(mention) = self.mentions.get_mut(place) {
             mention.relation = relation;
         }
         if let Some(told) = self.step.places.get_mut(place) {
             told.relation = relation;
         }
-        self.kind = Kind::of(&self.step);
+        self.kind = GuideStepKind::for_step(&self.step);
     }
 
     /// Changes the sides on which its places are.
@@ -125,42 +128,42 @@ impl Told {
 impl Guide {
     /// Reads an instruction.
     #[must_use]
-    pub fn read(text: &str) -> Self {
-        Self::of(text, &read(text, &BTreeSet::new()))
+    pub fn read_text(text: &str) -> Self {
+        Self::from_reading(text, &read_instruction(text, &BTreeSet::new()))
     }
 
     /// The guide of an instruction that was read before.
     #[must_use]
-    pub fn of(text: &str, reading: &Reading) -> Self {
+    pub fn from_reading(text: &str, reading: &TextReading) -> Self {
         let mut rooms = Vec::new();
-        let told = |step: Step| {
-            let mut mentions: Vec<Mention> = Vec::new();
+        let told = |step: InstructionStep| {
+            let mut mentions: Vec<GuideMention> = Vec::new();
             for place in &step.places {
-                let What::Place(named) = &reading.events[place.event].what else { continue };
+                let EventContent::Place(named) = &reading.events[place.event].what else { continue };
                 if named.is_room {
                     rooms.push(named.name.clone());
                 }
-                mentions.push(Mention {
+                mentions.push(GuideMention {
                     span: Some(reading.events[place.event].span),
                     relation: place.relation,
                     side: named.side,
                     tells_turn: named.tells_turn,
-                    meanings: meanings(&named.name, named.is_room, named.is_thing),
+                    meanings: name_meanings(&named.name, named.is_room, named.is_thing),
                 });
             }
             if step.is_outdoors {
                 rooms.push("outdoor area".to_owned());
-                let meanings = meanings("outdoor area", true, false);
-                let relation = Relation::Into;
-                mentions.push(Mention { span: None, relation, side: None, tells_turn: false, meanings });
+                let meanings = name_meanings("outdoor area", true, false);
+                let relation = StepRelation::Into;
+                mentions.push(GuideMention { span: None, relation, side: None, tells_turn: false, meanings });
             }
-            Told { kind: Kind::of(&step), step, mentions }
+            GuideStep { kind: GuideStepKind::for_step(&step), step, mentions }
         };
-        let mut steps: Vec<Told> = steps(text, reading).into_iter().map(told).collect();
+        let mut steps: Vec<GuideStep> = read_steps(text, reading).into_iter().map(told).collect();
         let is_goal = !steps.is_empty() && !steps.iter().any(|told| told.tells_way());
         if is_goal {
-            steps.iter_mut().for_each(|told| told.kind = Kind::Task);
-            steps[0].kind = Kind::Goal;
+            steps.iter_mut().for_each(|told| told.kind = GuideStepKind::Task);
+            steps[0].kind = GuideStepKind::Goal;
         }
         Self { steps, rooms, is_goal }
     }
@@ -183,34 +186,35 @@ impl Guide {
     }
 
     /// The places that it names, each as the number of the step and the position in the step's list.
-    pub(crate) fn places(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
-        let of_step = |(step, told): (usize, &Told)| (0..told.mentions.len()).map(move |place| (step, place));
+    pub(crate) fn named_places(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+        let of_step = |(step, told): (usize, &GuideStep)| (0..told.mentions.len()).map(move |place| (step, place));
         self.steps.iter().enumerate().flat_map(of_step)
     }
 
     /// Whether it has a turn or a place within a byte range of its text, and still has a step without that.
     pub(crate) fn stands_without(&self, [from, to]: [usize; 2]) -> bool {
         let is_within = |span: [usize; 2]| from <= span[0] && span[1] <= to;
-        let loses_turn = |told: &Told| told.step.turn_span.is_some_and(is_within);
-        let loses = |mention: &Mention| mention.span.is_some_and(is_within);
+        let loses_turn = |told: &GuideStep| told.step.turn_span.is_some_and(is_within);
+        let loses = |mention: &GuideMention| mention.span.is_some_and(is_within);
         let is_changed = self.steps.iter().any(|told| loses_turn(told) || told.mentions.iter().any(loses));
-        let overlaps = |told: &Told| told.step.span[0] < to && from < told.step.span[1];
+        let overlaps = |told: &GuideStep| told.step.span[0] < to && from < told.step.span[1];
         let tells_no_more =
-            |told: &Told| told.mentions.iter().all(loses) && (told.step.turn.is_none() || loses_turn(told));
-        let is_gone = |told: &&Told| is_within(told.step.span) || (is_changed && overlaps(told) && tells_no_more(told));
+            |told: &GuideStep| told.mentions.iter().all(loses) && (told.step.turn.is_none() || loses_turn(told));
+        let is_gone =
+            |told: &&GuideStep| is_within(told.step.span) || (is_changed && overlaps(told) && tells_no_more(told));
         let gone = self.steps.iter().filter(is_gone).count();
         (is_changed || gone > 0) && gone < self.len()
     }
 
     /// Number of its turns.
-    pub(crate) fn turns(&self) -> usize {
+    pub(crate) fn count_turns(&self) -> usize {
         self.steps.iter().filter(|told| told.step.turn.is_some()).count()
     }
 }
 
 /// The possible meanings of a name. If a building lacks the full name, the last word of it may be known there.
-fn meanings(name: &str, is_room: bool, is_thing: bool) -> Vec<Nearness> {
-    let meaning = |is_room: bool, name: &str| Nearness { is_room, name: name.to_owned() };
+fn name_meanings(name: &str, is_room: bool, is_thing: bool) -> Vec<PlaceQuery> {
+    let meaning = |is_room: bool, name: &str| PlaceQuery { is_room, name: name.to_owned() };
     let last = name.rsplit_once(' ').map(|(_, last)| last);
     let mut meanings = Vec::new();
     meanings.extend(is_room.then(|| meaning(true, name)));
@@ -221,45 +225,45 @@ fn meanings(name: &str, is_room: bool, is_thing: bool) -> Vec<Nearness> {
 
 /// An instruction in a building, with its places located there.
 #[derive(Debug)]
-pub struct Trial<'a> {
+pub struct GuideTrial<'a> {
     pub(crate) guide: &'a Guide,
-    pub(crate) building: &'a Building,
+    pub(crate) building: &'a KnownBuilding,
     /// For each step, those of its mentions that the building has.
-    pub(crate) found: Vec<Vec<Found<'a>>>,
+    pub(crate) found: Vec<Vec<LocatedMention<'a>>>,
     /// For each viewpoint, whether the text names its room; `None` where the room has no name.
     pub(crate) tells_room: Vec<Option<bool>>,
 }
 
 /// A mention, and the distance of each viewpoint from it.
 #[derive(Debug)]
-pub(crate) struct Found<'a> {
-    pub(crate) mention: &'a Mention,
+pub(crate) struct LocatedMention<'a> {
+    pub(crate) mention: &'a GuideMention,
     pub(crate) is_room: bool,
-    pub(crate) near: Arc<Near>,
+    pub(crate) near: Arc<PlaceNearness>,
 }
 
-impl<'a> Trial<'a> {
+impl<'a> GuideTrial<'a> {
     /// Locates the places of an instruction in a building. A place that the building lacks has no influence on the
     /// scores.
     #[must_use]
-    pub fn new(guide: &'a Guide, building: &'a Building) -> Self {
-        Self::with(guide, building, false)
+    pub fn new(guide: &'a Guide, building: &'a KnownBuilding) -> Self {
+        Self::find_mentions(guide, building, false)
     }
 
     /// Locates them in the visited part of a building. Unseen places may be anywhere else.
     #[must_use]
-    pub(crate) fn seen(guide: &'a Guide, building: &'a Building) -> Self {
-        Self::with(guide, building, true)
+    pub(crate) fn new_partial(guide: &'a Guide, building: &'a KnownBuilding) -> Self {
+        Self::find_mentions(guide, building, true)
     }
 
-    fn with(guide: &'a Guide, building: &'a Building, is_partial: bool) -> Self {
-        let find = |mention: &'a Mention| {
-            let mut meanings = mention.meanings.iter().map(|what| (what.is_room, building.near(what)));
+    fn find_mentions(guide: &'a Guide, building: &'a KnownBuilding, is_partial: bool) -> Self {
+        let find = |mention: &'a GuideMention| {
+            let mut meanings = mention.meanings.iter().map(|what| (what.is_room, building.find_nearness(what)));
             let first = meanings.next()?;
-            let exists = |(_, near): &(bool, Arc<Near>)| near.exists;
+            let exists = |(_, near): &(bool, Arc<PlaceNearness>)| near.exists;
             let found = if exists(&first) { Some(first.clone()) } else { meanings.find(exists) };
             let (is_room, near) = found.or(is_partial.then_some(first))?;
-            Some(Found { mention, is_room, near })
+            Some(LocatedMention { mention, is_room, near })
         };
         let found = guide.steps.iter().map(|told| told.mentions.iter().filter_map(find).collect()).collect();
         let room = |at: usize| building.viewpoints[at].room.as_deref();

@@ -3,11 +3,13 @@
 //! The likelihood of a walk is its share among all walks of a tree: a softmax of their scores. Adam follows the
 //! gradient; the result is the mean of the weights over the last round.
 
-use crate::{features::tables, fit::Fit, guide::Trial, posterior::shares, tree::Tree, weights::Weights};
+use crate::{
+    features::tables, fit::WalkFit, guide::GuideTrial, posterior::walk_shares, tree::WalkTree, weights::FeatureWeights,
+};
 
 /// The settings of a fit.
 #[derive(Debug, Clone, Copy)]
-pub struct Plan {
+pub struct FitPlan {
     /// Rounds over all texts.
     pub rounds: usize,
     /// Number of texts for each step of the descent.
@@ -20,7 +22,7 @@ pub struct Plan {
     pub hold_fine: f64,
 }
 
-impl Default for Plan {
+impl Default for FitPlan {
     fn default() -> Self {
         Self { rounds: 10, batch: 64, rate: 0.05, hold: 3e-4, hold_fine: 5.0 }
     }
@@ -28,25 +30,25 @@ impl Default for Plan {
 
 /// The gradient of the loss over texts, and the loss.
 #[derive(Debug, Clone)]
-pub struct Slope {
+pub struct FitSlope {
     values: Vec<f64>,
     /// Sum of the losses.
     pub loss: f64,
     texts: usize,
 }
 
-impl Default for Slope {
+impl Default for FitSlope {
     fn default() -> Self {
         Self { values: vec![0.0; tables::COUNT], loss: 0.0, texts: 0 }
     }
 }
 
-impl Slope {
+impl FitSlope {
     /// Adds a text. `goal` is the known walk's number in the tree. The start alone is no walk, so it cannot be the
     /// goal.
-    pub fn add(&mut self, trial: &Trial<'_>, tree: &Tree, goal: usize, weights: &Weights) {
-        let fit = Fit::new(trial, tree, weights);
-        let shares = shares(&fit, tree);
+    pub fn add_text(&mut self, trial: &GuideTrial<'_>, tree: &WalkTree, goal: usize, weights: &FeatureWeights) {
+        let fit = WalkFit::new(trial, tree, weights);
+        let shares = walk_shares(&fit, tree);
         if !shares[goal].is_normal() {
             return;
         }
@@ -59,9 +61,9 @@ impl Slope {
 
     /// Adds an empty text for a walk, which teaches the follower a default for texts without information. It does not
     /// count in the number of texts.
-    pub fn add_floor(&mut self, nothing: &Trial<'_>, tree: &Tree, goal: usize, weights: &Weights) {
+    pub fn add_floor(&mut self, nothing: &GuideTrial<'_>, tree: &WalkTree, goal: usize, weights: &FeatureWeights) {
         let mut floor = Self::default();
-        floor.add(nothing, tree, goal, weights);
+        floor.add_text(nothing, tree, goal, weights);
         self.values.iter_mut().zip(&floor.values).for_each(|(a, b)| *a += b);
     }
 
@@ -69,13 +71,13 @@ impl Slope {
     /// score higher. `walk` is a tree of that walk alone.
     pub fn add_contrast(
         &mut self,
-        right: &Trial<'_>,
-        wrong: &Trial<'_>,
-        walk: &Tree,
-        weights: &Weights,
+        right: &GuideTrial<'_>,
+        wrong: &GuideTrial<'_>,
+        walk: &WalkTree,
+        weights: &FeatureWeights,
         strength: f64,
     ) {
-        let fits = [right, wrong].map(|trial| Fit::new(trial, walk, weights));
+        let fits = [right, wrong].map(|trial| WalkFit::new(trial, walk, weights));
         let end = walk.len() - 1;
         let gain = fits[1].score(end) - fits[0].score(end);
         if !gain.is_finite() {
@@ -102,37 +104,37 @@ impl Slope {
 
 /// A running fit.
 #[derive(Debug)]
-pub struct Learner {
-    descent: Descent,
+pub struct WeightLearner {
+    descent: AdamDescent,
 }
 
-impl Learner {
+impl WeightLearner {
     /// Begins with weights.
     #[must_use]
-    pub fn new(plan: Plan, start: &Weights) -> Self {
-        Self { descent: Descent::new(plan, start.values().to_vec(), holds(plan)) }
+    pub fn new(plan: FitPlan, start: &FeatureWeights) -> Self {
+        Self { descent: AdamDescent::new(plan, start.values().to_vec(), hold_strengths(plan)) }
     }
 
     /// The weights as they are.
     #[must_use]
-    pub fn weights(&self) -> Weights {
-        Weights::from_values(&self.descent.values)
+    pub fn current_weights(&self) -> FeatureWeights {
+        FeatureWeights::from_values(&self.descent.values)
     }
 
     /// Goes one step down the gradient; `round` counts from 0.
-    pub fn step(&mut self, round: usize, slope: &Slope) {
-        self.descent.step(round, &slope.values, slope.texts);
+    pub fn step_down(&mut self, round: usize, slope: &FitSlope) {
+        self.descent.step_down(round, &slope.values, slope.texts);
     }
 
     /// The mean of the weights over the last round.
     #[must_use]
-    pub fn finish(self) -> Weights {
-        Weights::from_values(&self.descent.finish())
+    pub fn finish(self) -> FeatureWeights {
+        FeatureWeights::from_values(&self.descent.finish())
     }
 }
 
 /// For each weight, the strength of the pull towards its start value.
-pub(crate) fn holds(plan: Plan) -> Vec<f64> {
+pub(crate) fn hold_strengths(plan: FitPlan) -> Vec<f64> {
     let mut holds = vec![plan.hold; tables::COUNT];
     for table in tables::ALL.iter().filter(|table| table.is_fine) {
         holds[table.from..table.from + table.size].fill(plan.hold * plan.hold_fine);
@@ -142,8 +144,8 @@ pub(crate) fn holds(plan: Plan) -> Vec<f64> {
 
 /// The Adam optimiser with its state.
 #[derive(Debug)]
-pub(crate) struct Descent {
-    plan: Plan,
+pub(crate) struct AdamDescent {
+    plan: FitPlan,
     start: Vec<f64>,
     pub(crate) values: Vec<f64>,
     holds: Vec<f64>,
@@ -154,25 +156,25 @@ pub(crate) struct Descent {
     summed: usize,
 }
 
-impl Descent {
-    pub(crate) fn new(plan: Plan, start: Vec<f64>, holds: Vec<f64>) -> Self {
+impl AdamDescent {
+    pub(crate) fn new(plan: FitPlan, start: Vec<f64>, holds: Vec<f64>) -> Self {
         let zeros = || vec![0.0; start.len()];
         let (mean, square, sum, values) = (zeros(), zeros(), zeros(), start.clone());
         Self { plan, start, values, holds, mean, square, steps: 0, sum, summed: 0 }
     }
 
     /// Goes one step down; `slope` is the sum of the gradients of `examples` examples.
-    pub(crate) fn step(&mut self, round: usize, slope: &[f64], examples: usize) {
+    pub(crate) fn step_down(&mut self, round: usize, slope: &[f64], examples: usize) {
         /// Adam's usual decay rates.
-        const PAST: [f64; 2] = [0.9, 0.999];
+        const ADAM_DECAY: [f64; 2] = [0.9, 0.999];
         let left = 1.0 - round as f64 / self.plan.rounds.max(1) as f64;
         self.steps += 1;
-        let [bias, bias_square] = PAST.map(|past| 1.0 - past.powi(self.steps));
+        let [bias, bias_square] = ADAM_DECAY.map(|past| 1.0 - past.powi(self.steps));
         let is_last = round + 1 == self.plan.rounds;
         for (at, value) in self.values.iter_mut().enumerate() {
             let down = slope[at] / examples.max(1) as f64 + self.holds[at] * (*value - self.start[at]);
-            self.mean[at] = PAST[0] * self.mean[at] + (1.0 - PAST[0]) * down;
-            self.square[at] = PAST[1] * self.square[at] + (1.0 - PAST[1]) * down * down;
+            self.mean[at] = ADAM_DECAY[0] * self.mean[at] + (1.0 - ADAM_DECAY[0]) * down;
+            self.square[at] = ADAM_DECAY[1] * self.square[at] + (1.0 - ADAM_DECAY[1]) * down * down;
             *value -= self.plan.rate * left * (self.mean[at] / bias) / ((self.square[at] / bias_square).sqrt() + 1e-6);
             self.sum[at] += if is_last { *value } else { 0.0 };
         }

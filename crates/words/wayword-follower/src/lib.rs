@@ -1,9 +1,9 @@
 //! Follows an instruction over a viewpoint graph: finds out which walks the text fits, and how well.
 //!
-//! [`Guide`] is an instruction, step by step, [`Building`] the known part of the place, and [`Tree`] the set of
-//! possible walks. [`Fit`] scores each walk: it cuts the walk into stretches, one for each step of the text, in all
+//! [`Guide`] is an instruction, step by step, [`KnownBuilding`] the known part of the place, and [`WalkTree`] the set of
+//! possible walks. [`WalkFit`] scores each walk: it cuts the walk into stretches, one for each step of the text, in all
 //! possible ways, and adds up weights of features such as "a left turn is described and the stretch bends left".
-//! [`learn`] fits these weights to texts of known walks.
+//! [`learn_decision`] fits these weights to texts of known walks.
 //!
 //! Architecture invariant: no module here knows an agent, a writer or a file.
 
@@ -25,9 +25,9 @@ mod tests;
 mod tree;
 mod weights;
 
-pub use building::{Building, Place};
-pub use fit::{Fit, MOST_WORK};
-pub use guide::{Guide, Trial};
-pub use posterior::{best, shares};
-pub use tree::{Prior, Tree};
-pub use weights::{Weights, WeightsError};
+pub use building::{KnownBuilding, PathPlace};
+pub use fit::{MOST_WORK, WalkFit};
+pub use guide::{Guide, GuideTrial};
+pub use posterior::{best_walk, walk_shares};
+pub use tree::{WalkPrior, WalkTree};
+pub use weights::{FeatureWeights, WeightsError};

@@ -1,21 +1,21 @@
 //! Computes for each viewpoint of a building how near it is to a room or thing that a text names.
 
-use crate::building::{Building, Thing};
+use crate::building::{BuildingThing, KnownBuilding};
 use std::collections::BTreeSet;
 use wayword_core::DVec3;
-use wayword_language::lexicon::{agree, room_name, same_room};
+use wayword_language::lexicon::{names_agree, room_name, same_room};
 
 /// The place that is searched: a room of a name, or a thing.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) struct Nearness {
+pub(crate) struct PlaceQuery {
     pub(crate) is_room: bool,
     pub(crate) name: String,
 }
 
 /// How near each viewpoint of a building is to the nearest room or object of a name.
 #[derive(Debug)]
-pub(crate) struct Near {
-    /// For each viewpoint, the class of its distance: 0 there, then farther and farther up to [`FAR`]; [`UNKNOWN`] where
+pub(crate) struct PlaceNearness {
+    /// For each viewpoint, the class of its distance: 0 there, then farther and farther up to [`FAR_CLASS`]; [`UNKNOWN_CLASS`] where
     /// the walker was not.
     pub(crate) class: Vec<usize>,
     /// For each viewpoint, the position of the nearest one.
@@ -27,24 +27,24 @@ pub(crate) struct Near {
 }
 
 /// The class of viewpoints that are far from it.
-pub(crate) const FAR: usize = 5;
+pub(crate) const FAR_CLASS: usize = 5;
 /// The class of viewpoints where the walker was not and the distance is unknown.
-pub(crate) const UNKNOWN: usize = 6;
+pub(crate) const UNKNOWN_CLASS: usize = 6;
 /// Number of classes.
 pub(crate) const CLASSES: usize = 7;
 
 /// Distance that a storey between two places adds, metres.
 const STOREY_M: f64 = 6.0;
 
-impl Near {
-    pub(crate) fn find(building: &Building, what: &Nearness) -> Self {
-        if what.is_room { Self::room(building, &what.name) } else { Self::thing(building, &what.name) }
+impl PlaceNearness {
+    pub(crate) fn for_query(building: &KnownBuilding, what: &PlaceQuery) -> Self {
+        if what.is_room { Self::for_room(building, &what.name) } else { Self::for_thing(building, &what.name) }
     }
 
-    fn thing(building: &Building, name: &str) -> Self {
+    fn for_thing(building: &KnownBuilding, name: &str) -> Self {
         let names: BTreeSet<&str> = building.things.iter().map(|thing| thing.name.as_str()).collect();
-        let meant: BTreeSet<&str> = names.into_iter().filter(|other| agree(other, name)).collect();
-        let things: Vec<&Thing> = building.things.iter().filter(|thing| meant.contains(&*thing.name)).collect();
+        let meant: BTreeSet<&str> = names.into_iter().filter(|other| names_agree(other, name)).collect();
+        let things: Vec<&BuildingThing> = building.things.iter().filter(|thing| meant.contains(&*thing.name)).collect();
         let mut seen = vec![false; building.len()];
         for at in things.iter().flat_map(|thing| &thing.seen_from) {
             seen[*at] = true;
@@ -55,20 +55,20 @@ impl Near {
             far_m if far_m < 3.0 => 2,
             far_m if far_m < 5.0 => 3,
             far_m if far_m < 8.0 => 4,
-            _ => FAR,
+            _ => FAR_CLASS,
         };
         let found: Vec<(usize, Option<DVec3>)> = (0..building.len())
             .map(|at| {
                 let places = things.iter().map(|thing| (thing.position, thing.seen_from.contains(&at)));
                 // The eye is above most things: only things well above it, or below its feet, are on another storey.
-                let (far_m, place) = nearest(building.viewpoints[at].position, places, [-2.2, 1.0]);
+                let (far_m, place) = nearest_place(building.viewpoints[at].position, places, [-2.2, 1.0]);
                 (class(at, far_m), place)
             })
             .collect();
-        Self::of(building, found, !things.is_empty(), 3)
+        Self::from_classes(building, found, !things.is_empty(), 3)
     }
 
-    fn room(building: &Building, name: &str) -> Self {
+    fn for_room(building: &KnownBuilding, name: &str) -> Self {
         let is_stairs = room_name(name) == Some("stairs");
         let room = |at: usize| building.viewpoints[at].room.as_deref();
         let is_exact = |at: usize| room(at).is_some_and(|room| room_name(room) == room_name(name));
@@ -79,30 +79,30 @@ impl Near {
         let found: Vec<(usize, Option<DVec3>)> = (0..building.len())
             .map(|at| {
                 let viewpoint = &building.viewpoints[at];
-                let (far_m, place) = nearest(viewpoint.position, places(), [-1.5, 1.5]);
+                let (far_m, place) = nearest_place(viewpoint.position, places(), [-1.5, 1.5]);
                 let class = match far_m {
                     _ if is_stairs && viewpoint.climbs.contains(&true) || is_exact(at) => 0,
                     _ if is_same[at] => 1,
                     far_m if far_m < 2.2 => 2,
                     far_m if far_m < 4.0 => 3,
                     far_m if far_m < 7.0 => 4,
-                    _ => FAR,
+                    _ => FAR_CLASS,
                 };
                 (class, place)
             })
             .collect();
         let exists = is_stairs || is_same.contains(&true);
-        Self::of(building, found, exists, 1)
+        Self::from_classes(building, found, exists, 1)
     }
 
     /// Viewpoints where the walker was not have an unknown distance if their class would be `least` or more.
-    fn of(building: &Building, found: Vec<(usize, Option<DVec3>)>, exists: bool, least: usize) -> Self {
+    fn from_classes(building: &KnownBuilding, found: Vec<(usize, Option<DVec3>)>, exists: bool, least: usize) -> Self {
         let known = |(at, (class, _)): (usize, &(usize, Option<DVec3>))| match building.viewpoints[at].is_known {
-            false if *class >= least => UNKNOWN,
+            false if *class >= least => UNKNOWN_CLASS,
             _ => *class,
         };
         let class: Vec<usize> = found.iter().enumerate().map(known).collect();
-        let known = class.iter().filter(|class| **class != UNKNOWN).count();
+        let known = class.iter().filter(|class| **class != UNKNOWN_CLASS).count();
         let share = class.iter().filter(|class| **class <= 2).count() as f64 / known.max(1) as f64;
         let commonness = usize::from(share >= 0.08) + usize::from(share >= 0.25);
         Self { class, nearest: found.into_iter().map(|(_, place)| place).collect(), commonness, exists }
@@ -111,7 +111,7 @@ impl Near {
 
 /// The distance over ground to the nearest of these places, metres, and its position. A place that is seen from here,
 /// or at a height between the limits, is on this storey.
-fn nearest(
+fn nearest_place(
     from: DVec3,
     places: impl Iterator<Item = (DVec3, bool)>,
     [low_m, high_m]: [f64; 2],

@@ -1,11 +1,11 @@
 //! Computes how likely an instruction means each of several walks.
 
-use crate::{fit::Fit, tree::Tree};
+use crate::{fit::WalkFit, tree::WalkTree};
 
 /// The share of each walk: the probability that the text means it, given that it means one of the tree. The start alone
 /// is no walk.
 #[must_use]
-pub fn shares(fit: &Fit, tree: &Tree) -> Vec<f64> {
+pub fn walk_shares(fit: &WalkFit, tree: &WalkTree) -> Vec<f64> {
     let scores: Vec<f64> =
         (0..tree.len()).map(|walk| if walk == 0 { f64::NEG_INFINITY } else { fit.score(walk) }).collect();
     let highest = scores.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -19,6 +19,6 @@ pub fn shares(fit: &Fit, tree: &Tree) -> Vec<f64> {
 
 /// The walk that fits best; `None` where there is none.
 #[must_use]
-pub fn best(fit: &Fit, tree: &Tree) -> Option<usize> {
+pub fn best_walk(fit: &WalkFit, tree: &WalkTree) -> Option<usize> {
     (1..tree.len()).filter(|walk| fit.score(*walk).is_finite()).max_by(|a, b| fit.score(*a).total_cmp(&fit.score(*b)))
 }

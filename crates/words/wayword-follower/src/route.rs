@@ -2,31 +2,31 @@
 //! elsewhere.
 
 use crate::{
-    building::Building,
-    change::{Change, Kind, changes},
-    fit::Fit,
-    guide::{Guide, Trial},
-    posterior::shares,
-    swap::{Swap, best_swap},
-    tree::{Prior, Tree},
-    weights::Weights,
+    building::KnownBuilding,
+    change::{StepChange, StepChangeKind, rank_changes},
+    fit::WalkFit,
+    guide::{Guide, GuideTrial},
+    posterior::walk_shares,
+    swap::{PlaceSwap, best_swap},
+    tree::{WalkPrior, WalkTree},
+    weights::FeatureWeights,
 };
-use wayword_core::{Check, Climb, Finding, Side, Verdict};
+use wayword_core::{CheckFinding, CheckKind, ClimbDirection, Side, Verdict};
 
 /// A known walk, from a dataset or of a robot.
 #[derive(Debug, Clone, Copy)]
-pub struct Known<'a> {
+pub struct KnownWalk<'a> {
     /// Its building.
-    pub building: &'a Building,
+    pub building: &'a KnownBuilding,
     /// Its viewpoints.
     pub walk: &'a [usize],
     /// The walker's first direction, radians from +y clockwise.
     pub heading_rad: f64,
 }
 
-impl Known<'_> {
-    fn changes(&self, guide: &Guide, weights: &Weights) -> Vec<Change> {
-        changes(guide, self.building, self.walk, self.heading_rad, weights)
+impl KnownWalk<'_> {
+    fn walk_changes(&self, guide: &Guide, weights: &FeatureWeights) -> Vec<StepChange> {
+        rank_changes(guide, self.building, self.walk, self.heading_rad, weights)
     }
 }
 
@@ -34,7 +34,7 @@ impl Known<'_> {
 /// fit-follower` prints the share of people's texts that gain more: 1.8 % by a turn to the other side, and .1 to .3 %
 /// by each of the others. In other buildings, it is about a third more.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Thresholds {
+pub struct GainThresholds {
     /// Of a turn to the other side.
     pub turn: f64,
     /// Of a turn left out.
@@ -47,7 +47,7 @@ pub struct Thresholds {
     pub route: f64,
 }
 
-impl Default for Thresholds {
+impl Default for GainThresholds {
     fn default() -> Self {
         Self { turn: 2.4, no_turn: 4.1, climb: 0.2, swap: 3.0, route: 8.0 }
     }
@@ -55,9 +55,9 @@ impl Default for Thresholds {
 
 /// The result of comparing an instruction with its walk alone.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Judged {
+pub struct WalkJudgement {
     /// The wrong steps; empty if there is none, and if the text has too many steps.
-    pub wrong: Vec<Finding>,
+    pub wrong: Vec<CheckFinding>,
     /// The gain of the best change of a turn, natural logs: the higher, the likelier the text has a wrong turn. `None`
     /// if it has no turn.
     pub turn_gain: Option<f64>,
@@ -65,7 +65,7 @@ pub struct Judged {
 
 /// The reason why a text is not compared with other walks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Unfollowed {
+pub enum UnfollowedReason {
     /// Only the walk itself is known. Its turns are still checked.
     NoGraph,
     /// The work grows with the square of the steps.
@@ -74,10 +74,10 @@ pub enum Unfollowed {
     TooFewSteps,
 }
 
-impl Unfollowed {
+impl UnfollowedReason {
     /// The reason, in words.
     #[must_use]
-    pub fn why(self) -> &'static str {
+    pub fn reason_words(self) -> &'static str {
         match self {
             Self::NoGraph => "no viewpoint graph is known on which it lies, so no other walk is",
             Self::TooManySteps => "the text has too many steps",
@@ -91,9 +91,9 @@ pub(crate) const MOST_STEPS: usize = 60;
 
 /// The comparison of an instruction with all walks from the same start.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Route {
+pub struct RouteVerdict {
     /// The finding for the report of checks.
-    pub finding: Finding,
+    pub finding: CheckFinding,
     /// The share of the known walk: how likely it is that the text means it.
     pub share: f64,
     /// The share of the likeliest other walk.
@@ -112,86 +112,96 @@ const AS_WELL: f64 = 0.8;
 
 /// Judges an instruction by the walk that it was written for.
 #[must_use]
-pub fn judge(guide: &Guide, known: Known<'_>, weights: &Weights, thresholds: Thresholds) -> Judged {
+pub fn judge_steps(
+    guide: &Guide,
+    known: KnownWalk<'_>,
+    weights: &FeatureWeights,
+    thresholds: GainThresholds,
+) -> WalkJudgement {
     if guide.len() > MOST_STEPS {
-        return Judged { wrong: Vec::new(), turn_gain: None };
+        return WalkJudgement { wrong: Vec::new(), turn_gain: None };
     }
-    let changes = known.changes(guide, weights);
-    let turn_gain = changes.iter().find(|change| change.kind == Kind::Turn).map(|change| change.gain);
+    let changes = known.walk_changes(guide, weights);
+    let turn_gain = changes.iter().find(|change| change.kind == StepChangeKind::Turn).map(|change| change.gain);
     let mut wrong = wrong_steps(guide, &changes, thresholds);
     let swap = best_swap(guide, known.building, known.walk, known.heading_rad, weights);
     wrong.extend(swap.filter(|swap| swap.gain > thresholds.swap).map(wrong_order));
-    Judged { wrong, turn_gain }
+    WalkJudgement { wrong, turn_gain }
 }
 
 /// The steps that one change would make fit much better, each with one finding.
-fn wrong_steps(guide: &Guide, changes: &[Change], thresholds: Thresholds) -> Vec<Finding> {
-    let mut found: Vec<(usize, Finding)> = Vec::new();
+fn wrong_steps(guide: &Guide, changes: &[StepChange], thresholds: GainThresholds) -> Vec<CheckFinding> {
+    let mut found: Vec<(usize, CheckFinding)> = Vec::new();
     for change in changes {
         let step = &guide.steps[change.step].step;
         let wrong = match (change.kind, step.turn, step.climb) {
-            (Kind::Turn, Some(side), _) if change.gain > thresholds.turn => {
+            (StepChangeKind::Turn, Some(side), _) if change.gain > thresholds.turn => {
                 let (told, real) = if side == Side::Left { ("left", "right") } else { ("right", "left") };
-                Some((Check::Turns, format!("the path turns {real} here, and not {told}")))
+                Some((CheckKind::Turns, format!("the path turns {real} here, and not {told}")))
             }
-            (Kind::NoTurn, Some(_), _) if change.gain > thresholds.no_turn => {
-                Some((Check::Turns, "the path does not turn like this here".to_owned()))
+            (StepChangeKind::NoTurn, Some(_), _) if change.gain > thresholds.no_turn => {
+                Some((CheckKind::Turns, "the path does not turn like this here".to_owned()))
             }
-            (Kind::Climb, _, Some(climb)) if change.gain > thresholds.climb => {
-                let (told, real) = if climb == Climb::Up { ("up", "down") } else { ("down", "up") };
-                Some((Check::Floors, format!("the path goes {real} here, and not {told}")))
+            (StepChangeKind::Climb, _, Some(climb)) if change.gain > thresholds.climb => {
+                let (told, real) = if climb == ClimbDirection::Up { ("up", "down") } else { ("down", "up") };
+                Some((CheckKind::Floors, format!("the path goes {real} here, and not {told}")))
             }
             _ => None,
         };
         if let Some((check, reason)) = wrong.filter(|_| found.iter().all(|(step, _)| *step != change.step)) {
-            found.push((change.step, Finding { check, verdict: Verdict::Fail, reason, span: Some(change.span) }));
+            found.push((change.step, CheckFinding { check, verdict: Verdict::Fail, reason, span: Some(change.span) }));
         }
     }
     found.sort_by_key(|(step, _)| *step);
     found.into_iter().map(|(_, finding)| finding).collect()
 }
 
-fn wrong_order(swap: Swap) -> Finding {
-    let Swap { names: [first, second], spans, .. } = swap;
+fn wrong_order(swap: PlaceSwap) -> CheckFinding {
+    let PlaceSwap { names: [first, second], spans, .. } = swap;
     let reason = format!(
         "the path fits much better if {second:?} stands where the text says {first:?}, and the other way round"
     );
-    Finding { check: Check::Order, verdict: Verdict::Fail, reason, span: Some(spans[0]) }
+    CheckFinding { check: CheckKind::Order, verdict: Verdict::Fail, reason, span: Some(spans[0]) }
 }
 
 /// The walks from one start, and how likely an instruction means each.
-struct Posterior {
-    tree: Tree,
+struct WalkPosterior {
+    tree: WalkTree,
     /// The known walk.
     own: usize,
     shares: Vec<f64>,
 }
 
-impl Posterior {
-    fn of(guide: &Guide, known: Known<'_>, prior: Option<Prior>, weights: &Weights) -> Result<Self, Unfollowed> {
+impl WalkPosterior {
+    fn for_guide(
+        guide: &Guide,
+        known: KnownWalk<'_>,
+        prior: Option<WalkPrior>,
+        weights: &FeatureWeights,
+    ) -> Result<Self, UnfollowedReason> {
         if guide.len() > MOST_STEPS {
-            return Err(Unfollowed::TooManySteps);
+            return Err(UnfollowedReason::TooManySteps);
         }
-        let prior = prior.ok_or(Unfollowed::NoGraph)?;
+        let prior = prior.ok_or(UnfollowedReason::NoGraph)?;
         let start = known.walk.first().copied().unwrap_or_default();
-        let mut tree = Tree::of(known.building, start, known.heading_rad, prior);
-        let own = tree.with(known.building, known.walk);
-        let fit = Fit::new(&Trial::new(guide, known.building), &tree, weights);
+        let mut tree = WalkTree::from_prior(known.building, start, known.heading_rad, prior);
+        let own = tree.add_walk(known.building, known.walk);
+        let fit = WalkFit::new(&GuideTrial::new(guide, known.building), &tree, weights);
         if !fit.score(own).is_finite() {
-            return Err(Unfollowed::TooFewSteps);
+            return Err(UnfollowedReason::TooFewSteps);
         }
-        let shares = shares(&fit, &tree);
+        let shares = walk_shares(&fit, &tree);
         Ok(Self { tree, own, shares })
     }
 
     /// Whether two walks end at different places.
-    fn are_apart(&self, building: &Building, a: usize, b: usize) -> bool {
-        let position = |walk: usize| building.viewpoints[self.tree.end(walk)].position;
+    fn are_apart(&self, building: &KnownBuilding, a: usize, b: usize) -> bool {
+        let position = |walk: usize| building.viewpoints[self.tree.end_viewpoint(walk)].position;
         position(a).distance(position(b)) >= APART_M
     }
 
     /// The walks that end elsewhere than the known one.
-    fn elsewhere(&self, building: &Building) -> Vec<usize> {
+    fn walks_elsewhere(&self, building: &KnownBuilding) -> Vec<usize> {
         (1..self.tree.len()).filter(|walk| self.are_apart(building, *walk, self.own)).collect()
     }
 }
@@ -202,12 +212,12 @@ impl Posterior {
 /// With the reason, if this cannot be decided.
 pub fn leads_there(
     guide: &Guide,
-    known: Known<'_>,
-    prior: Option<Prior>,
-    weights: &Weights,
-) -> Result<f64, Unfollowed> {
-    let posterior = Posterior::of(guide, known, prior, weights)?;
-    let elsewhere: f64 = posterior.elsewhere(known.building).into_iter().map(|walk| posterior.shares[walk]).sum();
+    known: KnownWalk<'_>,
+    prior: Option<WalkPrior>,
+    weights: &FeatureWeights,
+) -> Result<f64, UnfollowedReason> {
+    let posterior = WalkPosterior::for_guide(guide, known, prior, weights)?;
+    let elsewhere: f64 = posterior.walks_elsewhere(known.building).into_iter().map(|walk| posterior.shares[walk]).sum();
     Ok((1.0 - elsewhere).clamp(0.0, 1.0))
 }
 
@@ -216,17 +226,17 @@ pub fn leads_there(
 ///
 /// # Errors
 /// With the reason, if this cannot be decided.
-pub fn route(
+pub fn judge_route(
     guide: &Guide,
-    known: Known<'_>,
-    prior: Option<Prior>,
-    weights: &Weights,
-    thresholds: Thresholds,
-) -> Result<Route, Unfollowed> {
-    let posterior = Posterior::of(guide, known, prior, weights)?;
-    let Posterior { tree, own, shares } = &posterior;
+    known: KnownWalk<'_>,
+    prior: Option<WalkPrior>,
+    weights: &FeatureWeights,
+    thresholds: GainThresholds,
+) -> Result<RouteVerdict, UnfollowedReason> {
+    let posterior = WalkPosterior::for_guide(guide, known, prior, weights)?;
+    let WalkPosterior { tree, own, shares } = &posterior;
     let share = shares[*own];
-    let mut walks = posterior.elsewhere(known.building);
+    let mut walks = posterior.walks_elsewhere(known.building);
     walks.sort_by(|a, b| shares[*b].total_cmp(&shares[*a]));
     let other = walks.first().map_or(0.0, |walk| shares[*walk]);
     let mut ends = vec![*own];
@@ -238,21 +248,21 @@ pub fn route(
     }
     let gain = (other / share.max(f64::MIN_POSITIVE)).ln();
     let leads_elsewhere = gain > thresholds.route;
-    let finding = Finding {
-        check: Check::Route,
+    let finding = CheckFinding {
+        check: CheckKind::Route,
         verdict: if leads_elsewhere { Verdict::Fail } else { Verdict::Pass },
         reason: if leads_elsewhere {
             "the text leads elsewhere: another walk fits it much better".into()
         } else {
             String::new()
         },
-        span: if leads_elsewhere { fault(&known.changes(guide, weights)) } else { None },
+        span: if leads_elsewhere { fault_span(&known.walk_changes(guide, weights)) } else { None },
     };
-    let ends = ends.into_iter().map(|walk| tree.end(walk)).collect();
-    Ok(Route { finding, share, other, ends })
+    let ends = ends.into_iter().map(|walk| tree.end_viewpoint(walk)).collect();
+    Ok(RouteVerdict { finding, share, other, ends })
 }
 
 /// The byte range of the change with the highest gain, if that is positive.
-fn fault(changes: &[Change]) -> Option<[usize; 2]> {
+fn fault_span(changes: &[StepChange]) -> Option<[usize; 2]> {
     changes.first().filter(|change| change.gain > 0.0).map(|change| change.span)
 }

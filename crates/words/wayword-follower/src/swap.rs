@@ -2,16 +2,16 @@
 //! the sink comes first.
 
 use crate::{
-    building::Building,
-    guide::{Guide, Mention, Trial},
+    building::KnownBuilding,
+    guide::{Guide, GuideMention, GuideTrial},
     one_walk::OneWalk,
-    weights::Weights,
+    weights::FeatureWeights,
 };
-use wayword_language::reading::steps::Relation;
+use wayword_language::reading::steps::StepRelation;
 
 /// Two places of a text, and the gain of naming each where the other is named.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Swap {
+pub struct PlaceSwap {
     /// Their names, in the order of the text.
     pub names: [String; 2],
     /// Their byte ranges in the text.
@@ -30,18 +30,18 @@ const MOST_PLACES: usize = 14;
 #[must_use]
 pub fn best_swap(
     guide: &Guide,
-    building: &Building,
+    building: &KnownBuilding,
     walk: &[usize],
     heading_rad: f64,
-    weights: &Weights,
-) -> Option<Swap> {
+    weights: &FeatureWeights,
+) -> Option<PlaceSwap> {
     let known = OneWalk::new(building, walk, heading_rad, weights);
-    let places = places(guide, building);
+    let places = met_places(guide, building);
     let as_told = known.score(guide);
-    let mut best: Option<Swap> = None;
+    let mut best: Option<PlaceSwap> = None;
     for (number, a) in places.iter().enumerate() {
         for b in &places[number + 1..] {
-            let (first, second) = (a.mention(guide), b.mention(guide));
+            let (first, second) = (a.mention_in(guide), b.mention_in(guide));
             if a.step == b.step || first.meanings == second.meanings {
                 continue;
             }
@@ -51,8 +51,8 @@ pub fn best_swap(
             let gain = known.score(&changed) - as_told;
             if gain.is_finite() && best.as_ref().is_none_or(|best| gain > best.gain) {
                 let name =
-                    |mention: &Mention| mention.meanings.first().map(|what| what.name.clone()).unwrap_or_default();
-                best = Some(Swap { names: [name(first), name(second)], spans: [a.span, b.span], gain });
+                    |mention: &GuideMention| mention.meanings.first().map(|what| what.name.clone()).unwrap_or_default();
+                best = Some(PlaceSwap { names: [name(first), name(second)], spans: [a.span, b.span], gain });
             }
         }
     }
@@ -60,35 +60,35 @@ pub fn best_swap(
 }
 
 /// A place in a guide, with its words.
-struct Named {
+struct GuidePlace {
     step: usize,
     place: usize,
     span: [usize; 2],
 }
 
-impl Named {
-    fn mention<'a>(&self, guide: &'a Guide) -> &'a Mention {
+impl GuidePlace {
+    fn mention_in<'a>(&self, guide: &'a Guide) -> &'a GuideMention {
         &guide.steps[self.step].mentions[self.place]
     }
 }
 
 /// Whether a walker comes to a place with this relation. A place that only identifies another one, as in "the table
 /// with the lamp", has no position in the order.
-fn is_met(relation: Relation) -> bool {
-    use Relation::{Along, At, In, Into, OutOf, Past, Through, To};
+fn is_met(relation: StepRelation) -> bool {
+    use StepRelation::{Along, At, In, Into, OutOf, Past, Through, To};
     matches!(relation, OutOf | Into | In | Through | Past | To | Along | At)
 }
 
 /// The first places that a text names, the walker comes to, and the building has. A place that the building lacks
 /// cannot be swapped meaningfully.
-fn places(guide: &Guide, building: &Building) -> Vec<Named> {
-    let trial = Trial::new(guide, building);
+fn met_places(guide: &Guide, building: &KnownBuilding) -> Vec<GuidePlace> {
+    let trial = GuideTrial::new(guide, building);
     let mut places = Vec::new();
     for (step, told) in guide.steps.iter().enumerate() {
         for (place, mention) in told.mentions.iter().enumerate() {
             let is_found = trial.found[step].iter().any(|found| std::ptr::eq(found.mention, mention));
             let is_met = is_found && is_met(mention.relation);
-            places.extend(mention.span.filter(|_| is_met).map(|span| Named { step, place, span }));
+            places.extend(mention.span.filter(|_| is_met).map(|span| GuidePlace { step, place, span }));
         }
     }
     places.truncate(MOST_PLACES);

@@ -1,15 +1,16 @@
 //! A follower on a small made-up building: a hall that runs north, with a room on either side of its end.
 
 use crate::{
-    Building, Fit, Guide, Prior, Tree, Trial, Weights, best,
-    change::{Kind, changes},
-    online::{Decision, Hop, OnwardWeights, Reader, Sighting},
-    route::{Known, Thresholds, Unfollowed, judge, route},
-    shares,
+    FeatureWeights, Guide, GuideTrial, KnownBuilding, WalkFit, WalkPrior, WalkTree, best_walk,
+    change::{StepChangeKind, rank_changes},
+    online::{OnwardWeights, WalkerDecision, WalkerHop, WalkerSighting, WalkingFollower},
+    route::{GainThresholds, KnownWalk, UnfollowedReason, judge_route, judge_steps},
     swap::best_swap,
+    walk_shares,
 };
 use wayword_core::{
-    Check, DVec3, Heading, Label, ObjectId, Survey, ViewpointGraph, ViewpointId, graph::GraphError, survey,
+    CheckKind, DVec3, Heading, ObjectId, ObjectLabel, ViewpointGraph, ViewpointId, ViewpointSurvey, graph::GraphError,
+    survey,
 };
 
 /// Viewpoints: name, east and north (metres), room.
@@ -29,9 +30,9 @@ fn id(at: usize) -> ViewpointId {
     ViewpointId::new(PLACES[at].0.replace(' ', "-")).unwrap()
 }
 
-fn label(name: &str, east: f64, north: f64, eye: DVec3) -> Label {
+fn label(name: &str, east: f64, north: f64, eye: DVec3) -> ObjectLabel {
     let position = DVec3::new(east, north, 1.0);
-    Label {
+    ObjectLabel {
         object: ObjectId::new(name).unwrap(),
         name: name.to_owned(),
         heading: Heading::towards(eye, position).unwrap_or(Heading::NORTH),
@@ -43,13 +44,13 @@ fn label(name: &str, east: f64, north: f64, eye: DVec3) -> Label {
     }
 }
 
-pub(crate) fn surveyed() -> Survey {
+pub(crate) fn surveyed() -> ViewpointSurvey {
     let mut graph = ViewpointGraph::default();
     for (at, (_, east, north, _)) in PLACES.iter().enumerate() {
-        graph.add(id(at), DVec3::new(*east, *north, 1.5), Some(1)).unwrap();
+        graph.add_viewpoint(id(at), DVec3::new(*east, *north, 1.5), Some(1)).unwrap();
     }
     for (a, b) in WAYS {
-        graph.join(&id(a), &id(b)).unwrap();
+        graph.join_viewpoints(&id(a), &id(b)).unwrap();
     }
     let known = |name: &ViewpointId, eye: DVec3| {
         let at = (0..PLACES.len()).find(|at| id(*at) == *name).unwrap();
@@ -59,18 +60,18 @@ pub(crate) fn surveyed() -> Survey {
             6 => vec![label("oven", 5.5, 5.5, eye)],
             _ => Vec::new(),
         };
-        Ok::<_, GraphError>(survey::Known { room: Some(PLACES[at].3.to_owned()), things: Some(things) })
+        Ok::<_, GraphError>(survey::ViewpointKnowledge { room: Some(PLACES[at].3.to_owned()), things: Some(things) })
     };
-    Survey::of(&graph, known).unwrap()
+    ViewpointSurvey::from_graph(&graph, known).unwrap()
 }
 
 /// The end of the walk that a text means, from the start looking north.
-fn end_of(text: &str, weights: &Weights) -> &'static str {
-    let building = Building::of(&surveyed());
-    let guide = Guide::read(text);
-    let tree = Tree::of(&building, 0, 0.0, Prior::Shortest(8));
-    let fit = Fit::new(&Trial::new(&guide, &building), &tree, weights);
-    PLACES[tree.end(best(&fit, &tree).unwrap())].0
+fn end_of(text: &str, weights: &FeatureWeights) -> &'static str {
+    let building = KnownBuilding::from_survey(&surveyed());
+    let guide = Guide::read_text(text);
+    let tree = WalkTree::from_prior(&building, 0, 0.0, WalkPrior::Shortest(8));
+    let fit = WalkFit::new(&GuideTrial::new(&guide, &building), &tree, weights);
+    PLACES[tree.end_viewpoint(best_walk(&fit, &tree).unwrap())].0
 }
 
 const TO_KITCHEN: &str = "Walk down the hallway and turn right. Walk into the kitchen and wait by the oven.";
@@ -78,31 +79,31 @@ const TO_BEDROOM: &str = "Walk down the hallway and turn left. Walk into the bed
 
 #[test]
 fn the_best_walk_ends_at_the_place_in_the_text() {
-    for weights in [Weights::fitted(), &Weights::by_hand()] {
+    for weights in [FeatureWeights::fitted(), &FeatureWeights::by_hand()] {
         assert_eq!(end_of(TO_KITCHEN, weights), "far east");
         assert_eq!(end_of(TO_BEDROOM, weights), "far west");
     }
-    assert_eq!(end_of("Turn around and go into the bathroom.", Weights::fitted()), "south");
+    assert_eq!(end_of("Turn around and go into the bathroom.", FeatureWeights::fitted()), "south");
 }
 
 #[test]
 fn shares_add_up_to_one() {
-    let building = Building::of(&surveyed());
-    let guide = Guide::read(TO_KITCHEN);
-    let tree = Tree::of(&building, 0, 0.0, Prior::Shortest(8));
-    let fit = Fit::new(&Trial::new(&guide, &building), &tree, Weights::fitted());
-    let shares = shares(&fit, &tree);
+    let building = KnownBuilding::from_survey(&surveyed());
+    let guide = Guide::read_text(TO_KITCHEN);
+    let tree = WalkTree::from_prior(&building, 0, 0.0, WalkPrior::Shortest(8));
+    let fit = WalkFit::new(&GuideTrial::new(&guide, &building), &tree, FeatureWeights::fitted());
+    let shares = walk_shares(&fit, &tree);
     assert!((shares.iter().sum::<f64>() - 1.0).abs() < 1e-9);
     assert!(shares[0].abs() < f64::EPSILON, "the start alone is no walk");
 }
 
 #[test]
 fn changing_a_wrong_turn_gains_most() {
-    let building = Building::of(&surveyed());
+    let building = KnownBuilding::from_survey(&surveyed());
     let walk = [0, 1, 2, 5, 6];
     let gain = |text: &str| {
-        let changes = changes(&Guide::read(text), &building, &walk, 0.0, Weights::fitted());
-        let turn = changes.into_iter().find(|change| change.kind == Kind::Turn).unwrap();
+        let changes = rank_changes(&Guide::read_text(text), &building, &walk, 0.0, FeatureWeights::fitted());
+        let turn = changes.into_iter().find(|change| change.kind == StepChangeKind::Turn).unwrap();
         (turn.gain, text[turn.span[0]..turn.span[1]].to_owned())
     };
     let (right, _) = gain(TO_KITCHEN);
@@ -114,14 +115,14 @@ fn changing_a_wrong_turn_gains_most() {
 
 #[test]
 fn swapping_misplaced_places_gains() {
-    let building = Building::of(&surveyed());
+    let building = KnownBuilding::from_survey(&surveyed());
     let walk = [0, 1, 2, 5, 6];
-    let known = Known { building: &building, walk: &walk, heading_rad: 0.0 };
+    let known = KnownWalk { building: &building, walk: &walk, heading_rad: 0.0 };
     let orders = |text: &str| {
-        let guide = Guide::read(text);
-        let swap = best_swap(&guide, &building, &walk, 0.0, Weights::fitted()).unwrap();
-        let judged = judge(&guide, known, Weights::fitted(), Thresholds::default());
-        (swap, judged.wrong.into_iter().filter(|finding| finding.check == Check::Order).count())
+        let guide = Guide::read_text(text);
+        let swap = best_swap(&guide, &building, &walk, 0.0, FeatureWeights::fitted()).unwrap();
+        let judged = judge_steps(&guide, known, FeatureWeights::fitted(), GainThresholds::default());
+        (swap, judged.wrong.into_iter().filter(|finding| finding.check == CheckKind::Order).count())
     };
     let (right, fails) = orders("Walk past the plant, turn right and stop at the oven.");
     assert!(right.gain < 0.0 && fails == 0, "{right:?}");
@@ -130,52 +131,59 @@ fn swapping_misplaced_places_gains() {
     assert_eq!(wrong.names, ["oven", "plant"]);
     assert_eq!(wrong.spans.map(|[from, to]| &text[from..to]), ["oven", "plant"]);
     assert_eq!(fails, 1, "{wrong:?}");
-    let lacking = Guide::read("Walk past the piano and stop at the oven.");
-    assert_eq!(best_swap(&lacking, &building, &walk, 0.0, Weights::fitted()), None, "the building has no piano");
+    let lacking = Guide::read_text("Walk past the piano and stop at the oven.");
+    assert_eq!(best_swap(&lacking, &building, &walk, 0.0, FeatureWeights::fitted()), None, "the building has no piano");
 }
 
 #[test]
 fn a_text_of_another_walk_leads_elsewhere() {
-    let building = Building::of(&surveyed());
-    let known = Known { building: &building, walk: &[0, 1, 2, 5, 6], heading_rad: 0.0 };
+    let building = KnownBuilding::from_survey(&surveyed());
+    let known = KnownWalk { building: &building, walk: &[0, 1, 2, 5, 6], heading_rad: 0.0 };
     let route = |text: &str| {
-        route(&Guide::read(text), known, Some(Prior::Shortest(8)), Weights::fitted(), Thresholds::default())
+        judge_route(
+            &Guide::read_text(text),
+            known,
+            Some(WalkPrior::Shortest(8)),
+            FeatureWeights::fitted(),
+            GainThresholds::default(),
+        )
     };
     let own = route(TO_KITCHEN).unwrap();
     assert_eq!(own.ends, [6]);
     assert!(own.share > 0.5, "{}", own.share);
     let other = route(TO_BEDROOM).unwrap();
     assert!(other.share < 0.01 && other.other > 0.5, "{} {}", other.share, other.other);
-    assert_eq!(other.finding.check, Check::Route);
+    assert_eq!(other.finding.check, CheckKind::Route);
     assert!(route("Go.").unwrap().ends.len() > 1, "a text that says nothing may end anywhere");
 }
 
 #[test]
 fn texts_with_too_few_or_too_many_steps_are_not_followed() {
-    let building = Building::of(&surveyed());
+    let building = KnownBuilding::from_survey(&surveyed());
     // Up and down the hall: more hops than one step leads.
     let walk: Vec<usize> = [0, 1, 2, 1].into_iter().cycle().take(12).collect();
-    let known = Known { building: &building, walk: &walk, heading_rad: 0.0 };
+    let known = KnownWalk { building: &building, walk: &walk, heading_rad: 0.0 };
     let told = |text: &str| {
-        let (guide, weights, thresholds) = (Guide::read(text), Weights::fitted(), Thresholds::default());
-        let route = route(&guide, known, Some(Prior::Shortest(8)), weights, thresholds);
-        (route, judge(&guide, known, weights, thresholds))
+        let (guide, weights, thresholds) =
+            (Guide::read_text(text), FeatureWeights::fitted(), GainThresholds::default());
+        let route = judge_route(&guide, known, Some(WalkPrior::Shortest(8)), weights, thresholds);
+        (route, judge_steps(&guide, known, weights, thresholds))
     };
     let (few, of_few) = told("Walk to the kitchen.");
-    assert_eq!(few, Err(Unfollowed::TooFewSteps));
+    assert_eq!(few, Err(UnfollowedReason::TooFewSteps));
     assert_eq!(of_few.wrong, []);
     let (many, of_many) = told(&"Turn left. ".repeat(100));
-    assert_eq!(many, Err(Unfollowed::TooManySteps));
+    assert_eq!(many, Err(UnfollowedReason::TooManySteps));
     assert_eq!((of_many.wrong.len(), of_many.turn_gain), (0, None), "nothing is said of its turns");
 }
 
 #[test]
 fn walks_of_two_pieces_pass_no_viewpoint_twice() {
-    let building = Building::of(&surveyed());
-    let tree = Tree::of(&building, 0, 0.0, Prior::TwoPieces(6));
+    let building = KnownBuilding::from_survey(&surveyed());
+    let tree = WalkTree::from_prior(&building, 0, 0.0, WalkPrior::TwoPieces(6));
     for walk in 0..tree.len() {
         let mut viewpoints = tree.viewpoints(walk);
-        assert_eq!(tree.find(&viewpoints), Some(walk));
+        assert_eq!(tree.find_walk(&viewpoints), Some(walk));
         let count = viewpoints.len();
         viewpoints.sort_unstable();
         viewpoints.dedup();
@@ -184,10 +192,10 @@ fn walks_of_two_pieces_pass_no_viewpoint_twice() {
 }
 
 /// What a body sees at a viewpoint.
-fn sight(survey: &Survey, here: usize, heading: Heading) -> Sighting {
+fn sight(survey: &ViewpointSurvey, here: usize, heading: Heading) -> WalkerSighting {
     let all = survey.viewpoints();
-    let hop = |to: &usize| Hop::between(all[here].position, all[*to].position, heading);
-    Sighting {
+    let hop = |to: &usize| WalkerHop::between(all[here].position, all[*to].position, heading);
+    WalkerSighting {
         hops: all[here].neighbours.iter().map(hop).collect(),
         room: all[here].known.room.clone(),
         things: all[here].known.things.iter().flatten().map(|label| (label.name.clone(), 0)).collect(),
@@ -198,11 +206,11 @@ fn sight(survey: &Survey, here: usize, heading: Heading) -> Sighting {
 fn a_walker_gets_there_without_a_map() {
     let survey = surveyed();
     for (text, goal) in [(TO_KITCHEN, "kitchen"), (TO_BEDROOM, "bedroom")] {
-        let guide = Guide::read(text);
-        let mut reader = Reader::new(&guide, OnwardWeights::fitted());
+        let guide = Guide::read_text(text);
+        let mut reader = WalkingFollower::new(&guide, OnwardWeights::fitted());
         let (mut here, mut heading) = (0, Heading::NORTH);
         for _ in 0..40 {
-            let Decision::Go(hop) = reader.decide(&sight(&survey, here, heading)) else { break };
+            let WalkerDecision::Go(hop) = reader.decide_next(&sight(&survey, here, heading)) else { break };
             let to = survey.viewpoints()[here].neighbours[hop];
             heading = Heading::towards(survey.viewpoints()[here].position, survey.viewpoints()[to].position).unwrap();
             here = to;
@@ -213,13 +221,13 @@ fn a_walker_gets_there_without_a_map() {
 
 #[test]
 fn a_walker_without_a_way_out_stops() {
-    let guide = Guide::read("Walk on.");
-    let mut reader = Reader::new(&guide, OnwardWeights::fitted());
-    assert_eq!(reader.decide(&Sighting::default()), Decision::Stop);
+    let guide = Guide::read_text("Walk on.");
+    let mut reader = WalkingFollower::new(&guide, OnwardWeights::fitted());
+    assert_eq!(reader.decide_next(&WalkerSighting::default()), WalkerDecision::Stop);
 }
 
 #[test]
 fn an_empty_text_has_no_step() {
-    assert!(Guide::read("").is_empty() && Guide::read(" . ! ").is_empty());
-    assert_eq!(Guide::read("Turn left, then turn right.").len(), 2);
+    assert!(Guide::read_text("").is_empty() && Guide::read_text(" . ! ").is_empty());
+    assert_eq!(Guide::read_text("Turn left, then turn right.").len(), 2);
 }

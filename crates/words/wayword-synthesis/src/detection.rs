@@ -9,21 +9,24 @@ mod finds;
 mod nouns;
 mod testimony;
 
-pub use nouns::{listed, usual};
+pub use nouns::{parse_noun_list, usual_nouns};
 
 use crate::observe::{ObserveError, gazes_around};
-use finds::{Seen, Walk, views};
+use finds::{LookPicture, PlatformPath, look_views};
 use std::collections::{BTreeMap, BTreeSet};
-use testimony::{Purpose, testify};
+use testimony::{DetectionPurpose, apply_detections};
 use wayword_checks::detected::DetectorFigures;
-use wayword_core::{Caption, Detector, Gaze, Look, Observation, Path, Platform, Sighting, View, Witness};
-use wayword_language::lexicon::{normal, thing};
+use wayword_core::{
+    Caption, CaptionedView, FrameObservation, ObjectDetector, ObjectSighting, Path, Platform, View, ViewGaze,
+    WitnessAnswer,
+};
+use wayword_language::lexicon::{find_thing, normalise_name};
 
 /// A detector, its measured reliability, and the names that it looks for on its own.
 #[derive(Clone, Copy)]
-pub struct Seeker<'a> {
+pub struct CaptionDetector<'a> {
     /// The detector itself.
-    pub detector: &'a dyn Detector,
+    pub detector: &'a dyn ObjectDetector,
     /// How often its finds and misses are right.
     pub figures: &'a DetectorFigures,
     /// Names that it looks for in every view, even where no caption mentions them.
@@ -32,49 +35,50 @@ pub struct Seeker<'a> {
 
 /// Probability that a thing is there before the detector looks: where a caption names it for sure, where a caption
 /// guesses it or a text claims it, and where it is only a proposal from a list.
-const NAMED: f64 = 0.7;
-const CLAIMED: f64 = 0.5;
-const PROPOSED: f64 = 0.01;
+const NAMED_PRIOR: f64 = 0.7;
+const CLAIMED_PRIOR: f64 = 0.5;
+const PROPOSED_PRIOR: f64 = 0.01;
 
 /// The names to look for, each with the probability that the thing is there before the detector looks.
-type Wanted = BTreeMap<String, f64>;
+type NamePriors = BTreeMap<String, f64>;
 
 /// Looks for the names that captions mention and for the proposed ones in every captioned view, and corrects the
 /// captions. Returns the number of views that the detector looked at.
 ///
 /// # Errors
 /// When a view cannot be had, or the detector fails.
-pub fn seek(
+pub fn seek_along_path(
     platform: &dyn Platform,
     path: &Path,
-    observations: &mut [Observation],
-    seeker: Seeker<'_>,
+    observations: &mut [FrameObservation],
+    seeker: CaptionDetector<'_>,
 ) -> Result<usize, ObserveError> {
-    let seen = views(platform, path, observations)?;
-    correct(&seen, Some(Walk { platform, path }), observations, seeker)
+    let seen = look_views(platform, path, observations)?;
+    correct_captions(&seen, Some(PlatformPath { platform, path }), observations, seeker)
 }
 
-/// Like [`seek`], for the caption of a single view.
+/// Like [`seek_along_path`], for the caption of a single view.
 ///
 /// # Errors
 /// When it has no picture, or the detector fails.
-pub fn seek_in(view: &View, caption: Caption, seeker: Seeker<'_>) -> Result<Caption, ObserveError> {
-    let gaze = Gaze { heading: view.pose.heading, horizontal_fov_rad: view.horizontal_fov_rad };
-    let mut observation = Observation { looks: vec![Look { gaze, caption }], ..Observation::default() };
-    let seen = view.image.is_some().then(|| Seen { frame: 0, look: 0, view: view.clone() });
-    correct(seen.as_slice(), None, std::slice::from_mut(&mut observation), seeker)?;
+pub fn seek_in(view: &View, caption: Caption, seeker: CaptionDetector<'_>) -> Result<Caption, ObserveError> {
+    let gaze = ViewGaze { heading: view.pose.heading, horizontal_fov_rad: view.horizontal_fov_rad };
+    let mut observation =
+        FrameObservation { looks: vec![CaptionedView { gaze, caption }], ..FrameObservation::default() };
+    let seen = view.image.is_some().then(|| LookPicture { frame: 0, look: 0, view: view.clone() });
+    correct_captions(seen.as_slice(), None, std::slice::from_mut(&mut observation), seeker)?;
     Ok(observation.looks.pop().map(|look| look.caption).unwrap_or_default())
 }
 
-fn correct(
-    seen: &[Seen],
-    walk: Option<Walk<'_>>,
-    observations: &mut [Observation],
-    seeker: Seeker<'_>,
+fn correct_captions(
+    seen: &[LookPicture],
+    walk: Option<PlatformPath<'_>>,
+    observations: &mut [FrameObservation],
+    seeker: CaptionDetector<'_>,
 ) -> Result<usize, ObserveError> {
-    let mut wanted: Wanted = seeker.nouns.iter().map(|noun| (normal(noun), PROPOSED)).collect();
-    wanted.extend(named(observations));
-    testify((seen, walk), observations, seeker, &wanted, Purpose::Captions)?;
+    let mut wanted: NamePriors = seeker.nouns.iter().map(|noun| (normalise_name(noun), PROPOSED_PRIOR)).collect();
+    wanted.extend(caption_name_priors(observations));
+    apply_detections((seen, walk), observations, seeker, &wanted, DetectionPurpose::Captions)?;
     Ok(if wanted.is_empty() { 0 } else { seen.len() })
 }
 
@@ -87,46 +91,48 @@ pub fn seek_claims(
     platform: &dyn Platform,
     path: &Path,
     claims: &BTreeSet<String>,
-    seeker: Seeker<'_>,
-) -> Result<Vec<Observation>, ObserveError> {
-    let look = |gaze| Look { gaze, caption: Caption::default() };
-    let around = |frame| Observation {
+    seeker: CaptionDetector<'_>,
+) -> Result<Vec<FrameObservation>, ObserveError> {
+    let look = |gaze| CaptionedView { gaze, caption: Caption::default() };
+    let around = |frame| FrameObservation {
         looks: gazes_around(path, frame).into_iter().map(look).collect(),
-        ..Observation::default()
+        ..FrameObservation::default()
     };
-    let mut observations: Vec<Observation> = path.frames.iter().map(around).collect();
-    let wanted = claims.iter().map(|claim| (normal(claim), CLAIMED)).collect();
-    let seen = views(platform, path, &observations)?;
-    let walk = Some(Walk { platform, path });
-    testify((&seen, walk), &mut observations, seeker, &wanted, Purpose::Claims)?;
+    let mut observations: Vec<FrameObservation> = path.frames.iter().map(around).collect();
+    let wanted = claims.iter().map(|claim| (normalise_name(claim), CLAIMED_PRIOR)).collect();
+    let seen = look_views(platform, path, &observations)?;
+    let walk = Some(PlatformPath { platform, path });
+    apply_detections((&seen, walk), &mut observations, seeker, &wanted, DetectionPurpose::Claims)?;
     Ok(observations)
 }
 
 /// The detector's own evidence: captions without words, with only the sightings that it found, denied or left unsure.
 #[must_use]
-pub fn alone(observations: &[Observation], detector: &str) -> Vec<Observation> {
-    let is_its = |sighting: &&Sighting| sighting.spot.is_some() || sighting.by == detector;
-    let look = |look: &Look| {
+pub fn detector_only(observations: &[FrameObservation], detector: &str) -> Vec<FrameObservation> {
+    let is_its = |sighting: &&ObjectSighting| sighting.spot.is_some() || sighting.by == detector;
+    let look = |look: &CaptionedView| {
         let sightings = look.caption.sightings.iter().filter(is_its).cloned().collect();
-        Look { gaze: look.gaze, caption: Caption { sightings, ..Caption::default() } }
+        CaptionedView { gaze: look.gaze, caption: Caption { sightings, ..Caption::default() } }
     };
-    let observation =
-        |seen: &Observation| Observation { looks: seen.looks.iter().map(look).collect(), ..Observation::default() };
+    let observation = |seen: &FrameObservation| FrameObservation {
+        looks: seen.looks.iter().map(look).collect(),
+        ..FrameObservation::default()
+    };
     observations.iter().map(observation).collect()
 }
 
 /// The names in the captions that the lexicon has, with their prior probability.
-fn named(observations: &[Observation]) -> Wanted {
-    let mut wanted = Wanted::new();
+fn caption_name_priors(observations: &[FrameObservation]) -> NamePriors {
+    let mut wanted = NamePriors::new();
     let captions = observations.iter().flat_map(|seen| &seen.looks).map(|look| &look.caption);
     for sighting in captions.flat_map(|caption| &caption.sightings) {
         let before = match sighting.witness {
-            Witness::Seen => NAMED,
-            Witness::Unsure => CLAIMED,
-            Witness::Denied => continue,
+            WitnessAnswer::Seen => NAMED_PRIOR,
+            WitnessAnswer::Unsure => CLAIMED_PRIOR,
+            WitnessAnswer::Denied => continue,
         };
-        if thing(&sighting.name).is_some() {
-            let known = wanted.entry(normal(&sighting.name)).or_insert(before);
+        if find_thing(&sighting.name).is_some() {
+            let known = wanted.entry(normalise_name(&sighting.name)).or_insert(before);
             *known = known.max(before);
         }
     }

@@ -3,15 +3,15 @@
 //! The paper (arXiv 2403.11487) claims that its dialogue removes hallucinated objects, and does not measure it. This
 //! module does, for any answerer.
 
-use crate::dialogue::{OPENING, sightings};
+use crate::dialogue::{OPENING_REQUEST, dialogue_sightings};
 use serde::Serialize;
 use wayword_checks::SeenThing;
-use wayword_core::{Exchange, Witness};
-use wayword_language::lexicon::{Class, agree, thing};
+use wayword_core::{DialogueExchange, WitnessAnswer};
+use wayword_language::lexicon::{ThingClass, find_thing, names_agree};
 
 /// How the objects of a caption agree with the labels of its view.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
-pub struct Score {
+pub struct CaptionScore {
     /// How many different objects it names, of those that labels can judge.
     pub named: usize,
     /// The named objects that no label of the view agrees with.
@@ -27,15 +27,16 @@ pub struct Score {
 /// Walls, floors, doors and the like are left out on both sides: most label sets lack them, so a caption could neither
 /// find nor invent them.
 #[must_use]
-pub fn score(caption: &str, labels: &[SeenThing]) -> Score {
-    let judged = |name: &str| !matches!(thing(name).map(|thing| thing.class), Some(Class::Fabric | Class::Door));
-    let told = sightings(&[Exchange::new(OPENING, caption)], "");
-    let seen = told.iter().filter(|sighting| sighting.witness == Witness::Seen);
-    let named = distinct(seen.map(|sighting| sighting.name.as_str()).filter(|name| judged(name)));
-    let labelled = distinct(labels.iter().map(|label| label.name.as_str()).filter(|name| judged(name)));
-    let in_list = |list: &[&str], name: &str| list.iter().any(|other| agree(other, name));
+pub fn score_caption(caption: &str, labels: &[SeenThing]) -> CaptionScore {
+    let judged =
+        |name: &str| !matches!(find_thing(name).map(|thing| thing.class), Some(ThingClass::Fabric | ThingClass::Door));
+    let told = dialogue_sightings(&[DialogueExchange::new(OPENING_REQUEST, caption)], "");
+    let seen = told.iter().filter(|sighting| sighting.witness == WitnessAnswer::Seen);
+    let named = distinct_names(seen.map(|sighting| sighting.name.as_str()).filter(|name| judged(name)));
+    let labelled = distinct_names(labels.iter().map(|label| label.name.as_str()).filter(|name| judged(name)));
+    let in_list = |list: &[&str], name: &str| list.iter().any(|other| names_agree(other, name));
     let hallucinated = named.iter().filter(|name| !in_list(&labelled, name)).map(|name| (*name).to_owned());
-    Score {
+    CaptionScore {
         named: named.len(),
         hallucinated: hallucinated.collect(),
         labelled: labelled.len(),
@@ -43,10 +44,10 @@ pub fn score(caption: &str, labels: &[SeenThing]) -> Score {
     }
 }
 
-fn distinct<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
+fn distinct_names<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
     let mut kept: Vec<&str> = Vec::new();
     for name in names {
-        if !kept.iter().any(|before| agree(before, name)) {
+        if !kept.iter().any(|before| names_agree(before, name)) {
             kept.push(name);
         }
     }
@@ -64,15 +65,17 @@ mod tests {
 
     #[test]
     fn hallucinated_objects_and_misses_are_counted_by_kind() {
-        let score =
-            score("A bedroom with a bed, two lamps and a mirror.", &labels(&["bed", "lamp", "lamp", "wardrobe"]));
+        let score = score_caption(
+            "A bedroom with a bed, two lamps and a mirror.",
+            &labels(&["bed", "lamp", "lamp", "wardrobe"]),
+        );
         assert_eq!((score.named, score.labelled, score.found), (3, 3, 2));
         assert_eq!(score.hallucinated, ["mirror"]);
     }
 
     #[test]
     fn score_caption_ignores_denied_things_and_walls() {
-        let score = score("There is a bed and no mirror. The wall is white.", &labels(&["bed"]));
+        let score = score_caption("There is a bed and no mirror. The wall is white.", &labels(&["bed"]));
         assert_eq!((score.named, score.hallucinated.len(), score.found), (1, 0, 1));
     }
 }

@@ -5,13 +5,15 @@
 use std::collections::BTreeSet;
 use wayword_checks::{
     Evidence,
-    detected::{DetectorFigures, Rates},
+    detected::{DetectorFigures, DetectorRates},
 };
-use wayword_core::{Detector, Found, Label, ModelError, Path, PathRequest, Platform, Scoring, View};
+use wayword_core::{
+    DetectedBox, DetectorScoring, ModelError, ObjectDetector, ObjectLabel, Path, PathRequest, Platform, View,
+};
 use wayword_house::{HouseOptions, HousePlatform};
-use wayword_language::lexicon::{agree, normal};
+use wayword_language::lexicon::{names_agree, normalise_name};
 use wayword_synthesis::{
-    detection::{Seeker, seek_claims},
+    detection::{CaptionDetector, seek_claims},
     observe::gazes_around,
 };
 use wayword_testkit::PlayedDetector;
@@ -21,44 +23,52 @@ use wayword_testkit::PlayedDetector;
 const TOLERANCE_M: f64 = 1.0;
 
 /// A detector that finds exactly the things that labels list.
-const PLAYED: PlayedDetector = PlayedDetector { same: agree, recall: 1.0, alarms: 0.0, repeats: false, seed: 1 };
+const PLAYED: PlayedDetector = PlayedDetector { same: names_agree, recall: 1.0, alarms: 0.0, repeats: false, seed: 1 };
 
 /// The played detector with boxes around the visible parts of each thing.
 struct Outlined;
 
-impl Detector for Outlined {
+impl ObjectDetector for Outlined {
     fn name(&self) -> &str {
         PLAYED.name()
     }
 
-    fn scoring(&self) -> Scoring {
+    fn scoring(&self) -> DetectorScoring {
         PLAYED.scoring()
     }
 
-    fn detect(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<Vec<Found>>, ModelError>> {
-        let outlined = |(view, found): (&&View, Result<Vec<Vec<Found>>, ModelError>)| {
-            let of_phrase = |(phrase, found): (&&str, Vec<Found>)| {
-                let labels = view.ground_truth().unwrap().labels.iter().filter(|label| agree(&label.name, phrase));
-                let boxed = |(label, found): (&Label, Found)| {
+    fn detect_phrases(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<Vec<DetectedBox>>, ModelError>> {
+        let outlined = |(view, found): (&&View, Result<Vec<Vec<DetectedBox>>, ModelError>)| {
+            let of_phrase = |(phrase, found): (&&str, Vec<DetectedBox>)| {
+                let labels =
+                    view.ground_truth().unwrap().labels.iter().filter(|label| names_agree(&label.name, phrase));
+                let boxed = |(label, found): (&ObjectLabel, DetectedBox)| {
                     let [x, y, width, height] = label.box_px.unwrap();
-                    Found { box_px: [x, y, x + width, y + height].map(|edge| edge as f32), ..found }
+                    DetectedBox { box_px: [x, y, x + width, y + height].map(|edge| edge as f32), ..found }
                 };
                 labels.zip(found).map(boxed).collect()
             };
             Ok(phrases.iter().zip(found?).map(of_phrase).collect())
         };
-        views.iter().zip(PLAYED.detect(views, phrases)).map(outlined).collect()
+        views.iter().zip(PLAYED.detect_phrases(views, phrases)).map(outlined).collect()
     }
 }
 
 fn figures() -> DetectorFigures {
-    let all = Rates { shown: 2000, found: 1600, absent: 20_000, alarms: 1, runs: vec![1; 8], ..Rates::default() };
+    let all = DetectorRates {
+        shown: 2000,
+        found: 1600,
+        absent: 20_000,
+        alarms: 1,
+        runs: vec![1; 8],
+        ..DetectorRates::default()
+    };
     DetectorFigures { found_from: 0.5, all, ..DetectorFigures::default() }
 }
 
 /// All labels around a frame.
-fn labels(platform: &dyn Platform, path: &Path, at: usize) -> Vec<Label> {
-    let look = |gaze| platform.look(&path.scene, &path.frames[at], gaze).unwrap();
+fn labels(platform: &dyn Platform, path: &Path, at: usize) -> Vec<ObjectLabel> {
+    let look = |gaze| platform.look_from(&path.scene, &path.frames[at], gaze).unwrap();
     let views = gazes_around(path, &path.frames[at]).into_iter().map(look);
     views.flat_map(|view| view.ground_truth().unwrap().labels.clone()).collect()
 }
@@ -66,15 +76,16 @@ fn labels(platform: &dyn Platform, path: &Path, at: usize) -> Vec<Label> {
 /// The errors of the distances of finds compared with the labels, metres: one for each find of a name that the view's
 /// labels have once.
 fn errors_m(platform: &dyn Platform, path: &Path) -> Vec<f64> {
-    let all: Vec<Vec<Label>> = (0..path.frames.len()).map(|at| labels(platform, path, at)).collect();
-    let names: BTreeSet<String> = all.iter().flatten().map(|label| normal(&label.name)).collect();
-    let seeker = Seeker { detector: &Outlined, figures: &figures(), nouns: &[] };
+    let all: Vec<Vec<ObjectLabel>> = (0..path.frames.len()).map(|at| labels(platform, path, at)).collect();
+    let names: BTreeSet<String> = all.iter().flatten().map(|label| normalise_name(&label.name)).collect();
+    let seeker = CaptionDetector { detector: &Outlined, figures: &figures(), nouns: &[] };
     let seen = seek_claims(platform, path, &names, seeker).unwrap();
     let evidence = Evidence::from_detector(path, &seen).unwrap();
     let mut errors = Vec::new();
     for (labels, frame) in all.iter().zip(&evidence.frames) {
         for thing in &frame.things {
-            let alike: Vec<&Label> = labels.iter().filter(|label| agree(&label.name, &thing.name)).collect();
+            let alike: Vec<&ObjectLabel> =
+                labels.iter().filter(|label| names_agree(&label.name, &thing.name)).collect();
             if let [only] = alike[..] {
                 let level_m = only.distance_m.unwrap() * only.elevation_rad.cos();
                 // A door has none.

@@ -59,7 +59,7 @@ mod tests {
         #[test]
         fn habitat_rotation_looks_along_its_heading(heading_rad in -7.0..7.0f64) {
             let forward = forward_from_habitat_rotation(habitat_rotation_from_heading(heading_rad));
-            prop_assert!((forward - Heading::new(heading_rad).unwrap().direction()).length() < 1e-9);
+            prop_assert!((forward - Heading::new(heading_rad).unwrap().unit_vector()).length() < 1e-9);
         }
     }
 }

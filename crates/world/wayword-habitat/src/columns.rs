@@ -20,7 +20,7 @@ const HEADROOM_M: f64 = 1.8;
 
 /// The triangles of a scene, sorted into the cells that they touch as seen from above. In Wayword's frame.
 #[derive(Debug)]
-pub(crate) struct Columns {
+pub(crate) struct TriangleColumns {
     triangles: Vec<[Vec3; 3]>,
     /// The caller's number for the owner of each triangle.
     tags: Vec<u32>,
@@ -35,7 +35,7 @@ pub(crate) struct Columns {
 
 /// The cover above a position on the ground: a ceiling, or the sky.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Over {
+pub(crate) enum OverheadCover {
     /// A ceiling; its height above the ground, metres.
     Ceiling(f64),
     /// The sky above, and solid ground below.
@@ -44,27 +44,27 @@ pub(crate) enum Over {
     SkyOnRoof,
 }
 
-impl Columns {
+impl TriangleColumns {
     pub(crate) fn new(triangles: impl Iterator<Item = [Vec3; 3]>) -> Self {
-        Self::tagged(triangles.map(|triangle| (triangle, 0)))
+        Self::with_tags(triangles.map(|triangle| (triangle, 0)))
     }
 
-    /// Columns of triangles with a number each, which [`Columns::tags_at`] returns. Upright triangles are left out.
-    pub(crate) fn tagged(triangles: impl Iterator<Item = ([Vec3; 3], u32)>) -> Self {
+    /// Columns of triangles with a number each, which [`TriangleColumns::tags_at`] returns. Upright triangles are left out.
+    pub(crate) fn with_tags(triangles: impl Iterator<Item = ([Vec3; 3], u32)>) -> Self {
         // An upright triangle has no area seen from above.
         let lies = |[a, b, c]: &[Vec3; 3]| (*b - *a).truncate().perp_dot((*c - *a).truncate()).abs() > 1e-9;
         let (triangles, tags) = triangles.filter(|(triangle, _)| lies(triangle) && is_finite(triangle)).unzip();
-        Self::sorted(triangles, tags)
+        Self::sort_into_cells(triangles, tags)
     }
 
-    /// Columns that include the upright triangles, for [`Columns::is_open`].
+    /// Columns that include the upright triangles, for [`TriangleColumns::is_open`].
     pub(crate) fn with_walls(triangles: impl Iterator<Item = [Vec3; 3]>) -> Self {
         let triangles: Vec<[Vec3; 3]> = triangles.filter(is_finite).collect();
         let tags = vec![0; triangles.len()];
-        Self::sorted(triangles, tags)
+        Self::sort_into_cells(triangles, tags)
     }
 
-    fn sorted(triangles: Vec<[Vec3; 3]>, tags: Vec<u32>) -> Self {
+    fn sort_into_cells(triangles: Vec<[Vec3; 3]>, tags: Vec<u32>) -> Self {
         let corners = || triangles.iter().flatten().map(|corner| corner.truncate());
         let low = corners().reduce(glam::Vec2::min).unwrap_or_default();
         let high = corners().reduce(glam::Vec2::max).unwrap_or_default();
@@ -75,22 +75,22 @@ impl Columns {
             // Casts saturate; the additional cell takes the triangles on the far edge.
             columns.size = [extent.x, extent.y].map(|side| (side / columns.side_m) as usize + 1);
             let cells = columns.size[0] as u64 * columns.size[1] as u64;
-            let touched: u64 = columns.triangles.iter().map(|triangle| columns.touched(triangle)).sum();
+            let touched: u64 = columns.triangles.iter().map(|triangle| columns.touched_cell_count(triangle)).sum();
             let most = FREE_CELLS + CELLS_PER_TRIANGLE * columns.triangles.len() as u64;
             if columns.size == [1, 1] || (cells <= most && touched <= most) {
                 break;
             }
             columns.side_m *= 2.0;
         }
-        columns.fill();
+        columns.fill_cells();
         columns
     }
 
-    fn fill(&mut self) {
+    fn fill_cells(&mut self) {
         let cells = self.size[0] * self.size[1];
         let mut starts = vec![0_u32; cells + 1];
         for triangle in &self.triangles {
-            self.cells(triangle).for_each(|cell| starts[cell + 1] += 1);
+            self.touched_cells(triangle).for_each(|cell| starts[cell + 1] += 1);
         }
         for cell in 0..cells {
             starts[cell + 1] += starts[cell];
@@ -98,7 +98,7 @@ impl Columns {
         let mut next = starts.clone();
         self.members = vec![0; starts[cells] as usize];
         for (number, triangle) in self.triangles.iter().enumerate() {
-            for cell in self.cells(triangle) {
+            for cell in self.touched_cells(triangle) {
                 self.members[next[cell] as usize] = number as u32;
                 next[cell] += 1;
             }
@@ -107,25 +107,25 @@ impl Columns {
     }
 
     /// First and last cell along each axis that a triangle's bounds touch.
-    fn span(&self, [a, b, c]: &[Vec3; 3]) -> [[usize; 2]; 2] {
+    fn cell_span(&self, [a, b, c]: &[Vec3; 3]) -> [[usize; 2]; 2] {
         let (low, high) = (a.min(*b).min(*c).truncate(), a.max(*b).max(*c).truncate());
         let at = |place: glam::Vec2| ((place - self.corner) / self.side_m).to_array();
         let (low, high) = (at(low), at(high));
         [0, 1].map(|axis| [low[axis], high[axis]].map(|at| (at as usize).min(self.size[axis] - 1)))
     }
 
-    fn touched(&self, triangle: &[Vec3; 3]) -> u64 {
+    fn touched_cell_count(&self, triangle: &[Vec3; 3]) -> u64 {
         let count = |[first, last]: [usize; 2]| (last - first + 1) as u64;
-        self.span(triangle).map(count).into_iter().product()
+        self.cell_span(triangle).map(count).into_iter().product()
     }
 
-    fn cells(&self, triangle: &[Vec3; 3]) -> impl Iterator<Item = usize> + use<> {
-        let ([[left, right], [near, far]], wide) = (self.span(triangle), self.size[0]);
+    fn touched_cells(&self, triangle: &[Vec3; 3]) -> impl Iterator<Item = usize> + use<> {
+        let ([[left, right], [near, far]], wide) = (self.cell_span(triangle), self.size[0]);
         (near..=far).flat_map(move |y| (left..=right).map(move |x| y * wide + x))
     }
 
     /// The triangles over and under a position: those of its cell.
-    fn near(&self, place: DVec3) -> &[u32] {
+    fn triangles_near(&self, place: DVec3) -> &[u32] {
         let at = (place.truncate().as_vec2() - self.corner) / self.side_m;
         let inside = at.min_element() >= 0.0 && (at.x as usize) < self.size[0] && (at.y as usize) < self.size[1];
         if !inside {
@@ -137,18 +137,18 @@ impl Columns {
 
     /// The surfaces that a vertical line through a position meets, from the lowest: height in metres, and whether it
     /// faces up.
-    fn surfaces(&self, place: DVec3) -> Vec<(f64, bool)> {
-        let members = self.near(place).iter();
+    fn surfaces_at(&self, place: DVec3) -> Vec<(f64, bool)> {
+        let members = self.triangles_near(place).iter();
         let mut surfaces: Vec<(f64, bool)> =
-            members.filter_map(|number| met(&self.triangles[*number as usize], place)).collect();
+            members.filter_map(|number| height_on_triangle(&self.triangles[*number as usize], place)).collect();
         surfaces.sort_by(|a, b| a.0.total_cmp(&b.0));
         surfaces
     }
 
     /// How far below a position the next surface lies, metres, whichever way it faces; `None` where there is none.
     pub(crate) fn drop_m(&self, place: DVec3) -> Option<f64> {
-        let members = self.near(place).iter();
-        let heights = members.filter_map(|number| met(&self.triangles[*number as usize], place));
+        let members = self.triangles_near(place).iter();
+        let heights = members.filter_map(|number| height_on_triangle(&self.triangles[*number as usize], place));
         let below = heights.map(|(height_m, _)| place.z - height_m).filter(|drop_m| *drop_m > 0.0);
         below.min_by(f64::total_cmp)
     }
@@ -173,7 +173,7 @@ impl Columns {
         let place = |place: DVec3| (place.truncate() - self.corner.as_dvec2()) / f64::from(self.side_m);
         let (left, right) = if from.x <= to.x { (place(from), place(to)) } else { (place(to), place(from)) };
         let [wide, deep] = self.size;
-        let strips = strip(left.x, right.x, wide);
+        let strips = cells_between(left.x, right.x, wide);
         strips.flat_map(move |x| {
             // The part of the line that lies in this strip; a line along y lies in one strip with all its length.
             let at = |x: f64| {
@@ -181,7 +181,7 @@ impl Columns {
                 left.y + share.clamp(0.0, 1.0) * (right.y - left.y)
             };
             let (a, b) = if right.x > left.x { (at(x as f64), at(x as f64 + 1.0)) } else { (left.y, right.y) };
-            strip(a.min(b), a.max(b), deep).map(move |y| y * wide + x)
+            cells_between(a.min(b), a.max(b), deep).map(move |y| y * wide + x)
         })
     }
 
@@ -192,23 +192,24 @@ impl Columns {
 
     /// The surfaces that a vertical line through a position meets, in no order: height in metres, and the triangle's tag.
     pub(crate) fn tags_at(&self, place: DVec3) -> impl Iterator<Item = (f64, u32)> {
-        let members = self.near(place).iter().map(|number| *number as usize);
-        members.filter_map(move |number| Some((met(&self.triangles[number], place)?.0, self.tags[number])))
+        let members = self.triangles_near(place).iter().map(|number| *number as usize);
+        members
+            .filter_map(move |number| Some((height_on_triangle(&self.triangles[number], place)?.0, self.tags[number])))
     }
 
     /// The cover above a position on the ground.
-    pub(crate) fn over(&self, ground: DVec3) -> Over {
-        let surfaces = self.surfaces(ground);
+    pub(crate) fn cover_over(&self, ground: DVec3) -> OverheadCover {
+        let surfaces = self.surfaces_at(ground);
         if let Some((height_m, _)) = surfaces.iter().find(|(height_m, _)| *height_m > ground.z + FEET_M) {
-            return Over::Ceiling(height_m - ground.z);
+            return OverheadCover::Ceiling(height_m - ground.z);
         }
         // A person could stand on a surface below if it faces up and has enough room above it.
         let is_room = |pair: &[(f64, bool)]| pair[0].1 && pair[1].0 - pair[0].0 >= HEADROOM_M;
-        if surfaces.windows(2).any(is_room) { Over::SkyOnRoof } else { Over::Sky }
+        if surfaces.windows(2).any(is_room) { OverheadCover::SkyOnRoof } else { OverheadCover::Sky }
     }
 }
 
-impl Over {
+impl OverheadCover {
     /// Whether a person can stand upright under it.
     pub(crate) fn is_headroom(&self) -> bool {
         !matches!(self, Self::Ceiling(height_m) if *height_m < HEADROOM_M)
@@ -220,7 +221,7 @@ fn is_finite(triangle: &[Vec3; 3]) -> bool {
 }
 
 /// The range of cells, of `count` in a row, between two positions that are measured in sides of a cell.
-fn strip(low: f64, high: f64, count: usize) -> std::ops::Range<usize> {
+fn cells_between(low: f64, high: f64, count: usize) -> std::ops::Range<usize> {
     // Casts saturate. The range is a little wider than needed, because the line may run along the border of cells.
     let end = if high < 0.0 { 0 } else { ((high + 1e-6) as usize).saturating_add(1).min(count) };
     ((low - 1e-6).max(0.0) as usize).min(end)..end
@@ -242,7 +243,7 @@ fn stands_between([a, b, c]: &[Vec3; 3], from: DVec3, to: DVec3) -> bool {
 }
 
 /// The height at which a vertical line through a position meets a triangle, and whether the triangle faces up.
-fn met([a, b, c]: &[Vec3; 3], place: DVec3) -> Option<(f64, bool)> {
+fn height_on_triangle([a, b, c]: &[Vec3; 3], place: DVec3) -> Option<(f64, bool)> {
     let [a, b, c] = [a, b, c].map(|corner| corner.as_dvec3());
     let side = |a: DVec3, b: DVec3| (b - a).truncate().perp_dot((place - a).truncate());
     let (to_c, to_a, to_b) = (side(a, b), side(b, c), side(c, a));
@@ -263,52 +264,54 @@ mod tests {
         if is_up { vec![[a, b, c], [a, c, d]] } else { vec![[a, c, b], [a, d, c]] }
     }
 
-    fn columns(sheets: &[Vec<[Vec3; 3]>]) -> Columns {
-        Columns::new(sheets.iter().flatten().copied())
+    fn columns(sheets: &[Vec<[Vec3; 3]>]) -> TriangleColumns {
+        TriangleColumns::new(sheets.iter().flatten().copied())
     }
 
     #[test]
     fn under_a_slab_there_is_a_ceiling_and_on_top_of_it_a_roof() {
         let flat = columns(&[sheet(4.0, 0.0, true), sheet(4.0, 2.6, false), sheet(4.0, 2.8, true)]);
-        let Over::Ceiling(height_m) = flat.over(DVec3::new(1.0, 0.5, 0.1)) else { panic!("there is a ceiling") };
+        let OverheadCover::Ceiling(height_m) = flat.cover_over(DVec3::new(1.0, 0.5, 0.1)) else {
+            panic!("there is a ceiling")
+        };
         assert!((height_m - 2.5).abs() < 1e-6);
-        assert_eq!(flat.over(DVec3::new(1.0, 0.5, 2.9)), Over::SkyOnRoof);
-        assert_eq!(flat.over(DVec3::new(9.0, 0.5, 2.9)), Over::Sky);
+        assert_eq!(flat.cover_over(DVec3::new(1.0, 0.5, 2.9)), OverheadCover::SkyOnRoof);
+        assert_eq!(flat.cover_over(DVec3::new(9.0, 0.5, 2.9)), OverheadCover::Sky);
     }
 
     #[test]
     fn solid_ground_of_any_thickness_is_no_roof() {
         let block = columns(&[sheet(4.0, -3.0, false), sheet(4.0, 0.0, true)]);
-        assert_eq!(block.over(DVec3::new(1.0, 0.5, 0.0)), Over::Sky);
+        assert_eq!(block.cover_over(DVec3::new(1.0, 0.5, 0.0)), OverheadCover::Sky);
         // A crawl space does not count as a room.
         let raised = columns(&[sheet(4.0, -1.0, true), sheet(4.0, -0.2, false), sheet(4.0, 0.0, true)]);
-        assert_eq!(raised.over(DVec3::new(1.0, 0.5, 0.0)), Over::Sky);
+        assert_eq!(raised.cover_over(DVec3::new(1.0, 0.5, 0.0)), OverheadCover::Sky);
     }
 
     #[test]
     fn a_low_ceiling_leaves_no_headroom() {
         let cellar = columns(&[sheet(4.0, 0.0, true), sheet(4.0, 1.7, false)]);
-        assert!(!cellar.over(DVec3::ZERO).is_headroom());
-        assert!(Over::Ceiling(1.9).is_headroom() && Over::Sky.is_headroom());
+        assert!(!cellar.cover_over(DVec3::ZERO).is_headroom());
+        assert!(OverheadCover::Ceiling(1.9).is_headroom() && OverheadCover::Sky.is_headroom());
     }
 
     #[test]
     fn a_large_scene_of_large_triangles_takes_a_coarse_grid() {
         let wide = columns(&[sheet(5e5, 0.0, true), sheet(5e5, 3.0, false)]);
         assert!(wide.members.len() < 4_000_000 && wide.side_m > FINEST_M);
-        assert_eq!(wide.over(DVec3::new(4e5, -4e5, 0.0)), Over::Ceiling(3.0));
-        assert_eq!(Columns::new(std::iter::empty()).over(DVec3::ZERO), Over::Sky);
+        assert_eq!(wide.cover_over(DVec3::new(4e5, -4e5, 0.0)), OverheadCover::Ceiling(3.0));
+        assert_eq!(TriangleColumns::new(std::iter::empty()).cover_over(DVec3::ZERO), OverheadCover::Sky);
     }
 
     /// A wall along y at x = 1 with a doorway from y = 0 to y = 1, and a floor.
-    fn walled() -> Columns {
+    fn walled() -> TriangleColumns {
         let corner = |y: f32, z: f32| Vec3::new(1.0, y, z);
         let piece = |low: f32, high: f32| {
             let [a, b, c, d] = [corner(low, 0.0), corner(high, 0.0), corner(high, 2.5), corner(low, 2.5)];
             vec![[a, b, c], [a, c, d]]
         };
         let parts = [sheet(4.0, 0.0, true), piece(-4.0, 0.0), piece(1.0, 4.0)];
-        Columns::with_walls(parts.iter().flatten().copied())
+        TriangleColumns::with_walls(parts.iter().flatten().copied())
     }
 
     #[test]

@@ -35,7 +35,7 @@ pub(crate) fn bytes_if_there(file: &Path, most: u64, hint: &'static str) -> Resu
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
         Err(error) => return Err(wrong(error)),
     };
-    if let Some(reason) = wayword_world::files::irregular(&about) {
+    if let Some(reason) = wayword_world::files::describe_irregular(&about) {
         return Err(FileError::new(file, reason, hint));
     }
     let opened = std::fs::File::open(file).map_err(wrong)?;
@@ -49,12 +49,12 @@ pub(crate) fn bytes_if_there(file: &Path, most: u64, hint: &'static str) -> Resu
 }
 
 /// Reads the bytes of a file that must exist.
-pub(crate) fn bytes(file: &Path, most: u64, hint: &'static str) -> Result<Vec<u8>, FileError> {
+pub(crate) fn read_bytes(file: &Path, most: u64, hint: &'static str) -> Result<Vec<u8>, FileError> {
     bytes_if_there(file, most, hint)?.ok_or_else(|| FileError::new(file, "there is no such file", hint))
 }
 
 /// Reads a UTF-8 file; `None` if it does not exist.
 pub(crate) fn text_if_there(file: &Path, most: u64, hint: &'static str) -> Result<Option<String>, FileError> {
     let Some(bytes) = bytes_if_there(file, most, hint)? else { return Ok(None) };
-    wayword_world::files::text(bytes).map(Some).map_err(|reason| FileError::new(file, reason, hint))
+    wayword_world::files::decode_utf8(bytes).map(Some).map_err(|reason| FileError::new(file, reason, hint))
 }

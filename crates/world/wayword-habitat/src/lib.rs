@@ -14,6 +14,6 @@ mod semantics;
 pub mod walk;
 
 pub use fault::FileError;
-pub use ground::{Foothold, Ground, NoWay, Stride};
+pub use ground::{Foothold, GeodesicError, GroundStride, NavMeshGround};
 pub use navmesh::{NavMesh, NavMeshError, NavMeshSettings};
 pub use platform::{HabitatOptions, HabitatPlatform};

@@ -8,7 +8,7 @@
 //! the most different objects. `FOLDER/labels.txt` lists the labels, one line per view.
 
 use std::{collections::BTreeSet, error::Error, fmt::Write, path::PathBuf, time::Instant};
-use wayword_core::{Gaze, Platform, View, seed::derive};
+use wayword_core::{Platform, View, ViewGaze, seed::derive_seed};
 use wayword_house::HousePlatform;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -22,14 +22,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     for seed in first..first + houses {
         let scene = HousePlatform::scene_of(seed)?;
         let begun = Instant::now();
-        platform.graph(&scene)?;
+        platform.graph_for_scene(&scene)?;
         let (built, begun) = (begun.elapsed(), Instant::now());
-        let graph = platform.graph(&scene)?;
+        let graph = platform.graph_for_scene(&scene)?;
         let viewpoints: Vec<_> = graph.viewpoints().cloned().collect();
         for index in 0..views {
-            let at = derive(seed, &["view", &index.to_string()]) as usize % viewpoints.len();
-            let frame = graph.walk(&viewpoints[at..=at], None)?.remove(0);
-            let looks = Gaze::compass().map(|gaze| platform.look(&scene, &frame, gaze));
+            let at = derive_seed(seed, &["view", &index.to_string()]) as usize % viewpoints.len();
+            let frame = graph.path_frames(&viewpoints[at..=at], None)?.remove(0);
+            let looks = ViewGaze::compass_views().map(|gaze| platform.look_from(&scene, &frame, gaze));
             let looks = looks.into_iter().collect::<Result<Vec<_>, _>>()?;
             let Some(view) = looks.into_iter().max_by_key(variety) else {
                 continue;
@@ -39,7 +39,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             };
             let name = format!("view-{seed}-{index}.png");
             let colour = image::ExtendedColorType::Rgb8;
-            image::save_buffer(folder.join(&name), image.rgb(), image.width_px(), image.height_px(), colour)?;
+            image::save_buffer(folder.join(&name), image.rgb_bytes(), image.width_px(), image.height_px(), colour)?;
             let names: Vec<_> = truth.labels.iter().map(|label| label.name.as_str()).collect();
             writeln!(told, "{name}\t{}\t{}", truth.room.as_deref().unwrap_or("?"), names.join(", "))?;
         }

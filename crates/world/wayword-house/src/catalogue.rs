@@ -1,11 +1,11 @@
 //! The catalogue of furniture: each kind's name, usual size, colours and material.
 
-use super::{colour::Colour, dice::Dice};
+use super::{colour::Colour, dice::HouseDice};
 use Colour as C;
 use serde::{Deserialize, Serialize};
 
 /// The usual properties of a kind of furniture.
-pub(crate) struct Entry {
+pub(crate) struct CatalogueEntry {
     /// Its name in plain words.
     pub(crate) name: &'static str,
     /// Usual width, depth and height, centimetres.
@@ -32,9 +32,9 @@ macro_rules! catalogue {
             #[cfg(test)]
             pub(crate) const ALL: &'static [Self] = &[$(Self::$kind,)*];
 
-            pub(crate) fn entry(self) -> Entry {
+            pub(crate) fn entry(self) -> CatalogueEntry {
                 match self {
-                    $(Self::$kind => Entry {
+                    $(Self::$kind => CatalogueEntry {
                         name: $name,
                         size_cm: [$w, $d, $h],
                         give_cm: $give,
@@ -128,13 +128,13 @@ catalogue! {
 
 impl FurnitureKind {
     /// A size for one piece, centimetres.
-    pub(crate) fn size_cm(self, dice: &mut Dice) -> [i32; 3] {
-        let Entry { size_cm: [width, depth, height], give_cm, .. } = self.entry();
-        [width + dice.stepped(-give_cm, give_cm, 2), depth, height]
+    pub(crate) fn size_cm(self, dice: &mut HouseDice) -> [i32; 3] {
+        let CatalogueEntry { size_cm: [width, depth, height], give_cm, .. } = self.entry();
+        [width + dice.draw_stepped(-give_cm, give_cm, 2), depth, height]
     }
 
     /// A colour for one piece.
-    pub(crate) fn colour(self, dice: &mut Dice) -> Colour {
+    pub(crate) fn draw_colour(self, dice: &mut HouseDice) -> Colour {
         let colours = self.entry().colours;
         colours[dice.index(colours.len())]
     }

@@ -62,7 +62,7 @@ impl Colour {
 
     /// As a factor for a light grey texture or as a plain colour, 0..=1 per channel, gamma-encoded.
     #[must_use]
-    pub fn factor(self) -> [f32; 3] {
+    pub fn to_factor(self) -> [f32; 3] {
         self.rgb().map(|channel| f32::from(channel) / 255.0)
     }
 }

@@ -1,54 +1,59 @@
 //! Turns a house into meshes with materials, textures and baked light, for the renderer and for glTF files.
 
 use super::{
-    light::{Factors, Grain, RoomLight, cut},
-    model::{Furniture, House},
+    light::{LightFactors, RoomLight, SurfaceGrain, cut_part},
+    model::{FurniturePiece, House},
     objects::shell_id,
-    outlook::outlooks,
-    shapes::{Look, Part, Shape, shape},
+    outlook::choose_outlooks,
+    shapes::{FurnitureLook, HouseShape, MeshPart, build_shape},
     structure,
-    surface::{Pattern, Surface},
+    surface::{HouseSurface, SurfacePattern},
     textures,
 };
 use glam::Vec3;
 use std::collections::BTreeMap;
-use wayword_render::{Material, Mesh, Texture};
+use wayword_render::{Mesh, MeshMaterial, Texture};
 
 /// How finely floors, walls and ceilings are cut: finely, because shadows fall on them.
-const SHELL: Grain = Grain { finest_m: 0.055, widest_m: 0.7 };
+const SHELL_GRAIN: SurfaceGrain = SurfaceGrain { finest_m: 0.055, widest_m: 0.7 };
 /// How finely rugs and mats are cut; shadows fall on them too.
-const FLAT: Grain = Grain { finest_m: 0.055, widest_m: 0.25 };
+const FLAT_PIECE_GRAIN: SurfaceGrain = SurfaceGrain { finest_m: 0.055, widest_m: 0.25 };
 /// How finely everything else is cut.
-const THING: Grain = Grain { finest_m: 0.13, widest_m: 0.7 };
+const THING_GRAIN: SurfaceGrain = SurfaceGrain { finest_m: 0.13, widest_m: 0.7 };
 /// How far a door's frame reaches to both sides of the wall's middle, metres.
 const FRAME_M: f32 = 0.08;
 
 /// A whole house as a renderer or a file format needs it.
-pub(super) struct Drawing {
+pub(super) struct HouseDrawing {
     pub(super) meshes: Vec<Mesh>,
-    pub(super) materials: Vec<Material>,
+    pub(super) materials: Vec<MeshMaterial>,
     pub(super) textures: Vec<Texture>,
 }
 
 /// The surfaces of everything in a house, world frame, metres, for their geometry alone. They are not cut where the light
 /// changes, so there are fewer triangles than for a picture.
 #[must_use]
-pub fn surfaces(house: &House) -> Vec<Mesh> {
-    collect(house, Collector::default()).meshes
+pub fn build_surfaces(house: &House) -> Vec<Mesh> {
+    collect_meshes(house, MeshCollector::default()).meshes
 }
 
 /// Collects the meshes of everything in a house, cut where the light changes.
-pub(super) fn draw(house: &House) -> Drawing {
-    collect(house, Collector { cuts: true, ..Collector::default() })
+pub(super) fn draw_house(house: &House) -> HouseDrawing {
+    collect_meshes(house, MeshCollector { cuts: true, ..MeshCollector::default() })
 }
 
 /// Builds every part of a house, lights it by its room, and adds it to the meshes.
-fn collect(house: &House, mut drawing: Collector) -> Drawing {
-    let lights: Vec<_> = (0..house.rooms.len()).map(|index| RoomLight::of(house, index)).collect();
+fn collect_meshes(house: &House, mut drawing: MeshCollector) -> HouseDrawing {
+    let lights: Vec<_> = (0..house.rooms.len()).map(|index| RoomLight::for_room(house, index)).collect();
     for (index, light) in lights.iter().enumerate() {
-        let shell = [structure::floor(house, index), structure::walls(house, index), structure::ceiling(house, index)];
+        let shell = [
+            structure::build_floor(house, index),
+            structure::build_walls(house, index),
+            structure::build_ceiling(house, index),
+        ];
         for (part, shape) in shell.into_iter().enumerate() {
-            drawing.add(shape, shell_id(house, index, part), SHELL, |at, normal| light.on_shell(at, normal));
+            drawing
+                .add_shape(shape, shell_id(house, index, part), SHELL_GRAIN, |at, normal| light.on_shell(at, normal));
         }
     }
     for opening in &house.openings {
@@ -57,7 +62,7 @@ fn collect(house: &House, mut drawing: Collector) -> Drawing {
         let line = opening.span.at as f32 / 100.0;
         let (cx, cy) = house.rooms[opening.room].outline.centre();
         let is_below = (if along_x { cy } else { cx }) as f32 / 100.0 < line;
-        drawing.add(structure::opening(house, opening), opening.id, THING, |at, normal| {
+        drawing.add_shape(structure::build_opening(house, opening), opening.id, THING_GRAIN, |at, normal| {
             // Across the wall, the light of one room passes into that of the other.
             let past = ((if along_x { at.y } else { at.x }) - line) / (2.0 * FRAME_M) + 0.5;
             let share = if is_below { past } else { 1.0 - past }.clamp(0.0, 1.0);
@@ -69,30 +74,34 @@ fn collect(house: &House, mut drawing: Collector) -> Drawing {
             std::array::from_fn(|channel| here[channel] * (1.0 - share) + there[channel] * share)
         });
     }
-    let outlooks = outlooks(house);
+    let outlooks = choose_outlooks(house);
     for window in &house.windows {
         let light = &lights[window.room];
-        drawing.add(structure::window(house, window, &outlooks), window.id, THING, |at, normal| {
+        drawing.add_shape(structure::build_window(house, window, &outlooks), window.id, THING_GRAIN, |at, normal| {
             light.on_thing(at, normal, None)
         });
     }
     if let Some(stairs) = &house.stairs {
         let light = &lights[stairs.room];
-        drawing.add(structure::steps(stairs), stairs.id, THING, |at, normal| light.on_thing(at, normal, None));
-        drawing
-            .add(structure::railing(stairs), stairs.railing_id, THING, |at, normal| light.on_thing(at, normal, None));
+        drawing.add_shape(structure::build_steps(stairs), stairs.id, THING_GRAIN, |at, normal| {
+            light.on_thing(at, normal, None)
+        });
+        drawing.add_shape(structure::build_railing(stairs), stairs.railing_id, THING_GRAIN, |at, normal| {
+            light.on_thing(at, normal, None)
+        });
     }
     for piece in &house.furniture {
         let light = &lights[piece.room];
-        let grain = if piece.kind.is_flat() { FLAT } else { THING };
-        drawing.add(standing(piece), piece.id, grain, |at, normal| light.on_thing(at, normal, Some(piece.id)));
+        let grain = if piece.kind.is_flat() { FLAT_PIECE_GRAIN } else { THING_GRAIN };
+        drawing
+            .add_shape(piece_in_place(piece), piece.id, grain, |at, normal| light.on_thing(at, normal, Some(piece.id)));
     }
     drawing.finish()
 }
 
 /// A piece's shape, turned and moved to its place in the house.
-fn standing(piece: &Furniture) -> Shape {
-    let mut shape = shape(piece.kind, &Look::of(piece));
+fn piece_in_place(piece: &FurniturePiece) -> HouseShape {
+    let mut shape = build_shape(piece.kind, &FurnitureLook::for_piece(piece));
     let area = piece.footprint;
     let middle = Vec3::new((area.x0 + area.x1) as f32, (area.y0 + area.y1) as f32, 2.0 * piece.base_cm as f32) / 200.0;
     let turned = |v: Vec3| match piece.quarter_turns % 4 {
@@ -110,36 +119,42 @@ fn standing(piece: &Furniture) -> Shape {
 
 /// Gathers meshes, and gives surfaces that look alike the same material.
 #[derive(Default)]
-struct Collector {
+struct MeshCollector {
     /// Whether surfaces are cut where the light changes.
     cuts: bool,
     meshes: Vec<Mesh>,
-    materials: Vec<Material>,
+    materials: Vec<MeshMaterial>,
     /// The pattern of each texture that some material uses, in order of first use.
-    patterns: Vec<Pattern>,
-    known: BTreeMap<(Pattern, [u8; 3]), usize>,
+    patterns: Vec<SurfacePattern>,
+    known: BTreeMap<(SurfacePattern, [u8; 3]), usize>,
 }
 
-impl Collector {
-    fn add(&mut self, shape: Shape, id: u32, grain: Grain, light: impl Fn(Vec3, Vec3) -> Factors) {
+impl MeshCollector {
+    fn add_shape(
+        &mut self,
+        shape: HouseShape,
+        id: u32,
+        grain: SurfaceGrain,
+        light: impl Fn(Vec3, Vec3) -> LightFactors,
+    ) {
         for mut part in shape.parts {
             let colours = if part.surface.glows {
                 vec![[1.0; 3]; part.positions.len()]
             } else if self.cuts {
-                cut(&mut part, grain, &light)
+                cut_part(&mut part, grain, &light)
             } else {
                 part.positions.iter().zip(&part.normals).map(|(at, normal)| light(*at, *normal)).collect()
             };
-            let Part { surface, positions, uvs, triangles, .. } = part;
-            let material = self.material(surface);
+            let MeshPart { surface, positions, uvs, triangles, .. } = part;
+            let material = self.material_index(surface);
             self.meshes.push(Mesh { positions, uvs, colours, triangles, material, id });
         }
     }
 
-    fn material(&mut self, Surface { pattern, rgb, .. }: Surface) -> usize {
+    fn material_index(&mut self, HouseSurface { pattern, rgb, .. }: HouseSurface) -> usize {
         let (materials, patterns) = (&mut self.materials, &mut self.patterns);
         *self.known.entry((pattern, rgb)).or_insert_with(|| {
-            let texture = (pattern != Pattern::Plain).then(|| {
+            let texture = (pattern != SurfacePattern::Plain).then(|| {
                 let seen = patterns.iter().position(|each| *each == pattern);
                 seen.unwrap_or_else(|| {
                     patterns.push(pattern);
@@ -147,13 +162,13 @@ impl Collector {
                 })
             });
             let [r, g, b] = rgb.map(|channel| f32::from(channel) / 255.0);
-            materials.push(Material { base_colour: [r, g, b, 1.0], texture, double_sided: false });
+            materials.push(MeshMaterial { base_colour: [r, g, b, 1.0], texture, double_sided: false });
             materials.len() - 1
         })
     }
 
-    fn finish(self) -> Drawing {
-        let textures = self.patterns.into_iter().map(textures::of).collect();
-        Drawing { meshes: self.meshes, materials: self.materials, textures }
+    fn finish(self) -> HouseDrawing {
+        let textures = self.patterns.into_iter().map(textures::texture_for_pattern).collect();
+        HouseDrawing { meshes: self.meshes, materials: self.materials, textures }
     }
 }

@@ -4,7 +4,7 @@
 //! there is still space. Parts of the graph that are not joined then get viewpoints along the shortest way between them.
 
 use super::{
-    ground::{Cell, Ground},
+    ground::{GroundCell, HouseGround},
     model::House,
 };
 use wayword_core::{DVec3, ViewpointGraph, ViewpointId, graph::GraphError};
@@ -23,32 +23,32 @@ const REACH_M: f64 = 3.0;
 ///
 /// # Errors
 /// Never for a generated house. In an edited house, names and positions are checked.
-pub fn viewpoint_graph(house: &House, ground: &Ground) -> Result<ViewpointGraph, GraphError> {
-    let mut map = RoadMap { ground, nodes: Vec::new() };
-    map.seed(house);
-    let clearances = ground.clearances();
+pub fn viewpoint_graph(house: &House, ground: &HouseGround) -> Result<ViewpointGraph, GraphError> {
+    let mut map = HouseRoadMap { ground, nodes: Vec::new() };
+    map.add_fixed_viewpoints(house);
+    let clearances = ground.all_clearances();
     map.enter_rooms(house, &clearances);
-    map.fill(&clearances);
-    let mut edges = map.edges();
-    map.connect(&mut edges);
+    map.fill_open_floor(&clearances);
+    let mut edges = map.straight_edges();
+    map.connect_parts(&mut edges);
     map.into_graph(&edges)
 }
 
 /// The graph while it is being made: a cell of the ground and its place for each viewpoint.
-struct RoadMap<'a> {
-    ground: &'a Ground,
-    nodes: Vec<(Cell, DVec3)>,
+struct HouseRoadMap<'a> {
+    ground: &'a HouseGround,
+    nodes: Vec<(GroundCell, DVec3)>,
 }
 
-impl RoadMap<'_> {
-    fn add(&mut self, cell: Cell) {
+impl HouseRoadMap<'_> {
+    fn add_cell(&mut self, cell: GroundCell) {
         if self.nodes.iter().all(|(other, _)| *other != cell) {
-            self.nodes.push((cell, self.ground.place(cell)));
+            self.nodes.push((cell, self.ground.middle_of_cell(cell)));
         }
     }
 
     /// Adds viewpoints in openings and on the stairs.
-    fn seed(&mut self, house: &House) {
+    fn add_fixed_viewpoints(&mut self, house: &House) {
         for opening in house.openings.iter().filter(|opening| opening.is_passable()) {
             let (x, y) = opening.span.middle();
             self.add_nearest(DVec3::new(f64::from(x), f64::from(y), f64::from(opening.base_cm)) / 100.0);
@@ -60,7 +60,7 @@ impl RoadMap<'_> {
         for lower in [true, false] {
             let (from, to) = stairs.flight_across(lower);
             for deep in [stairs.flight_cm / 2, on_landing] {
-                let (x, y) = stairs.across((from + to) / 2, (from + to) / 2, [deep, deep]).centre();
+                let (x, y) = stairs.rect_across((from + to) / 2, (from + to) / 2, [deep, deep]).centre();
                 let (x_m, y_m) = (f64::from(x) / 100.0, f64::from(y) / 100.0);
                 self.add_nearest(DVec3::new(x_m, y_m, stairs.height_at(x_m, y_m)));
             }
@@ -70,12 +70,12 @@ impl RoadMap<'_> {
     /// Adds the free cell nearest to a place, within 60 cm.
     fn add_nearest(&mut self, place: DVec3) {
         if let Some(cell) = self.ground.cell_at(place) {
-            return self.add(cell);
+            return self.add_cell(cell);
         }
-        let off_m = |cell: &Cell| self.ground.place(*cell).distance(place);
-        let near = self.ground.cells().filter(|cell| off_m(cell) < 0.6);
+        let off_m = |cell: &GroundCell| self.ground.middle_of_cell(*cell).distance(place);
+        let near = self.ground.free_cells().filter(|cell| off_m(cell) < 0.6);
         if let Some(cell) = near.min_by(|a, b| off_m(a).total_cmp(&off_m(b))) {
-            self.add(cell);
+            self.add_cell(cell);
         }
     }
 
@@ -83,25 +83,26 @@ impl RoadMap<'_> {
     fn enter_rooms(&mut self, house: &House, clearances: &[Vec<u32>]) {
         for room in &house.rooms {
             let floor = room.floor as usize;
-            let inside = |cell: &Cell| {
-                let place = self.ground.place(*cell);
-                cell.layer == floor && room.inner().holds_m(place.x, place.y)
+            let inside = |cell: &GroundCell| {
+                let place = self.ground.middle_of_cell(*cell);
+                cell.layer == floor && room.inner_area().holds_m(place.x, place.y)
             };
-            let open = |cell: &Cell| (clearances[cell.layer][cell.index], std::cmp::Reverse(*cell));
-            if let Some(cell) = self.ground.cells().filter(inside).max_by_key(open) {
-                self.add(cell);
+            let open = |cell: &GroundCell| (clearances[cell.layer][cell.index], std::cmp::Reverse(*cell));
+            if let Some(cell) = self.ground.free_cells().filter(inside).max_by_key(open) {
+                self.add_cell(cell);
             }
         }
     }
 
     /// Adds further cells, the most open ones first, each at least `APART_M` from the others.
-    fn fill(&mut self, clearances: &[Vec<u32>]) {
-        let is_open = |cell: &Cell| clearances[cell.layer][cell.index] >= LEAST_OPEN;
-        let mut cells: Vec<Cell> = self.ground.cells().filter(is_open).collect();
+    fn fill_open_floor(&mut self, clearances: &[Vec<u32>]) {
+        let is_open = |cell: &GroundCell| clearances[cell.layer][cell.index] >= LEAST_OPEN;
+        let mut cells: Vec<GroundCell> = self.ground.free_cells().filter(is_open).collect();
         cells.sort_by_key(|cell| (std::cmp::Reverse(clearances[cell.layer][cell.index]), *cell));
         for cell in cells {
-            let place = self.ground.place(cell);
-            let far = |(_, other): &(Cell, DVec3)| (other.z - place.z).abs() > 1.0 || other.distance(place) >= APART_M;
+            let place = self.ground.middle_of_cell(cell);
+            let far =
+                |(_, other): &(GroundCell, DVec3)| (other.z - place.z).abs() > 1.0 || other.distance(place) >= APART_M;
             if self.nodes.iter().all(far) {
                 self.nodes.push((cell, place));
             }
@@ -109,7 +110,7 @@ impl RoadMap<'_> {
     }
 
     /// Pairs of near viewpoints between which one can walk straight.
-    fn edges(&self) -> Vec<(usize, usize)> {
+    fn straight_edges(&self) -> Vec<(usize, usize)> {
         let mut edges = Vec::new();
         for (a, (from, place)) in self.nodes.iter().enumerate() {
             for (b, (to, other)) in self.nodes.iter().enumerate().skip(a + 1) {
@@ -122,9 +123,9 @@ impl RoadMap<'_> {
     }
 
     /// Joins parts of the graph that are not connected, with viewpoints at the corners of the shortest way between them.
-    fn connect(&mut self, edges: &mut Vec<(usize, usize)>) {
+    fn connect_parts(&mut self, edges: &mut Vec<(usize, usize)>) {
         loop {
-            let parts = self.parts(edges);
+            let parts = self.label_parts(edges);
             let apart = |a: &usize, b: &usize| parts[*a] != parts[*b];
             let count = self.nodes.len();
             let pairs = (0..count).flat_map(|a| (a + 1..count).map(move |b| (a, b))).filter(|(a, b)| apart(a, b));
@@ -132,7 +133,7 @@ impl RoadMap<'_> {
             let mut pairs: Vec<_> = pairs.collect();
             pairs.sort_by(|a, b| length_m(a).total_cmp(&length_m(b)).then(a.cmp(b)));
             let places = |(a, b): (usize, usize)| {
-                let way = self.ground.geodesic(self.nodes[a].1, self.nodes[b].1).ok()?;
+                let way = self.ground.shortest_route(self.nodes[a].1, self.nodes[b].1).ok()?;
                 Some((a, b, way.corners))
             };
             // A pair with furniture or a ceiling between may have no short way; the next nearest pair may.
@@ -158,7 +159,7 @@ impl RoadMap<'_> {
     }
 
     /// The connected part to which each viewpoint belongs.
-    fn parts(&self, edges: &[(usize, usize)]) -> Vec<usize> {
+    fn label_parts(&self, edges: &[(usize, usize)]) -> Vec<usize> {
         let mut part: Vec<usize> = (0..self.nodes.len()).collect();
         let mut changed = true;
         while std::mem::take(&mut changed) {
@@ -178,11 +179,11 @@ impl RoadMap<'_> {
             let Ok(name) = ViewpointId::new(format!("v{number:03}")) else {
                 continue;
             };
-            graph.add(name.clone(), *place + DVec3::Z * EYE_M, Some(self.ground.level(*cell)))?;
+            graph.add_viewpoint(name.clone(), *place + DVec3::Z * EYE_M, Some(self.ground.storey_of_cell(*cell)))?;
             names.push(name);
         }
         for (a, b) in edges {
-            graph.join(&names[*a], &names[*b])?;
+            graph.join_viewpoints(&names[*a], &names[*b])?;
         }
         Ok(graph)
     }
@@ -190,22 +191,22 @@ impl RoadMap<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{generate, model::RoomKind};
+    use super::super::{generate_house, model::RoomKind};
     use super::*;
 
     #[test]
     fn graphs_are_whole_and_every_room_has_a_viewpoint() {
         for seed in 0..8 {
-            let house = generate(seed);
-            let graph = viewpoint_graph(&house, &Ground::of(&house)).unwrap();
-            assert_eq!(graph.components(), 1, "house {seed}");
-            let places: Vec<DVec3> = graph.viewpoints().map(|id| graph.position(id).unwrap()).collect();
+            let house = generate_house(seed);
+            let graph = viewpoint_graph(&house, &HouseGround::for_house(&house)).unwrap();
+            assert_eq!(graph.count_components(), 1, "house {seed}");
+            let places: Vec<DVec3> = graph.viewpoints().map(|id| graph.position_of(id).unwrap()).collect();
             for room in house.rooms.iter().filter(|room| room.kind != RoomKind::Staircase) {
                 let base_m = f64::from(room.base_cm()) / 100.0 + EYE_M;
                 let inside = |place: &&DVec3| room.outline.holds_m(place.x, place.y) && (place.z - base_m).abs() < 0.2;
                 assert!(places.iter().any(|place| inside(&place)), "house {seed}: {room:?}");
             }
-            let levels: Vec<_> = graph.viewpoints().filter_map(|id| graph.level(id)).collect();
+            let levels: Vec<_> = graph.viewpoints().filter_map(|id| graph.level_of(id)).collect();
             assert_eq!(levels.iter().max(), Some(&house.storeys));
             assert!(graph.edges().all(|(_, _, length_m)| length_m < 6.0));
         }

@@ -2,12 +2,12 @@
 //! graph.
 
 use super::{
-    furnish::furnish,
+    furnish::furnish_house,
     graph::{EYE_M, viewpoint_graph},
-    ground::Ground,
-    labels::labels,
-    layout::{Layout, lay_out},
-    model::{House, Opening},
+    ground::HouseGround,
+    labels::visible_labels,
+    layout::{HouseLayout, lay_out},
+    model::{House, WallOpening},
     names::{old_seed_of, scene_name, seed_of},
     scene::HouseScene,
 };
@@ -16,10 +16,10 @@ use std::{
     sync::{Arc, OnceLock},
 };
 use wayword_core::{
-    DVec3, Depth, Frame, Gaze, GroundTruth, Heading, Image, Label, ObjectId, PlatformError, Pose, SceneId, View,
-    ViewpointGraph, ViewpointId,
+    DVec3, DepthImage, Frame, GroundTruth, Heading, Image, ObjectId, ObjectLabel, PlatformError, Pose, SceneId, View,
+    ViewGaze, ViewpointGraph, ViewpointId,
 };
-use wayword_render::Camera;
+use wayword_render::PinholeCamera;
 use wayword_world::seen_from;
 
 /// An eye in an opening is at most this far from the middle line of the wall, centimetres.
@@ -27,30 +27,30 @@ const THRESHOLD_CM: i32 = 25;
 
 /// Generates the house of a seed. It is the same on every machine.
 #[must_use]
-pub fn generate(seed: u64) -> House {
+pub fn generate_house(seed: u64) -> House {
     let layout = lay_out(seed);
-    let furniture = furnish(seed, &layout);
-    let Layout { storeys, rooms, openings, windows, stairs, .. } = layout;
+    let furniture = furnish_house(seed, &layout);
+    let HouseLayout { storeys, rooms, openings, windows, stairs, .. } = layout;
     House { seed, storeys, rooms, openings, windows, stairs, furniture }
 }
 
 /// A house with its scene, its ground and its viewpoint graph.
 #[derive(Debug)]
-pub(super) struct Home {
+pub(super) struct PreparedHouse {
     pub(super) id: SceneId,
     pub(super) scene: HouseScene,
-    pub(super) ground: Ground,
+    pub(super) ground: HouseGround,
     pub(super) graph: Arc<ViewpointGraph>,
     /// The viewpoints from which each object is seen; computed on first use.
     seen_from: OnceLock<BTreeMap<ObjectId, BTreeSet<ViewpointId>>>,
     longest_m: OnceLock<f64>,
 }
 
-impl Home {
+impl PreparedHouse {
     /// Builds the house that a scene names.
-    pub(super) fn build(scene: &SceneId) -> Result<Self, PlatformError> {
-        let house = generate(seed_of(scene.as_str()).ok_or_else(|| unknown(scene.as_str()))?);
-        let ground = Ground::of(&house);
+    pub(super) fn for_scene(scene: &SceneId) -> Result<Self, PlatformError> {
+        let house = generate_house(seed_of(scene.as_str()).ok_or_else(|| unknown_scene_error(scene.as_str()))?);
+        let ground = HouseGround::for_house(&house);
         let graph =
             viewpoint_graph(&house, &ground).map_err(|source| PlatformError::Graph { scene: scene.clone(), source })?;
         let drawn = HouseScene::new(house)
@@ -66,30 +66,39 @@ impl Home {
     }
 
     /// The view from a pose, as it fills a picture of this size in pixels; with the picture if `pictured`.
-    pub(super) fn view(&self, pose: Pose, gaze: Gaze, size: [u32; 2], pictured: bool) -> Result<View, PlatformError> {
-        let camera = Camera::level(pose.position, gaze, size);
-        let drawn = if pictured { self.scene.picture(&camera) } else { self.scene.ids(&camera) };
-        let picture = drawn.map_err(|error| self.refused(&error))?;
+    pub(super) fn view_from(
+        &self,
+        pose: Pose,
+        gaze: ViewGaze,
+        size: [u32; 2],
+        pictured: bool,
+    ) -> Result<View, PlatformError> {
+        let camera = PinholeCamera::for_level_gaze(pose.position, gaze, size);
+        let drawn = if pictured { self.scene.render_picture(&camera) } else { self.scene.render_object_ids(&camera) };
+        let picture = drawn.map_err(|error| self.not_drawn_error(&error))?;
         let truth = GroundTruth {
             lists_objects: true,
-            labels: labels(&self.scene, &camera, gaze, &picture),
+            labels: visible_labels(&self.scene, &camera, gaze, &picture),
             room: self.room_seen(pose.position, gaze.heading),
         };
-        let image = || Image::new(picture.width, picture.height, picture.rgb).map_err(|error| self.refused(&error));
+        let image =
+            || Image::new(picture.width, picture.height, picture.rgb).map_err(|error| self.not_drawn_error(&error));
         let image = pictured.then(image).transpose()?.map(Arc::new);
-        let pose = Pose::level(pose.position, gaze.heading);
+        let pose = Pose::looking_level(pose.position, gaze.heading);
         Ok(View::new(pose, gaze.horizontal_fov_rad, image, Some(truth)))
     }
 
     /// The depths of the view from a pose, as it fills a picture of this size in pixels.
-    pub(super) fn depth(&self, pose: Pose, gaze: Gaze, size: [u32; 2]) -> Result<Depth, PlatformError> {
-        let picture =
-            self.scene.ids(&Camera::level(pose.position, gaze, size)).map_err(|error| self.refused(&error))?;
-        Depth::new(picture.width, picture.height, picture.depth_m).map_err(|error| self.refused(&error))
+    pub(super) fn depth_from(&self, pose: Pose, gaze: ViewGaze, size: [u32; 2]) -> Result<DepthImage, PlatformError> {
+        let picture = self
+            .scene
+            .render_object_ids(&PinholeCamera::for_level_gaze(pose.position, gaze, size))
+            .map_err(|error| self.not_drawn_error(&error))?;
+        DepthImage::new(picture.width, picture.height, picture.depth_m).map_err(|error| self.not_drawn_error(&error))
     }
 
     /// The error that something in this house cannot be drawn.
-    pub(super) fn refused(&self, error: &dyn std::error::Error) -> PlatformError {
+    pub(super) fn not_drawn_error(&self, error: &dyn std::error::Error) -> PlatformError {
         PlatformError::NotDrawn { scene: self.id.clone(), reason: error.to_string() }
     }
 
@@ -107,18 +116,18 @@ impl Home {
     /// Whether an eye is in an opening between two rooms.
     pub(super) fn is_in_opening(&self, eye: DVec3) -> bool {
         let floor_cm = (eye.z - EYE_M) * 100.0;
-        let stands_in = |opening: &Opening| {
-            opening.span.thickened(THRESHOLD_CM).holds_m(eye.x, eye.y)
+        let stands_in = |opening: &WallOpening| {
+            opening.span.thickened_by(THRESHOLD_CM).holds_m(eye.x, eye.y)
                 && (f64::from(opening.base_cm) - floor_cm).abs() < 50.0
         };
         self.scene.house.openings.iter().any(stands_in)
     }
 
     /// Everything visible from a pose. Small pictures are enough, because an object counts by its share of the picture.
-    pub(super) fn labels_around(&self, pose: Pose) -> Result<Vec<Label>, PlatformError> {
+    pub(super) fn labels_around(&self, pose: Pose) -> Result<Vec<ObjectLabel>, PlatformError> {
         let mut all = Vec::new();
-        for gaze in Gaze::around(pose.heading) {
-            let view = self.view(pose, gaze, [320, 240], false)?;
+        for gaze in ViewGaze::around_heading(pose.heading) {
+            let view = self.view_from(pose, gaze, [320, 240], false)?;
             all.extend(view.ground_truth().into_iter().flat_map(|truth| truth.labels.iter().cloned()));
         }
         Ok(all)
@@ -139,12 +148,12 @@ impl Home {
         if let Some(seen_from) = self.seen_from.get() {
             return Ok(seen_from);
         }
-        let seen = seen_from(&self.graph, |eye, heading| self.labels_around(Pose::level(eye, heading)))?;
+        let seen = seen_from(&self.graph, |eye, heading| self.labels_around(Pose::looking_level(eye, heading)))?;
         Ok(self.seen_from.get_or_init(|| seen))
     }
 
     /// Refuses poses outside the house.
-    pub(super) fn check(&self, frame: &Frame) -> Result<(), PlatformError> {
+    pub(super) fn check_within(&self, frame: &Frame) -> Result<(), PlatformError> {
         let eye = frame.pose.position;
         // `room_name` takes the eye to be at a person's height. A low camera would be below the floor then, so it is also
         // looked for at its own height.
@@ -152,18 +161,18 @@ impl Home {
         if eye.is_finite() && (self.room_name(eye).is_some() || is_within()) {
             return Ok(());
         }
-        Err(PlatformError::nowhere(&self.id, frame))
+        Err(PlatformError::for_unknown_place(&self.id, frame))
     }
 
     /// The place on the ground under every viewpoint.
     pub(super) fn standing_places(&self) -> Vec<DVec3> {
-        let eyes = self.graph.viewpoints().filter_map(|id| self.graph.position(id));
+        let eyes = self.graph.viewpoints().filter_map(|id| self.graph.position_of(id));
         eyes.map(|eye| eye - DVec3::Z * EYE_M).collect()
     }
 }
 
 /// The error for a name that no house of this version has.
-pub(super) fn unknown(scene: &str) -> PlatformError {
+pub(super) fn unknown_scene_error(scene: &str) -> PlatformError {
     let hint = match old_seed_of(scene) {
         Some(seed) => format!(
             "it was made by an earlier version of the generator, whose houses this program does not make; the house of \

@@ -1,32 +1,37 @@
 //! Finds the labels of a view from its pixels: each pixel carries the number of the object that it shows.
 
 use super::{
-    objects::{Object, Role},
+    objects::{NumberedObject, ObjectRole},
     scene::HouseScene,
 };
-use wayword_core::{Gaze, Heading, Label, ObjectId};
-use wayword_render::{Camera, Picture, Visible, box_corners, evident_objects};
+use wayword_core::{Heading, ObjectId, ObjectLabel, ViewGaze};
+use wayword_render::{PinholeCamera, RenderedPicture, VisibleObject, box_corners, evident_objects};
 
 /// Labels of the visible furniture, doors, windows and stairs, the largest first. The middle of an object's box must lie
 /// within the gaze.
 ///
 /// An object that is hidden behind others, or that shows only a sliver of itself, gets no label.
-pub(super) fn labels(scene: &HouseScene, camera: &Camera, gaze: Gaze, picture: &Picture) -> Vec<Label> {
+pub(super) fn visible_labels(
+    scene: &HouseScene,
+    camera: &PinholeCamera,
+    gaze: ViewGaze,
+    picture: &RenderedPicture,
+) -> Vec<ObjectLabel> {
     let seen = evident_objects(picture);
     let told = seen.iter().filter_map(|each| {
-        let object = scene.objects.get(&each.id).filter(|object| object.role != Role::Shell)?;
+        let object = scene.objects.get(&each.id).filter(|object| object.role != ObjectRole::Shell)?;
         let (low, high) = object.bounds_m;
         let is_sliver = each.is_sliver(camera, &box_corners(low, high));
-        (!is_sliver).then(|| label(camera, each, object)).flatten()
+        (!is_sliver).then(|| label_for_object(camera, each, object)).flatten()
     });
-    told.filter(|label| gaze.holds(label.heading)).collect()
+    told.filter(|label| gaze.holds_heading(label.heading)).collect()
 }
 
-fn label(camera: &Camera, seen: &Visible, object: &Object) -> Option<Label> {
+fn label_for_object(camera: &PinholeCamera, seen: &VisibleObject, object: &NumberedObject) -> Option<ObjectLabel> {
     let centre = object.centre_m();
     let offset = centre - camera.position;
     let level_m = libm::sqrt(offset.x * offset.x + offset.y * offset.y);
-    Some(Label {
+    Some(ObjectLabel {
         object: ObjectId::new(seen.id.to_string()).ok()?,
         name: object.name.clone(),
         heading: Heading::new(libm::atan2(offset.x, offset.y)).ok()?,
@@ -40,23 +45,29 @@ fn label(camera: &Camera, seen: &Visible, object: &Object) -> Option<Label> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{catalogue::FurnitureKind, generate, model::House};
+    use super::super::{catalogue::FurnitureKind, generate_house, model::House};
     use super::*;
     use wayword_core::DVec3;
 
     fn names(house: House, eye: DVec3, heading_rad: f64) -> Vec<String> {
         let scene = HouseScene::new(house).unwrap();
         let fov = 2.0 * libm::atan(0.75);
-        let camera =
-            Camera { position: eye, heading_rad, elevation_rad: 0.0, vertical_fov_rad: fov, width: 160, height: 120 };
-        let picture = scene.picture(&camera).unwrap();
-        let gaze = Gaze::quarter(Heading::new(heading_rad).unwrap());
-        labels(&scene, &camera, gaze, &picture).into_iter().map(|label| label.name).collect()
+        let camera = PinholeCamera {
+            position: eye,
+            heading_rad,
+            elevation_rad: 0.0,
+            vertical_fov_rad: fov,
+            width: 160,
+            height: 120,
+        };
+        let picture = scene.render_picture(&camera).unwrap();
+        let gaze = ViewGaze::quarter_view(Heading::new(heading_rad).unwrap());
+        visible_labels(&scene, &camera, gaze, &picture).into_iter().map(|label| label.name).collect()
     }
 
     /// A house with a refrigerator in the middle of its living room and no other furniture, and an eye south of it.
     fn refrigerator_alone() -> (House, DVec3) {
-        let mut house = generate(1);
+        let mut house = generate_house(1);
         let room = house.furniture.iter().find(|piece| piece.kind == FurnitureKind::Sofa).unwrap().room;
         let mut piece = house.furniture.iter().find(|piece| piece.kind == FurnitureKind::Refrigerator).unwrap().clone();
         let (x, y) = house.rooms[room].outline.centre();

@@ -1,7 +1,7 @@
 //! The geometry of an open door's leaf, at any angle to its wall.
 
 use super::{
-    model::{HALF_WALL_CM, LEAF_CM, Leaf, Opening, Room},
+    model::{DoorLeaf, HALF_WALL_CM, HouseRoom, LEAF_CM, WallOpening},
     rect::RectCm,
 };
 
@@ -25,8 +25,8 @@ pub(super) struct OpenLeaf {
 
 impl OpenLeaf {
     /// The open leaf of an opening; `None` if it has none.
-    pub(super) fn of(opening: &Opening, rooms: &[Room]) -> Option<Self> {
-        let Leaf::Open { into, hinge_low, angle_deg } = opening.leaf else {
+    pub(super) fn for_opening(opening: &WallOpening, rooms: &[HouseRoom]) -> Option<Self> {
+        let DoorLeaf::Open { into, hinge_low, angle_deg } = opening.leaf else {
             return None;
         };
         let span = opening.span;
@@ -39,7 +39,7 @@ impl OpenLeaf {
         } else {
             ((line, f64::from(at)), (0.0, towards))
         };
-        let (sin, cos) = turn(angle_deg);
+        let (sin, cos) = sin_cos_deg(angle_deg);
         let mix = |a: (f64, f64), x: f64, b: (f64, f64), y: f64| (a.0 * x + b.0 * y, a.1 * x + b.1 * y);
         Some(Self {
             hinge,
@@ -73,7 +73,7 @@ impl OpenLeaf {
 }
 
 /// Sine and cosine, exact at a right angle.
-fn turn(angle_deg: i32) -> (f64, f64) {
+fn sin_cos_deg(angle_deg: i32) -> (f64, f64) {
     if angle_deg == 90 {
         return (1.0, 0.0);
     }
@@ -83,16 +83,16 @@ fn turn(angle_deg: i32) -> (f64, f64) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{generate, ground::Ground, model::House};
+    use super::super::{generate_house, ground::HouseGround, model::House};
     use super::*;
     use wayword_core::DVec3;
 
-    fn open_doors(house: &House) -> Vec<(&Opening, OpenLeaf, i32)> {
-        let with_leaf = |opening| Some((opening, OpenLeaf::of(opening, &house.rooms)?));
+    fn open_doors(house: &House) -> Vec<(&WallOpening, OpenLeaf, i32)> {
+        let with_leaf = |opening| Some((opening, OpenLeaf::for_opening(opening, &house.rooms)?));
         let doors = house.openings.iter().filter_map(with_leaf);
         doors
             .map(|(opening, leaf)| match opening.leaf {
-                Leaf::Open { angle_deg, .. } => (opening, leaf, angle_deg),
+                DoorLeaf::Open { angle_deg, .. } => (opening, leaf, angle_deg),
                 _ => (opening, leaf, 0),
             })
             .collect()
@@ -101,10 +101,10 @@ mod tests {
     #[test]
     fn doors_open_at_many_angles_and_leaves_stay_in_their_rooms() {
         let mut angles = std::collections::BTreeSet::new();
-        for house in (0..30).map(generate) {
+        for house in (0..30).map(generate_house) {
             for (opening, leaf, angle_deg) in open_doors(&house) {
                 angles.insert(angle_deg);
-                let Leaf::Open { into, .. } = opening.leaf else { continue };
+                let DoorLeaf::Open { into, .. } = opening.leaf else { continue };
                 for square in leaf.footprint() {
                     assert!(house.rooms[into].outline.contains(&square), "{opening:?} {square:?}");
                 }
@@ -115,8 +115,8 @@ mod tests {
 
     #[test]
     fn open_leaves_block_the_ground_and_their_doors_do_not() {
-        for house in (0..12).map(generate) {
-            let ground = Ground::of(&house);
+        for house in (0..12).map(generate_house) {
+            let ground = HouseGround::for_house(&house);
             for (opening, leaf, _) in open_doors(&house) {
                 let z_m = f64::from(opening.base_cm) / 100.0;
                 let at = |far: f64| {
@@ -126,7 +126,7 @@ mod tests {
                 for far in [10, leaf.length_cm / 2, leaf.length_cm] {
                     assert!(!ground.is_walkable(at(f64::from(far))), "house {}: {opening:?}", house.seed);
                 }
-                let span = opening.span.thickened(0);
+                let span = opening.span.thickened_by(0);
                 let free =
                     (span.x0..=span.x1).step_by(5).flat_map(|x| (span.y0..=span.y1).step_by(5).map(move |y| (x, y)));
                 let is_free = |(x, y): (i32, i32)| {

@@ -33,14 +33,16 @@ mod textures;
 
 pub use catalogue::FurnitureKind;
 pub use colour::Colour;
-pub use drawing::surfaces;
+pub use drawing::build_surfaces;
 pub use graph::{EYE_M, viewpoint_graph};
-pub use ground::{Ground, NoWay, RADIUS_CM, Way};
-pub use home::generate;
+pub use ground::{GroundRouteError, HouseGround, HouseRoute, RADIUS_CM};
+pub use home::generate_house;
 pub use model::House;
 pub use names::{scene_name, seed_of};
-pub use objects::{Object, Role};
+pub use objects::{NumberedObject, ObjectRole};
 pub use platform::{HouseOptions, HousePlatform};
-pub use rect::{RectCm, SpanCm, Wall};
-pub use save::{SaveError, Saved, glb, gltf_from_wayword, navigation, save, semantic_glb, semantic_txt};
+pub use rect::{RectCm, SpanCm, WallSide};
+pub use save::{
+    HouseFiles, SaveError, encode_glb, gltf_from_wayword, navigation_json, save_house, semantic_glb, semantic_txt,
+};
 pub use scene::HouseScene;

@@ -4,7 +4,7 @@ use super::{
     catalogue::FurnitureKind,
     colour::Colour,
     leaf::OpenLeaf,
-    rect::{RectCm, SpanCm, Wall},
+    rect::{RectCm, SpanCm, WallSide},
 };
 use serde::{Deserialize, Serialize};
 
@@ -26,15 +26,15 @@ pub struct House {
     /// How many storeys it has: one or two.
     pub storeys: u32,
     /// All rooms, those of the ground floor first.
-    pub rooms: Vec<Room>,
+    pub rooms: Vec<HouseRoom>,
     /// Doors and doorways.
-    pub openings: Vec<Opening>,
+    pub openings: Vec<WallOpening>,
     /// Windows.
-    pub windows: Vec<Window>,
+    pub windows: Vec<HouseWindow>,
     /// The stairs, in houses with two storeys.
-    pub stairs: Option<Stairs>,
+    pub stairs: Option<HouseStairs>,
     /// All furniture, also what lies on floors or hangs on walls.
-    pub furniture: Vec<Furniture>,
+    pub furniture: Vec<FurniturePiece>,
 }
 
 /// What a room is for.
@@ -58,7 +58,7 @@ pub enum RoomKind {
 
 /// A room: a rectangle of floor with walls around it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Room {
+pub struct HouseRoom {
     /// What it is for.
     pub kind: RoomKind,
     /// The storey on which it lies, 0 at the ground; a staircase belongs to the lower storey.
@@ -91,7 +91,7 @@ pub enum FloorFinish {
 
 /// A hole in a wall through which one walks.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Opening {
+pub struct WallOpening {
     /// Its number among all objects of the house.
     pub id: u32,
     /// The room it belongs to.
@@ -105,7 +105,7 @@ pub struct Opening {
     /// Clear height, centimetres.
     pub height_cm: i32,
     /// What closes it.
-    pub leaf: Leaf,
+    pub leaf: DoorLeaf,
     /// Colour of the leaf.
     pub colour: Colour,
 }
@@ -113,7 +113,7 @@ pub struct Opening {
 /// What closes an opening.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Leaf {
+pub enum DoorLeaf {
     /// No leaf: a doorway.
     None,
     /// A door that is open into a room, hinged at the span's lower or upper end.
@@ -133,7 +133,7 @@ pub enum Leaf {
 
 /// A window in an outer wall.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Window {
+pub struct HouseWindow {
     /// Its number among all objects of the house.
     pub id: u32,
     /// The room it lights.
@@ -148,7 +148,7 @@ pub struct Window {
 
 /// Two flights with a landing between them: up along one half, back along the other.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Stairs {
+pub struct HouseStairs {
     /// Its number among all objects of the house.
     pub id: u32,
     /// Number of its handrail.
@@ -158,7 +158,7 @@ pub struct Stairs {
     /// Inner edges of its walls.
     pub well: RectCm,
     /// The side of the well at which both flights begin and end.
-    pub entry: Wall,
+    pub entry: WallSide,
     /// Whether the lower flight fills the half with the lower coordinates.
     pub lower_flight_low: bool,
     /// Depth of one flight from the entry to the landing, centimetres.
@@ -167,7 +167,7 @@ pub struct Stairs {
 
 /// A piece of furniture or decoration: on the floor, on a wall, on the ceiling or on another piece.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Furniture {
+pub struct FurniturePiece {
     /// Its number among all objects of the house.
     pub id: u32,
     /// What it is.
@@ -213,7 +213,7 @@ impl RoomKind {
     }
 }
 
-impl Room {
+impl HouseRoom {
     /// Its floor's height, centimetres.
     #[must_use]
     pub fn base_cm(&self) -> i32 {
@@ -222,33 +222,33 @@ impl Room {
 
     /// The area between its walls.
     #[must_use]
-    pub fn inner(&self) -> RectCm {
+    pub fn inner_area(&self) -> RectCm {
         self.outline.inset(HALF_WALL_CM)
     }
 }
 
-impl Opening {
+impl WallOpening {
     /// Whether one can walk through.
     #[must_use]
     pub fn is_passable(&self) -> bool {
-        matches!(self.leaf, Leaf::None | Leaf::Open { .. })
+        matches!(self.leaf, DoorLeaf::None | DoorLeaf::Open { .. })
     }
 
     /// Its name in plain words.
     #[must_use]
     pub fn word(&self) -> &'static str {
         match self.leaf {
-            Leaf::None => "doorway",
-            Leaf::Open { .. } => "door",
-            Leaf::Closed => "front door",
-            Leaf::Garage => "garage door",
+            DoorLeaf::None => "doorway",
+            DoorLeaf::Open { .. } => "door",
+            DoorLeaf::Closed => "front door",
+            DoorLeaf::Garage => "garage door",
         }
     }
 
     /// Squares of floor that together cover the open leaf; none if no leaf is open.
     #[must_use]
-    pub fn open_leaf(&self, rooms: &[Room]) -> Vec<RectCm> {
-        OpenLeaf::of(self, rooms).map_or_else(Vec::new, |leaf| leaf.footprint())
+    pub fn open_leaf(&self, rooms: &[HouseRoom]) -> Vec<RectCm> {
+        OpenLeaf::for_opening(self, rooms).map_or_else(Vec::new, |leaf| leaf.footprint())
     }
 }
 
@@ -256,8 +256,8 @@ impl House {
     /// The room in which a point lies, given the height of the floor under it (metres). A staircase counts on both
     /// storeys.
     #[must_use]
-    pub fn room_at(&self, x_m: f64, y_m: f64, floor_z_m: f64) -> Option<&Room> {
-        let holds = |room: &&Room| {
+    pub fn room_at(&self, x_m: f64, y_m: f64, floor_z_m: f64) -> Option<&HouseRoom> {
+        let holds = |room: &&HouseRoom| {
             let above_cm = floor_z_m * 100.0 - f64::from(room.base_cm());
             room.outline.holds_m(x_m, y_m) && (-20.0..f64::from(room.height_cm - 20)).contains(&above_cm)
         };

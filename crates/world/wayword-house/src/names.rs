@@ -4,20 +4,20 @@
 //! other walls.
 
 /// Before the seed: the name of the platform, and the version of the generator.
-const PREFIX: &str = "house2-";
+const SCENE_PREFIX: &str = "house2-";
 /// The prefix of earlier versions; this version cannot make their houses.
 const OLD_PREFIX: &str = "house-";
 
 /// The name of the house of a seed, as a scene and as the stem of its files.
 #[must_use]
 pub fn scene_name(seed: u64) -> String {
-    format!("{PREFIX}{seed}")
+    format!("{SCENE_PREFIX}{seed}")
 }
 
 /// The seed in a scene's name, if the name is written exactly as [`scene_name`] writes it.
 #[must_use]
 pub fn seed_of(scene: &str) -> Option<u64> {
-    seed_after(PREFIX, scene)
+    seed_after(SCENE_PREFIX, scene)
 }
 
 /// The seed in a name that an earlier version gave.

@@ -2,25 +2,25 @@
 
 use super::{
     graph::EYE_M,
-    home::{Home, unknown},
+    home::{PreparedHouse, unknown_scene_error},
     names::scene_name,
     sample,
 };
 use std::{collections::BTreeSet, sync::Arc};
 use wayword_core::{
-    DVec3, Depth, Frame, FromAbove, Gaze, ObjectId, Path, PathRequest, Platform, PlatformError, Recent, SceneId, View,
-    ViewpointGraph, ViewpointId, Way,
+    DVec3, DepthImage, Frame, FromAbove, GroundRoute, ObjectId, Path, PathRequest, Platform, PlatformError,
+    RecentCache, SceneId, View, ViewGaze, ViewpointGraph, ViewpointId,
 };
-use wayword_render::flat;
+use wayword_render::to_flat_gaze;
 
 /// How many houses are kept in memory; each takes about 20 MB.
-const READY: usize = 6;
+const MAX_READY_HOUSES: usize = 6;
 
 /// Homes from seeds: scene `house2-7` is the home of seed 7.
 #[derive(Debug)]
 pub struct HousePlatform {
     options: HouseOptions,
-    ready: Recent<SceneId, Home>,
+    ready: RecentCache<SceneId, PreparedHouse>,
 }
 
 /// The options of the platform.
@@ -46,7 +46,7 @@ impl HousePlatform {
     /// The platform with these options.
     #[must_use]
     pub fn new(options: HouseOptions) -> Self {
-        Self { options, ready: Recent::new(READY) }
+        Self { options, ready: RecentCache::new(MAX_READY_HOUSES) }
     }
 
     /// The scene of a seed.
@@ -55,17 +55,23 @@ impl HousePlatform {
     /// Never: every seed has a house. There is an error type only because making an id can fail.
     pub fn scene_of(seed: u64) -> Result<SceneId, PlatformError> {
         let name = scene_name(seed);
-        SceneId::new(name.clone()).map_err(|_| unknown(&name))
+        SceneId::new(name.clone()).map_err(|_| unknown_scene_error(&name))
     }
 
-    fn home(&self, scene: &SceneId) -> Result<Arc<Home>, PlatformError> {
-        self.ready.get_or_make(scene.clone(), || Home::build(scene))
+    fn ready_house(&self, scene: &SceneId) -> Result<Arc<PreparedHouse>, PlatformError> {
+        self.ready.get_or_make(scene.clone(), || PreparedHouse::for_scene(scene))
     }
 
-    fn seen(&self, scene: &SceneId, from: &Frame, gaze: Gaze, pictured: bool) -> Result<View, PlatformError> {
-        let home = self.home(scene)?;
-        home.check(from)?;
-        home.view(from.pose, flat(gaze), [self.options.width_px, self.options.height_px], pictured)
+    fn checked_view(
+        &self,
+        scene: &SceneId,
+        from: &Frame,
+        gaze: ViewGaze,
+        pictured: bool,
+    ) -> Result<View, PlatformError> {
+        let home = self.ready_house(scene)?;
+        home.check_within(from)?;
+        home.view_from(from.pose, to_flat_gaze(gaze), [self.options.width_px, self.options.height_px], pictured)
     }
 }
 
@@ -80,53 +86,53 @@ impl Platform for HousePlatform {
         "house"
     }
 
-    fn scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
+    fn list_scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
         let mut scenes = (0..self.options.scenes).map(Self::scene_of).collect::<Result<Vec<_>, _>>()?;
         scenes.sort();
         Ok(scenes)
     }
 
-    fn graph(&self, scene: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {
-        Ok(self.home(scene)?.graph.clone())
+    fn graph_for_scene(&self, scene: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {
+        Ok(self.ready_house(scene)?.graph.clone())
     }
 
     fn sample_path(&self, scene: &SceneId, request: &PathRequest, seed: u64) -> Result<Path, PlatformError> {
-        sample::path(scene, &*self.home(scene)?, request, seed, self.options.interval_m)
+        sample::sample_house_path(scene, &*self.ready_house(scene)?, request, seed, self.options.interval_m)
     }
 
-    fn look(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
-        self.seen(scene, from, gaze, true)
+    fn look_from(&self, scene: &SceneId, from: &Frame, gaze: ViewGaze) -> Result<View, PlatformError> {
+        self.checked_view(scene, from, gaze, true)
     }
 
-    fn look_without_picture(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
-        self.seen(scene, from, gaze, false)
+    fn look_without_picture(&self, scene: &SceneId, from: &Frame, gaze: ViewGaze) -> Result<View, PlatformError> {
+        self.checked_view(scene, from, gaze, false)
     }
 
-    fn depth(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<Option<Depth>, PlatformError> {
-        let home = self.home(scene)?;
-        home.check(from)?;
-        home.depth(from.pose, flat(gaze), [self.options.width_px, self.options.height_px]).map(Some)
+    fn view_depth(&self, scene: &SceneId, from: &Frame, gaze: ViewGaze) -> Result<Option<DepthImage>, PlatformError> {
+        let home = self.ready_house(scene)?;
+        home.check_within(from)?;
+        home.depth_from(from.pose, to_flat_gaze(gaze), [self.options.width_px, self.options.height_px]).map(Some)
     }
 
     fn look_down(&self, scene: &SceneId, level: u32) -> Result<Option<FromAbove>, PlatformError> {
-        let home = self.home(scene)?;
-        home.scene.look_down(&home.graph, level).map_err(|error| home.refused(&error))
+        let home = self.ready_house(scene)?;
+        home.scene.look_down(&home.graph, level).map_err(|error| home.not_drawn_error(&error))
     }
 
-    fn way(&self, scene: &SceneId, from: &Frame, to: &Frame) -> Result<Option<Way>, PlatformError> {
+    fn ground_route(&self, scene: &SceneId, from: &Frame, to: &Frame) -> Result<Option<GroundRoute>, PlatformError> {
         let feet = |frame: &Frame| frame.pose.position - DVec3::Z * EYE_M;
-        let way = self.home(scene)?.ground.geodesic(feet(from), feet(to)).ok();
-        Ok(way.map(|way| Way { corners: way.corners, length_m: way.length_m }))
+        let way = self.ready_house(scene)?.ground.shortest_route(feet(from), feet(to)).ok();
+        Ok(way.map(|way| GroundRoute { corners: way.corners, length_m: way.length_m }))
     }
 
     fn object_name(&self, scene: &SceneId, _: &Frame, object: &ObjectId) -> Result<Option<String>, PlatformError> {
-        let home = self.home(scene)?;
+        let home = self.ready_house(scene)?;
         let number: Option<u32> = object.as_str().parse().ok();
         Ok(number.and_then(|id| home.scene.objects.get(&id)).map(|object| object.name.clone()))
     }
 
     fn visible_from(&self, scene: &SceneId, object: &ObjectId) -> Result<Option<BTreeSet<ViewpointId>>, PlatformError> {
-        let home = self.home(scene)?;
+        let home = self.ready_house(scene)?;
         Ok(Some(home.seen_from()?.get(object).cloned().unwrap_or_default()))
     }
 }

@@ -20,7 +20,7 @@ pub struct RectCm {
 /// One of the four walls of a rectangle, named by its side; north is +y.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Wall {
+pub enum WallSide {
     /// +y.
     North,
     /// -x.
@@ -44,7 +44,7 @@ pub struct SpanCm {
     pub to: i32,
 }
 
-impl Wall {
+impl WallSide {
     /// All four, by quarter turns counter-clockwise from north.
     pub const ALL: [Self; 4] = [Self::North, Self::West, Self::South, Self::East];
 
@@ -88,7 +88,7 @@ impl SpanCm {
 
     /// The rectangle that reaches `depth` to both sides of it.
     #[must_use]
-    pub fn thickened(&self, depth: i32) -> RectCm {
+    pub fn thickened_by(&self, depth: i32) -> RectCm {
         if self.along_x {
             RectCm::new(self.from, self.at - depth, self.to, self.at + depth)
         } else {
@@ -162,21 +162,21 @@ impl RectCm {
 
     /// One of its edges.
     #[must_use]
-    pub fn edge(&self, wall: Wall) -> SpanCm {
+    pub fn edge_at(&self, wall: WallSide) -> SpanCm {
         let (at, from, to) = match wall {
-            Wall::North => (self.y1, self.x0, self.x1),
-            Wall::South => (self.y0, self.x0, self.x1),
-            Wall::West => (self.x0, self.y0, self.y1),
-            Wall::East => (self.x1, self.y0, self.y1),
+            WallSide::North => (self.y1, self.x0, self.x1),
+            WallSide::South => (self.y0, self.x0, self.x1),
+            WallSide::West => (self.x0, self.y0, self.y1),
+            WallSide::East => (self.x1, self.y0, self.y1),
         };
         SpanCm { along_x: wall.along_x(), at, from, to }
     }
 
     /// The stretch of wall that two rectangles share, and which wall of this one it lies on.
     #[must_use]
-    pub fn shared_edge(&self, other: &Self) -> Option<(Wall, SpanCm)> {
-        Wall::ALL.into_iter().find_map(|wall| {
-            let (mine, theirs) = (self.edge(wall), other.edge(wall.opposite()));
+    pub fn shared_edge(&self, other: &Self) -> Option<(WallSide, SpanCm)> {
+        WallSide::ALL.into_iter().find_map(|wall| {
+            let (mine, theirs) = (self.edge_at(wall), other.edge_at(wall.opposite()));
             let (from, to) = (mine.from.max(theirs.from), mine.to.min(theirs.to));
             (mine.at == theirs.at && from < to).then_some((wall, SpanCm { from, to, ..mine }))
         })
@@ -184,9 +184,9 @@ impl RectCm {
 
     /// The wall of this rectangle on which a span lies, if it lies on one.
     #[must_use]
-    pub fn wall_of(&self, span: &SpanCm) -> Option<Wall> {
-        Wall::ALL.into_iter().find(|wall| {
-            let edge = self.edge(*wall);
+    pub fn wall_of(&self, span: &SpanCm) -> Option<WallSide> {
+        WallSide::ALL.into_iter().find(|wall| {
+            let edge = self.edge_at(*wall);
             edge.along_x == span.along_x && edge.at == span.at && edge.from <= span.from && span.to <= edge.to
         })
     }
@@ -200,18 +200,18 @@ mod tests {
     fn neighbours_share_the_stretch_where_they_touch() {
         let (a, b) = (RectCm::new(0, 0, 400, 300), RectCm::new(100, 300, 600, 500));
         let (wall, span) = a.shared_edge(&b).unwrap();
-        assert_eq!(wall, Wall::North);
+        assert_eq!(wall, WallSide::North);
         assert_eq!((span.at, span.from, span.to), (300, 100, 400));
-        assert_eq!(b.shared_edge(&a).unwrap().0, Wall::South);
+        assert_eq!(b.shared_edge(&a).unwrap().0, WallSide::South);
         assert_eq!(a.shared_edge(&RectCm::new(500, 0, 600, 100)), None);
-        assert_eq!(a.wall_of(&span), Some(Wall::North));
+        assert_eq!(a.wall_of(&span), Some(WallSide::North));
     }
 
     #[test]
     fn a_back_at_a_wall_faces_away_from_it() {
         // A quarter turn counter-clockwise takes the back from north (+y) to west (-x).
-        assert_eq!(Wall::West.quarter_turns(), 1);
-        assert_eq!(Wall::West.inward(), (1, 0));
-        assert_eq!(Wall::East.opposite(), Wall::West);
+        assert_eq!(WallSide::West.quarter_turns(), 1);
+        assert_eq!(WallSide::West.inward(), (1, 0));
+        assert_eq!(WallSide::East.opposite(), WallSide::West);
     }
 }

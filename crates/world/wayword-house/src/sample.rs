@@ -1,11 +1,12 @@
 //! Draws random paths through a house: a shortest way between two viewpoints, with frames along it and a target at its
 //! end.
 
-use super::{dice::Dice, graph::EYE_M, ground::Way, home::Home, objects::Role};
+use super::{dice::HouseDice, graph::EYE_M, ground::HouseRoute, home::PreparedHouse, objects::ObjectRole};
 use wayword_core::{
-    DVec3, Frame, Label, Path, PathRequest, PlatformError, Pose, SceneId, Target, path::Stop, seed::derive,
+    DVec3, Frame, ObjectLabel, Path, PathRequest, PathTarget, PlatformError, Pose, SceneId, path::PathStop,
+    seed::derive_seed,
 };
-use wayword_world::wander::{Wander, no_such_walk, wander};
+use wayword_world::wander::{OpenGroundScene, no_such_walk, sample_open_path};
 
 /// A corner nearer than this to the frame before it gets no frame of its own, metres.
 const CROWDED_M: f64 = 0.4;
@@ -18,9 +19,9 @@ const TARGET_REACH_M: f64 = 2.5;
 ///
 /// Both ends are the places of random viewpoints. The path does not end in an opening, because a walker there is in no
 /// room. The target is in the room where the path ends. The first frame looks along the first move.
-pub(super) fn path(
+pub(super) fn sample_house_path(
     scene: &SceneId,
-    home: &Home,
+    home: &PreparedHouse,
     request: &PathRequest,
     seed: u64,
     interval_m: f64,
@@ -28,46 +29,46 @@ pub(super) fn path(
     if home.longest_m() * GEODESIC_EXCESS < *request.length_m.start() {
         return Err(no_such_walk(scene, request));
     }
-    let dice = Dice::new(derive(seed, &["house path"]), &[scene.as_str()]);
+    let dice = HouseDice::new(derive_seed(seed, &["house path"]), &[scene.as_str()]);
     let places = home.standing_places();
     let goals = places.iter().copied().filter(|place| !home.is_in_opening(*place + DVec3::Z * EYE_M)).collect();
-    let mut walker = Walker { home, places, goals, dice, interval_m };
-    wander(&mut walker, scene, request, seed)?.ok_or_else(|| no_such_walk(scene, request))
+    let mut walker = HouseWalker { home, places, goals, dice, interval_m };
+    sample_open_path(&mut walker, scene, request, seed)?.ok_or_else(|| no_such_walk(scene, request))
 }
 
 /// Chooses random paths through a house.
-struct Walker<'a> {
-    home: &'a Home,
+struct HouseWalker<'a> {
+    home: &'a PreparedHouse,
     places: Vec<DVec3>,
     /// The places at which a path may end.
     goals: Vec<DVec3>,
-    dice: Dice,
+    dice: HouseDice,
     interval_m: f64,
 }
 
-impl Wander for Walker<'_> {
-    fn ends(&mut self) -> Option<(DVec3, DVec3)> {
+impl OpenGroundScene for HouseWalker<'_> {
+    fn random_ends(&mut self) -> Option<(DVec3, DVec3)> {
         let mut one_of = |places: &[DVec3]| places[self.dice.index(places.len())];
         (!self.goals.is_empty()).then(|| (one_of(&self.places), one_of(&self.goals)))
     }
 
-    fn stops(&mut self, from: DVec3, to: DVec3) -> Result<Option<Vec<Stop>>, PlatformError> {
-        Ok(self.home.ground.geodesic(from, to).ok().map(|way| stops(&way, self.interval_m)))
+    fn stops_between(&mut self, from: DVec3, to: DVec3) -> Result<Option<Vec<PathStop>>, PlatformError> {
+        Ok(self.home.ground.shortest_route(from, to).ok().map(|way| stops_along(&way, self.interval_m)))
     }
 
-    fn target(&mut self, last: &Frame) -> Result<Option<Target>, PlatformError> {
-        target(self.home, &mut self.dice, last.pose)
+    fn target_at(&mut self, last: &Frame) -> Result<Option<PathTarget>, PlatformError> {
+        choose_target(self.home, &mut self.dice, last.pose)
     }
 }
 
 /// The places of the frames along a way: at both ends, at corners, and between them at equal distances of at most
 /// `interval_m`.
-fn stops(way: &Way, interval_m: f64) -> Vec<Stop> {
+fn stops_along(way: &HouseRoute, interval_m: f64) -> Vec<PathStop> {
     let interval_m = if interval_m.is_finite() { interval_m.max(0.1) } else { 1.0 };
     let mut marks = vec![0];
     let last = way.places.len() - 1;
     for corner in &way.corners {
-        let at = nearest(&way.places, *corner);
+        let at = nearest_index(&way.places, *corner);
         let before = marks.last().copied().unwrap_or(0);
         let far = |a: usize, b: usize| way.places[a].distance(way.places[b]) >= CROWDED_M;
         if at > before && far(at, before) && far(at, last) {
@@ -83,43 +84,48 @@ fn stops(way: &Way, interval_m: f64) -> Vec<Stop> {
         chosen.extend((1..=count).map(|step| leg[0] + (leg[1] - leg[0]) * step / count));
     }
     chosen.dedup();
-    chosen.into_iter().map(|at| stop(way.places[at])).collect()
+    chosen.into_iter().map(|at| stop_at(way.places[at])).collect()
 }
 
-fn nearest(places: &[DVec3], to: DVec3) -> usize {
+fn nearest_index(places: &[DVec3], to: DVec3) -> usize {
     let off = |at: &usize| places[*at].distance_squared(to);
     (0..places.len()).min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(0)
 }
 
-fn stop(place: DVec3) -> Stop {
+fn stop_at(place: DVec3) -> PathStop {
     let half_storey_m = f64::from(super::model::STOREY_CM) / 200.0;
-    Stop { position: place + DVec3::Z * EYE_M, viewpoint: None, level: Some(1 + u32::from(place.z > half_storey_m)) }
+    PathStop {
+        position: place + DVec3::Z * EYE_M,
+        viewpoint: None,
+        level: Some(1 + u32::from(place.z > half_storey_m)),
+    }
 }
 
 /// Chooses a target among the pieces of furniture in reach. A piece without a namesake in sight comes first; otherwise
 /// one that differs in colour from its namesakes.
-fn target(home: &Home, dice: &mut Dice, last: Pose) -> Result<Option<Target>, PlatformError> {
+fn choose_target(home: &PreparedHouse, dice: &mut HouseDice, last: Pose) -> Result<Option<PathTarget>, PlatformError> {
     let labels = home.labels_around(last)?;
-    let namesakes = |label: &Label| labels.iter().filter(|other| other.name == label.name).count() - 1;
-    let twins = |label: &Label| {
+    let namesakes = |label: &ObjectLabel| labels.iter().filter(|other| other.name == label.name).count() - 1;
+    let twins = |label: &ObjectLabel| {
         labels.iter().filter(|other| other.name == label.name && other.colour == label.colour).count() - 1
     };
     let feet = last.position - DVec3::Z * EYE_M;
     let room = home.scene.house.room_at(feet.x, feet.y, feet.z);
-    let stands_here = |label: &&Label| {
+    let stands_here = |label: &&ObjectLabel| {
         let id: Option<u32> = label.object.as_str().parse().ok();
-        let object = id.and_then(|id| home.scene.objects.get(&id)).filter(|object| object.role == Role::Furniture);
+        let object =
+            id.and_then(|id| home.scene.objects.get(&id)).filter(|object| object.role == ObjectRole::Furniture);
         object.is_some_and(|object| {
             home.scene.house.rooms.get(object.room) == room && off_m(feet, object.bounds_m) <= TARGET_REACH_M
         })
     };
-    let is_task_for = |label: &&Label| label.name != "ceiling light" && label.name != "curtain";
-    let near: Vec<&Label> = labels.iter().filter(stands_here).filter(is_task_for).collect();
-    let alone: Vec<&Label> = near.iter().copied().filter(|label| namesakes(label) == 0).collect();
-    let by_colour: Vec<&Label> = near.iter().copied().filter(|label| twins(label) == 0).collect();
+    let is_task_for = |label: &&ObjectLabel| label.name != "ceiling light" && label.name != "curtain";
+    let near: Vec<&ObjectLabel> = labels.iter().filter(stands_here).filter(is_task_for).collect();
+    let alone: Vec<&ObjectLabel> = near.iter().copied().filter(|label| namesakes(label) == 0).collect();
+    let by_colour: Vec<&ObjectLabel> = near.iter().copied().filter(|label| twins(label) == 0).collect();
     let likely = if alone.is_empty() { by_colour } else { alone };
     let chosen = (!likely.is_empty()).then(|| likely[dice.index(likely.len())]);
-    Ok(chosen.map(|label| Target {
+    Ok(chosen.map(|label| PathTarget {
         object: label.object.clone(),
         name: label.name.clone(),
         told_by: Vec::new(),

@@ -1,14 +1,14 @@
 //! The geometry of the stairs: two flights side by side, and a landing at their far end.
 
 use super::{
-    model::{STOREY_CM, Stairs},
-    rect::{RectCm, Wall},
+    model::{HouseStairs, STOREY_CM},
+    rect::{RectCm, WallSide},
 };
 
 /// Gap between the flights, for the railing, centimetres.
 const GAP_CM: i32 = 12;
 
-impl Stairs {
+impl HouseStairs {
     /// Width of the well along its entry, centimetres.
     #[must_use]
     pub fn width_cm(&self) -> i32 {
@@ -30,13 +30,13 @@ impl Stairs {
 
     /// The rectangle between two places along the entry and two depths, centimetres.
     #[must_use]
-    pub fn across(&self, from: i32, to: i32, deep: [i32; 2]) -> RectCm {
+    pub fn rect_across(&self, from: i32, to: i32, deep: [i32; 2]) -> RectCm {
         let well = &self.well;
         match self.entry {
-            Wall::South => RectCm::new(well.x0 + from, well.y0 + deep[0], well.x0 + to, well.y0 + deep[1]),
-            Wall::North => RectCm::new(well.x0 + from, well.y1 - deep[1], well.x0 + to, well.y1 - deep[0]),
-            Wall::West => RectCm::new(well.x0 + deep[0], well.y0 + from, well.x0 + deep[1], well.y0 + to),
-            Wall::East => RectCm::new(well.x1 - deep[1], well.y0 + from, well.x1 - deep[0], well.y0 + to),
+            WallSide::South => RectCm::new(well.x0 + from, well.y0 + deep[0], well.x0 + to, well.y0 + deep[1]),
+            WallSide::North => RectCm::new(well.x0 + from, well.y1 - deep[1], well.x0 + to, well.y1 - deep[0]),
+            WallSide::West => RectCm::new(well.x0 + deep[0], well.y0 + from, well.x0 + deep[1], well.y0 + to),
+            WallSide::East => RectCm::new(well.x1 - deep[1], well.y0 + from, well.x1 - deep[0], well.y0 + to),
         }
     }
 
@@ -46,10 +46,10 @@ impl Stairs {
         let (x0, y0) = (f64::from(well.x0) / 100.0, f64::from(well.y0) / 100.0);
         let (x1, y1) = (f64::from(well.x1) / 100.0, f64::from(well.y1) / 100.0);
         match self.entry {
-            Wall::South => (x_m - x0, y_m - y0),
-            Wall::North => (x_m - x0, y1 - y_m),
-            Wall::West => (y_m - y0, x_m - x0),
-            Wall::East => (y_m - y0, x1 - x_m),
+            WallSide::South => (x_m - x0, y_m - y0),
+            WallSide::North => (x_m - x0, y1 - y_m),
+            WallSide::West => (y_m - y0, x_m - x0),
+            WallSide::East => (y_m - y0, x1 - x_m),
         }
     }
 
@@ -76,13 +76,14 @@ mod tests {
 
     #[test]
     fn one_climbs_along_the_lower_flight_and_on_along_the_upper() {
-        for entry in Wall::ALL {
+        for entry in WallSide::ALL {
             for lower_flight_low in [true, false] {
                 let well = RectCm::new(100, 200, 320, 420);
-                let stairs = Stairs { id: 1, railing_id: 2, room: 0, well, entry, lower_flight_low, flight_cm: 150 };
+                let stairs =
+                    HouseStairs { id: 1, railing_id: 2, room: 0, well, entry, lower_flight_low, flight_cm: 150 };
                 let height = |lower: bool, depth: i32| {
                     let (from, to) = stairs.flight_across(lower);
-                    let (x, y) = stairs.across((from + to) / 2, (from + to) / 2, [depth, depth]).centre();
+                    let (x, y) = stairs.rect_across((from + to) / 2, (from + to) / 2, [depth, depth]).centre();
                     stairs.height_at(f64::from(x) / 100.0, f64::from(y) / 100.0)
                 };
                 assert!(height(true, 0) < 0.01 && (height(false, 0) - 3.0).abs() < 0.01);

@@ -1,10 +1,10 @@
 //! The surface of a mesh: a pattern in a colour, before it becomes a texture and a material.
 
-use super::{colour::Colour, outlook::Outlook};
+use super::{colour::Colour, outlook::WindowOutlook};
 
 /// A picture that is laid on surfaces. It is light grey if the surface provides the colour.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Pattern {
+pub(crate) enum SurfacePattern {
     Plain,
     Wood,
     Planks,
@@ -19,9 +19,9 @@ pub(crate) enum Pattern {
     Brick,
     Books,
     /// The view out of a window, from the ground floor.
-    Outside(Outlook),
+    Outside(WindowOutlook),
     /// The same from upstairs.
-    FromAbove(Outlook),
+    FromAbove(WindowOutlook),
     Reflection,
     Ornament,
     Wicker,
@@ -35,8 +35,8 @@ pub(crate) enum Pattern {
 
 /// A pattern in a colour.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) struct Surface {
-    pub(crate) pattern: Pattern,
+pub(crate) struct HouseSurface {
+    pub(crate) pattern: SurfacePattern,
     /// Gamma-encoded sRGB factor.
     pub(crate) rgb: [u8; 3],
     /// Whether it shines by itself, so that no light or shadow changes it.
@@ -46,7 +46,7 @@ pub(crate) struct Surface {
 /// How many paintings there are.
 pub(crate) const ART_COUNT: u8 = 10;
 
-impl Pattern {
+impl SurfacePattern {
     /// All of them, in the order of their textures.
     pub(crate) const ALL: [Self; 45] = [
         Self::Plain,
@@ -62,20 +62,20 @@ impl Pattern {
         Self::Leaves,
         Self::Brick,
         Self::Books,
-        Self::Outside(Outlook::Street),
-        Self::Outside(Outlook::Garden),
-        Self::Outside(Outlook::Yard),
-        Self::Outside(Outlook::Woods),
-        Self::Outside(Outlook::Hills),
-        Self::Outside(Outlook::Sea),
-        Self::Outside(Outlook::Meadow),
-        Self::FromAbove(Outlook::Street),
-        Self::FromAbove(Outlook::Garden),
-        Self::FromAbove(Outlook::Yard),
-        Self::FromAbove(Outlook::Woods),
-        Self::FromAbove(Outlook::Hills),
-        Self::FromAbove(Outlook::Sea),
-        Self::FromAbove(Outlook::Meadow),
+        Self::Outside(WindowOutlook::Street),
+        Self::Outside(WindowOutlook::Garden),
+        Self::Outside(WindowOutlook::Yard),
+        Self::Outside(WindowOutlook::Woods),
+        Self::Outside(WindowOutlook::Hills),
+        Self::Outside(WindowOutlook::Sea),
+        Self::Outside(WindowOutlook::Meadow),
+        Self::FromAbove(WindowOutlook::Street),
+        Self::FromAbove(WindowOutlook::Garden),
+        Self::FromAbove(WindowOutlook::Yard),
+        Self::FromAbove(WindowOutlook::Woods),
+        Self::FromAbove(WindowOutlook::Hills),
+        Self::FromAbove(WindowOutlook::Sea),
+        Self::FromAbove(WindowOutlook::Meadow),
         Self::Reflection,
         Self::Ornament,
         Self::Wicker,
@@ -110,18 +110,18 @@ impl Pattern {
     }
 }
 
-impl Surface {
-    pub(crate) fn new(pattern: Pattern, rgb: [u8; 3]) -> Self {
+impl HouseSurface {
+    pub(crate) fn new(pattern: SurfacePattern, rgb: [u8; 3]) -> Self {
         Self { pattern, rgb, glows: false }
     }
 
     /// One colour without a picture.
-    pub(crate) fn plain(rgb: [u8; 3]) -> Self {
-        Self::new(Pattern::Plain, rgb)
+    pub(crate) fn from_rgb(rgb: [u8; 3]) -> Self {
+        Self::new(SurfacePattern::Plain, rgb)
     }
 
     /// A picture in its own colours.
-    pub(crate) fn picture(pattern: Pattern) -> Self {
+    pub(crate) fn for_picture(pattern: SurfacePattern) -> Self {
         Self::new(pattern, [255; 3])
     }
 
@@ -130,21 +130,21 @@ impl Surface {
         Self { glows: true, ..self }
     }
 
-    pub(crate) fn wood(colour: Colour) -> Self {
-        let pattern = if colour.shows_grain() { Pattern::Wood } else { Pattern::Plain };
+    pub(crate) fn for_wood(colour: Colour) -> Self {
+        let pattern = if colour.shows_grain() { SurfacePattern::Wood } else { SurfacePattern::Plain };
         Self::new(pattern, colour.rgb())
     }
 
-    pub(crate) fn fabric(colour: Colour) -> Self {
-        Self::new(Pattern::Fabric, colour.rgb())
+    pub(crate) fn for_fabric(colour: Colour) -> Self {
+        Self::new(SurfacePattern::Fabric, colour.rgb())
     }
 
-    pub(crate) fn metal(colour: Colour) -> Self {
-        Self::new(Pattern::Brushed, colour.rgb())
+    pub(crate) fn for_metal(colour: Colour) -> Self {
+        Self::new(SurfacePattern::Brushed, colour.rgb())
     }
 
     /// The same in a darker (below 1) or lighter shade.
-    pub(crate) fn shade(self, factor: f32) -> Self {
+    pub(crate) fn shaded_by(self, factor: f32) -> Self {
         Self { rgb: self.rgb.map(|channel| (f32::from(channel) * factor).clamp(0.0, 255.0) as u8), ..self }
     }
 }

@@ -10,7 +10,7 @@ const MAX_SIDE_PX: u32 = 8192;
 ///
 /// The caller knows the size. A file of another size is refused before it is decoded, so that its header cannot make
 /// the program allocate more memory than the picture needs.
-pub(crate) fn rgb(file: &[u8], format: ImageFormat, (width, height): (u32, u32)) -> Result<Vec<u8>, String> {
+pub(crate) fn decode_rgb(file: &[u8], format: ImageFormat, (width, height): (u32, u32)) -> Result<Vec<u8>, String> {
     if !(1..=MAX_SIDE_PX).contains(&width) || !(1..=MAX_SIDE_PX).contains(&height) {
         return Err(format!("a size of {width} x {height} pixels: each side must lie in 1..={MAX_SIDE_PX}"));
     }
@@ -42,10 +42,10 @@ mod tests {
 
     #[test]
     fn rgb_accepts_only_a_whole_picture_of_the_announced_size() {
-        assert_eq!(rgb(&png(2, 1), ImageFormat::Png, (2, 1)), Ok(vec![1, 2, 3, 1, 2, 3]));
-        assert!(rgb(&png(1, 1), ImageFormat::Png, (2, 1)).unwrap_err().contains("expected 2 x 1"));
-        assert!(rgb(&png(300, 1), ImageFormat::Png, (2, 1)).is_err());
-        assert!(rgb(&png(2, 1)[..40], ImageFormat::Png, (2, 1)).is_err());
-        assert!(rgb(b"", ImageFormat::Png, (0, 1)).unwrap_err().contains("0 x 1"));
+        assert_eq!(decode_rgb(&png(2, 1), ImageFormat::Png, (2, 1)), Ok(vec![1, 2, 3, 1, 2, 3]));
+        assert!(decode_rgb(&png(1, 1), ImageFormat::Png, (2, 1)).unwrap_err().contains("expected 2 x 1"));
+        assert!(decode_rgb(&png(300, 1), ImageFormat::Png, (2, 1)).is_err());
+        assert!(decode_rgb(&png(2, 1)[..40], ImageFormat::Png, (2, 1)).is_err());
+        assert!(decode_rgb(b"", ImageFormat::Png, (0, 1)).unwrap_err().contains("0 x 1"));
     }
 }

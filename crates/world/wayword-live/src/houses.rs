@@ -2,11 +2,11 @@
 
 use std::{collections::BTreeSet, fmt};
 use thiserror::Error;
-use wayword_house::{generate, scene_name};
+use wayword_house::{generate_house, scene_name};
 
 /// Generated houses with one storey, in the order in which a stand-in shows them.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Houses(Vec<u64>);
+pub struct StandInHouses(Vec<u64>);
 
 /// Why houses cannot be shown.
 #[derive(Debug, Error, PartialEq, Eq)]
@@ -46,16 +46,16 @@ impl fmt::Display for ShownAs {
 }
 
 fn has_one_storey(seed: &u64) -> bool {
-    generate(*seed).storeys == 1
+    generate_house(*seed).storeys == 1
 }
 
-impl Houses {
+impl StandInHouses {
     /// The houses of these seeds.
     ///
     /// # Errors
     /// When the list is empty, names a house twice, or contains a house with several storeys: VirtualHome's homes and
     /// ThreeDWorld's floor plans have no stairs.
-    pub fn of(seeds: Vec<u64>) -> Result<Self, NotShown> {
+    pub fn from_seeds(seeds: Vec<u64>) -> Result<Self, NotShown> {
         let mut met = BTreeSet::new();
         if let Some(seed) = seeds.iter().find(|seed| !met.insert(**seed)) {
             return Err(NotShown::Twice(*seed));
@@ -96,13 +96,13 @@ mod tests {
 
     #[test]
     fn houses_with_stairs_are_refused_and_others_have_scenes_in_order() {
-        let seeds = Houses::with_one_storey(0, 2).seeds().to_vec();
+        let seeds = StandInHouses::with_one_storey(0, 2).seeds().to_vec();
         assert!(seeds.iter().all(has_one_storey) && seeds.len() == 2);
         let tall = (0..).find(|seed| !has_one_storey(seed)).unwrap();
-        assert_eq!(Houses::of(vec![seeds[0], tall]), Err(NotShown::TwoStoreys(tall)));
-        assert_eq!(Houses::of(vec![seeds[0]; 2]), Err(NotShown::Twice(seeds[0])));
-        assert_eq!(Houses::of(Vec::new()), Err(NotShown::None));
-        let houses = Houses::of(seeds.clone()).unwrap();
+        assert_eq!(StandInHouses::from_seeds(vec![seeds[0], tall]), Err(NotShown::TwoStoreys(tall)));
+        assert_eq!(StandInHouses::from_seeds(vec![seeds[0]; 2]), Err(NotShown::Twice(seeds[0])));
+        assert_eq!(StandInHouses::from_seeds(Vec::new()), Err(NotShown::None));
+        let houses = StandInHouses::from_seeds(seeds.clone()).unwrap();
         let scenes = |count: usize| (0..count).map(|n| format!("home_{n}")).collect();
         let shown: Vec<String> = houses.shown_as(scenes(3)).unwrap().iter().map(ToString::to_string).collect();
         assert_eq!(shown, [format!("house2-{}=home_0", seeds[0]), format!("house2-{}=home_1", seeds[1])]);

@@ -1,5 +1,5 @@
 //! Platforms over simulators that run as separate programs: ThreeDWorld's build ([`tdw`]) and VirtualHome's executable
-//! ([`virtualhome`]). Wayword talks to them over their own sockets. [`Live`] holds the code that both share.
+//! ([`virtualhome`]). Wayword talks to them over their own sockets. [`LivePlatform`] holds the code that both share.
 //!
 //! Bytes that come over a socket are not trusted. Sizes are checked before memory is allocated. Where bytes cannot be
 //! read, the error names the expected content and the position.
@@ -16,5 +16,5 @@ pub mod virtualhome;
 mod walk;
 
 #[cfg(feature = "stand-in")]
-pub use houses::{Houses, NotShown, ShownAs};
-pub use live::{Live, Pictures};
+pub use houses::{NotShown, ShownAs, StandInHouses};
+pub use live::{LivePictureOptions, LivePlatform};

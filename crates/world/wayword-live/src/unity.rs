@@ -52,7 +52,7 @@ mod tests {
         fn a_headings_rotation_looks_along_it(rad in 0.0..std::f64::consts::TAU) {
             let heading = Heading::new(rad).unwrap();
             let forward = wayword_forward_from_unity_rotation(unity_rotation_from_heading(heading));
-            prop_assert!(forward.distance(heading.direction()) < 1e-9);
+            prop_assert!(forward.distance(heading.unit_vector()) < 1e-9);
         }
     }
 }

@@ -7,7 +7,7 @@ use wayword_core::{DVec3, Heading};
 /// The direction that is up in the world of a recording's poses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub(crate) enum World {
+pub(crate) enum WorldUpAxis {
     /// z up, as in ROS (REP 103) and most trackers.
     ZUp,
     /// y up, as in ARKit and OpenGL.
@@ -19,7 +19,7 @@ pub(crate) enum World {
 /// The body to which the orientation of a pose belongs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub(crate) enum Body {
+pub(crate) enum PoseBody {
     /// A robot: x ahead, y left, z up (REP 103).
     Robot,
     /// A camera's optical frame: z ahead, x right, y down (REP 103; TUM RGB-D).
@@ -30,72 +30,72 @@ pub(crate) enum Body {
 
 /// The conventions by which the poses of a recording are read.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Axes {
-    pub(crate) world: World,
-    pub(crate) body: Body,
+pub(crate) struct PoseAxes {
+    pub(crate) world: WorldUpAxis,
+    pub(crate) body: PoseBody,
     /// Angle from the direction ahead of `body` to the camera's view direction, clockwise, radians.
     pub(crate) mount_rad: f64,
 }
 
-impl Axes {
+impl PoseAxes {
     /// The axes of a body in a world with z up.
-    pub(crate) const fn of(body: Body) -> Self {
-        Self { world: World::ZUp, body, mount_rad: 0.0 }
+    pub(crate) const fn for_body(body: PoseBody) -> Self {
+        Self { world: WorldUpAxis::ZUp, body, mount_rad: 0.0 }
     }
 
     /// Turns a recorded position or direction into Wayword's frame.
     pub(crate) fn wayword_from_recorded(self, recorded: DVec3) -> DVec3 {
         let DVec3 { x, y, z } = recorded;
         match self.world {
-            World::ZUp => recorded,
-            World::YUp => DVec3::new(x, -z, y),
-            World::YDown => DVec3::new(x, z, -y),
+            WorldUpAxis::ZUp => recorded,
+            WorldUpAxis::YUp => DVec3::new(x, -z, y),
+            WorldUpAxis::YDown => DVec3::new(x, z, -y),
         }
     }
 
     /// The camera's heading in Wayword's frame by a quaternion (x, y, z, w); `None` if the camera looks straight up or down,
     /// or the quaternion is invalid.
-    pub(crate) fn heading(self, recorded_from_body: [f64; 4]) -> Option<Heading> {
-        self.heading_along(rotated(recorded_from_body, self.ahead())?)
+    pub(crate) fn heading_by_quaternion(self, recorded_from_body: [f64; 4]) -> Option<Heading> {
+        self.heading_along(rotate_vector(recorded_from_body, self.body_ahead())?)
     }
 
-    /// As [`Axes::heading`], by a rotation's columns.
+    /// As [`PoseAxes::heading_by_quaternion`], by a rotation's columns.
     pub(crate) fn heading_by_columns(self, recorded_from_body: [DVec3; 3]) -> Option<Heading> {
         let [x, y, z] = recorded_from_body;
-        let ahead = self.ahead();
+        let ahead = self.body_ahead();
         self.heading_along(x * ahead.x + y * ahead.y + z * ahead.z)
     }
 
-    /// As [`Axes::heading`], by a yaw: radians counter-clockwise from the recorded +x, as in ROS.
+    /// As [`PoseAxes::heading_by_quaternion`], by a yaw: radians counter-clockwise from the recorded +x, as in ROS.
     pub(crate) fn heading_by_yaw(self, yaw_rad: f64) -> Option<Heading> {
         Heading::new(FRAC_PI_2 - yaw_rad + self.mount_rad).ok()
     }
 
     /// The body's up direction, in its own frame.
-    pub(crate) fn above(self) -> DVec3 {
+    pub(crate) fn body_up(self) -> DVec3 {
         match self.body {
-            Body::Robot => DVec3::Z,
-            Body::Optical => DVec3::NEG_Y,
-            Body::OpenGl => DVec3::Y,
+            PoseBody::Robot => DVec3::Z,
+            PoseBody::Optical => DVec3::NEG_Y,
+            PoseBody::OpenGl => DVec3::Y,
         }
     }
 
     /// The body's direction ahead, in its own frame.
-    pub(crate) fn ahead(self) -> DVec3 {
+    pub(crate) fn body_ahead(self) -> DVec3 {
         match self.body {
-            Body::Robot => DVec3::X,
-            Body::Optical => DVec3::Z,
-            Body::OpenGl => DVec3::NEG_Z,
+            PoseBody::Robot => DVec3::X,
+            PoseBody::Optical => DVec3::Z,
+            PoseBody::OpenGl => DVec3::NEG_Z,
         }
     }
 
     fn heading_along(self, recorded: DVec3) -> Option<Heading> {
         let heading = Heading::towards(DVec3::ZERO, self.wayword_from_recorded(recorded))?;
-        Some(heading.turned(self.mount_rad))
+        Some(heading.turned_by(self.mount_rad))
     }
 }
 
-impl World {
+impl WorldUpAxis {
     /// Its name in `recording.toml`.
     pub(crate) const fn name(self) -> &'static str {
         match self {
@@ -106,7 +106,7 @@ impl World {
     }
 }
 
-impl Body {
+impl PoseBody {
     /// Its name in `recording.toml`.
     pub(crate) const fn name(self) -> &'static str {
         match self {
@@ -118,12 +118,16 @@ impl Body {
 }
 
 /// The columns of the rotation that a quaternion (x, y, z, w) describes; `None` where the quaternion is invalid.
-pub(crate) fn columns(quaternion: [f64; 4]) -> Option<[DVec3; 3]> {
-    Some([rotated(quaternion, DVec3::X)?, rotated(quaternion, DVec3::Y)?, rotated(quaternion, DVec3::Z)?])
+pub(crate) fn rotation_columns(quaternion: [f64; 4]) -> Option<[DVec3; 3]> {
+    Some([
+        rotate_vector(quaternion, DVec3::X)?,
+        rotate_vector(quaternion, DVec3::Y)?,
+        rotate_vector(quaternion, DVec3::Z)?,
+    ])
 }
 
 /// A vector turned by a quaternion (x, y, z, w), which need not have length 1.
-fn rotated([x, y, z, w]: [f64; 4], vector: DVec3) -> Option<DVec3> {
+fn rotate_vector([x, y, z, w]: [f64; 4], vector: DVec3) -> Option<DVec3> {
     let length = libm::sqrt(x * x + y * y + z * z + w * w);
     if !(length.is_finite() && length > 1e-6) {
         return None;
@@ -138,17 +142,17 @@ mod tests {
     use super::*;
     use std::f64::consts::FRAC_1_SQRT_2;
 
-    fn deg(axes: Axes, quaternion: [f64; 4]) -> f64 {
-        axes.heading(quaternion).unwrap().deg().round()
+    fn deg(axes: PoseAxes, quaternion: [f64; 4]) -> f64 {
+        axes.heading_by_quaternion(quaternion).unwrap().deg().round()
     }
 
     #[test]
     fn a_robot_without_rotation_looks_along_x_which_is_east() {
-        assert_eq!(deg(Axes::of(Body::Robot), [0.0, 0.0, 0.0, 1.0]), 90.0);
+        assert_eq!(deg(PoseAxes::for_body(PoseBody::Robot), [0.0, 0.0, 0.0, 1.0]), 90.0);
         // A quarter counter-clockwise about z: along y, which is north.
         let left = [0.0, 0.0, FRAC_1_SQRT_2, FRAC_1_SQRT_2];
-        assert_eq!(deg(Axes::of(Body::Robot), left) % 360.0, 0.0);
-        let sideways = Axes { mount_rad: 90_f64.to_radians(), ..Axes::of(Body::Robot) };
+        assert_eq!(deg(PoseAxes::for_body(PoseBody::Robot), left) % 360.0, 0.0);
+        let sideways = PoseAxes { mount_rad: 90_f64.to_radians(), ..PoseAxes::for_body(PoseBody::Robot) };
         assert_eq!(deg(sideways, left), 90.0);
     }
 
@@ -156,15 +160,15 @@ mod tests {
     fn an_optical_frame_that_lies_like_the_robot_looks_the_same_way() {
         // optical from robot: x right = -y, y down = -z, z ahead = x.
         let optical = [-0.5, 0.5, -0.5, 0.5];
-        assert_eq!(deg(Axes::of(Body::Optical), optical), 90.0);
+        assert_eq!(deg(PoseAxes::for_body(PoseBody::Optical), optical), 90.0);
     }
 
     #[test]
     fn a_camera_of_a_world_with_y_up_looks_north_without_rotation() {
-        let axes = Axes { world: World::YUp, ..Axes::of(Body::OpenGl) };
+        let axes = PoseAxes { world: WorldUpAxis::YUp, ..PoseAxes::for_body(PoseBody::OpenGl) };
         assert_eq!(deg(axes, [0.0, 0.0, 0.0, 1.0]) % 360.0, 0.0);
         assert_eq!(axes.wayword_from_recorded(DVec3::new(1.0, 2.0, -3.0)), DVec3::new(1.0, 3.0, 2.0));
-        let axes = Axes { world: World::YDown, ..Axes::of(Body::Optical) };
+        let axes = PoseAxes { world: WorldUpAxis::YDown, ..PoseAxes::for_body(PoseBody::Optical) };
         assert_eq!(deg(axes, [0.0, 0.0, 0.0, 1.0]) % 360.0, 0.0);
         assert_eq!(axes.wayword_from_recorded(DVec3::new(1.0, -2.0, 3.0)), DVec3::new(1.0, 3.0, 2.0));
     }
@@ -172,7 +176,7 @@ mod tests {
     #[test]
     fn straight_up_is_no_heading() {
         let up = [0.0, -FRAC_1_SQRT_2, 0.0, FRAC_1_SQRT_2];
-        assert_eq!(Axes::of(Body::Robot).heading(up), None);
-        assert_eq!(Axes::of(Body::Robot).heading([0.0; 4]), None);
+        assert_eq!(PoseAxes::for_body(PoseBody::Robot).heading_by_quaternion(up), None);
+        assert_eq!(PoseAxes::for_body(PoseBody::Robot).heading_by_quaternion([0.0; 4]), None);
     }
 }

@@ -1,6 +1,6 @@
 //! Reads the user's description of a recording: `recording.toml` in a folder, or `NAME.toml` for `NAME.mp4`.
 
-use crate::axes::{Axes, Body, World};
+use crate::axes::{PoseAxes, PoseBody, WorldUpAxis};
 use serde::Deserialize;
 use std::path::Path;
 #[cfg(any(feature = "mcap", feature = "video"))]
@@ -10,13 +10,13 @@ use wayword_world::files;
 
 const MAX_FILE_BYTES: u64 = 1 << 20;
 /// The description of a folder.
-pub(crate) const FILE: &str = "recording.toml";
-pub(crate) const HINT: &str = "docs/RECORDINGS.md lists what a recording.toml can say";
+pub(crate) const FOLDER_FILE: &str = "recording.toml";
+pub(crate) const DESCRIPTION_HINT: &str = "docs/RECORDINGS.md lists what a recording.toml can say";
 
 /// A user's description of a recording. Everything has a default.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub(crate) struct Description {
+pub(crate) struct RecordingDescription {
     /// Horizontal field of view of the camera, degrees.
     pub(crate) horizontal_fov_deg: Option<f64>,
     /// The camera, where there are several: a ROS topic, or a feature of a LeRobot dataset.
@@ -24,9 +24,9 @@ pub(crate) struct Description {
     /// The source of poses: a ROS topic, a feature of a LeRobot dataset, or a file in the pictures' folder.
     pub(crate) poses: Option<String>,
     /// The direction that is up in the world of the poses.
-    pub(crate) world: Option<World>,
+    pub(crate) world: Option<WorldUpAxis>,
     /// The body to which the orientation of a pose belongs.
-    pub(crate) orientation: Option<Body>,
+    pub(crate) orientation: Option<PoseBody>,
     /// Angle from the direction ahead of `orientation` to the camera's view direction, clockwise, degrees.
     pub(crate) mount_deg: Option<f64>,
     /// Pictures per second, for pictures without times.
@@ -37,14 +37,17 @@ pub(crate) struct Description {
     pub(crate) interval_s: Option<f64>,
 }
 
-impl Description {
+impl RecordingDescription {
     /// Reads a description; the default if the file does not exist.
     ///
     /// # Errors
     /// When it is not TOML, has an unknown key, or a number is out of range.
     pub(crate) fn read(file: &Path) -> Result<Self, PlatformError> {
-        let Some(text) = files::text_if_there(file, MAX_FILE_BYTES, HINT)? else { return Ok(Self::default()) };
-        let described: Self = toml::from_str(&text).map_err(|error| files::wrong(file, error.to_string(), HINT))?;
+        let Some(text) = files::text_if_there(file, MAX_FILE_BYTES, DESCRIPTION_HINT)? else {
+            return Ok(Self::default());
+        };
+        let described: Self =
+            toml::from_str(&text).map_err(|error| files::file_error(file, error.to_string(), DESCRIPTION_HINT))?;
         for (name, number, bounds) in [
             ("horizontal_fov_deg", described.horizontal_fov_deg, 10.0..=160.0),
             ("mount_deg", described.mount_deg, -360.0..=360.0),
@@ -54,7 +57,7 @@ impl Description {
         ] {
             if let Some(number) = number.filter(|number| !bounds.contains(number)) {
                 let reason = format!("{name} = {number} is out of range ({} to {})", bounds.start(), bounds.end());
-                return Err(files::wrong(file, reason, HINT));
+                return Err(files::file_error(file, reason, DESCRIPTION_HINT));
             }
         }
         Ok(described)
@@ -63,9 +66,9 @@ impl Description {
     /// Reads the description of a file from the same folder.
     ///
     /// # Errors
-    /// As [`Description::read`].
+    /// As [`RecordingDescription::read`].
     #[cfg(any(feature = "mcap", feature = "video"))]
-    pub(crate) fn beside(recording: &Path) -> Result<Self, PlatformError> {
+    pub(crate) fn read_beside(recording: &Path) -> Result<Self, PlatformError> {
         Self::read(&Self::file_beside(recording))
     }
 
@@ -73,12 +76,12 @@ impl Description {
     #[cfg(any(feature = "mcap", feature = "video"))]
     pub(crate) fn file_beside(recording: &Path) -> PathBuf {
         let own = recording.with_extension("toml");
-        if own.is_file() { own } else { recording.with_file_name(FILE) }
+        if own.is_file() { own } else { recording.with_file_name(FOLDER_FILE) }
     }
 
     /// The axes of poses: the user's settings, and for the others `usual`, those of the format.
-    pub(crate) fn axes(&self, usual: Axes) -> Axes {
-        Axes {
+    pub(crate) fn axes_or_usual(&self, usual: PoseAxes) -> PoseAxes {
+        PoseAxes {
             world: self.world.unwrap_or(usual.world),
             body: self.orientation.unwrap_or(usual.body),
             mount_rad: self.mount_deg.map_or(usual.mount_rad, f64::to_radians),
@@ -90,20 +93,23 @@ impl Description {
 mod tests {
     use super::*;
 
-    fn read(text: &str) -> Result<Description, String> {
+    fn read(text: &str) -> Result<RecordingDescription, String> {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("recording.toml");
         std::fs::write(&file, text).unwrap();
-        Description::read(&file).map_err(|error| error.to_string())
+        RecordingDescription::read(&file).map_err(|error| error.to_string())
     }
 
     #[test]
     fn described_axes_replace_the_usual_axes() {
         let described = read("world = \"y-up\"\norientation = \"open-gl\"\nmount_deg = 90").unwrap();
-        let axes = described.axes(Axes::of(Body::Robot));
-        assert_eq!((axes.world, axes.body), (World::YUp, Body::OpenGl));
+        let axes = described.axes_or_usual(PoseAxes::for_body(PoseBody::Robot));
+        assert_eq!((axes.world, axes.body), (WorldUpAxis::YUp, PoseBody::OpenGl));
         assert!((axes.mount_rad.to_degrees() - 90.0).abs() < 1e-9);
-        assert_eq!(Description::default().axes(Axes::of(Body::Optical)), Axes::of(Body::Optical));
+        assert_eq!(
+            RecordingDescription::default().axes_or_usual(PoseAxes::for_body(PoseBody::Optical)),
+            PoseAxes::for_body(PoseBody::Optical)
+        );
     }
 
     #[test]
@@ -115,6 +121,9 @@ mod tests {
 
     #[test]
     fn a_missing_description_reads_as_the_default() {
-        assert_eq!(Description::read(Path::new("/nowhere/recording.toml")).unwrap(), Description::default());
+        assert_eq!(
+            RecordingDescription::read(Path::new("/nowhere/recording.toml")).unwrap(),
+            RecordingDescription::default()
+        );
     }
 }

@@ -1,11 +1,11 @@
 //! A recording that is a folder of pictures, with poses in a file of the same folder or without any.
 
 use crate::{
-    describe::{self, Description, HINT},
-    kind::Kind,
-    names::{entries, plain, scene_of, unknown},
+    describe::{self, DESCRIPTION_HINT, RecordingDescription},
+    kind::RecordedFileKind,
+    names::{plain_files, scene_of, sorted_entries, unknown_scene},
     poses,
-    reel::{Recording, Reel, Source, Take},
+    reel::{PictureReel, Recording, RecordingSource, TakePicture},
 };
 use std::{
     collections::BTreeSet,
@@ -15,21 +15,21 @@ use wayword_core::{PlatformError, SceneId};
 use wayword_world::files;
 
 /// Subfolders in which datasets keep their pictures.
-pub(crate) const WITHIN: [&str; 6] = ["rgb", "images", "color", "frames", "data", "image_2"];
+pub(crate) const PICTURE_FOLDERS: [&str; 6] = ["rgb", "images", "color", "frames", "data", "image_2"];
 /// Words in the names of pictures that datasets have in addition to photographs.
 const NO_PHOTOGRAPHS: [&str; 6] = ["depth", "disparity", "mask", "normal", "segment", "semantic"];
 /// Endings of pictures that cannot be read.
-const UNREAD: [&str; 8] = ["heic", "heif", "webp", "avif", "gif", "tif", "tiff", "bmp"];
+const UNREAD_ENDINGS: [&str; 8] = ["heic", "heif", "webp", "avif", "gif", "tif", "tiff", "bmp"];
 /// TUM's list of pictures with their times.
-const LIST: &str = "rgb.txt";
+const TUM_LIST_FILE: &str = "rgb.txt";
 const MAX_LIST_BYTES: u64 = 64 << 20;
 const MAX_PICTURE_BYTES: u64 = 64 << 20;
 /// Kinds of files that are read as pictures, whatever the endings of their names.
-const PICTURES: [&str; 2] = ["a PNG picture", "a JPEG picture"];
+const PICTURE_KINDS: [&str; 2] = ["a PNG picture", "a JPEG picture"];
 const PICTURE_HINT: &str = "remove the picture, or replace it with an intact one";
 
 /// A folder of pictures.
-pub(crate) struct Folder {
+pub(crate) struct PictureFolder {
     scene: SceneId,
     root: PathBuf,
     /// The folder in which the pictures are.
@@ -37,17 +37,17 @@ pub(crate) struct Folder {
     names: Vec<String>,
 }
 
-impl Folder {
+impl PictureFolder {
     /// The recording in a folder; `None` where it holds no pictures.
     ///
     /// # Errors
     /// When the folder cannot be read.
     pub(crate) fn open(root: &Path) -> Result<Option<Self>, PlatformError> {
-        let places = std::iter::once(root.to_owned()).chain(WITHIN.map(|name| root.join(name)));
+        let places = std::iter::once(root.to_owned()).chain(PICTURE_FOLDERS.map(|name| root.join(name)));
         for pictures in places.filter(|place| place.is_dir()) {
-            let mut names = entries(&pictures)?;
+            let mut names = sorted_entries(&pictures)?;
             names.retain(|name| is_picture(name));
-            let names = photographs(names);
+            let names = keep_photographs(names);
             if !names.is_empty() {
                 return Ok(Some(Self { scene: scene_of(root)?, root: root.to_owned(), pictures, names }));
             }
@@ -60,17 +60,17 @@ impl Folder {
         &self,
         is_wanted: fn(&str) -> bool,
     ) -> Result<Option<(PathBuf, usize)>, PlatformError> {
-        let mut names = entries(&self.pictures)?.into_iter().filter(|name| is_wanted(name));
+        let mut names = sorted_entries(&self.pictures)?.into_iter().filter(|name| is_wanted(name));
         Ok(names.next().map(|first| (self.pictures.join(first), 1 + names.count())))
     }
 
     /// Pictures with their times, seconds: from TUM's list, else from their names if all of these are times, else at
     /// `pictures_per_s`.
-    fn timed(&self, pictures_per_s: f64) -> Result<Vec<(f64, PathBuf)>, PlatformError> {
-        let list = self.root.join(LIST);
-        if let Some(text) = files::text_if_there(&list, MAX_LIST_BYTES, HINT)? {
-            return listed(&text, &self.root).map_err(|reason| {
-                files::wrong(&list, reason, "expected lines of `time file`, each file with a name of its own")
+    fn timed_pictures(&self, pictures_per_s: f64) -> Result<Vec<(f64, PathBuf)>, PlatformError> {
+        let list = self.root.join(TUM_LIST_FILE);
+        if let Some(text) = files::text_if_there(&list, MAX_LIST_BYTES, DESCRIPTION_HINT)? {
+            return read_list(&text, &self.root).map_err(|reason| {
+                files::file_error(&list, reason, "expected lines of `time file`, each file with a name of its own")
             });
         }
         let named: Option<Vec<f64>> = self.names.iter().map(|name| time_of(name)).collect();
@@ -82,79 +82,82 @@ impl Folder {
     }
 }
 
-impl Source for Folder {
+impl RecordingSource for PictureFolder {
     fn scenes(&self) -> Vec<SceneId> {
         vec![self.scene.clone()]
     }
 
     fn open(&self, scene: &SceneId) -> Result<Recording, PlatformError> {
         if *scene != self.scene {
-            return Err(unknown(scene, &self.scenes()));
+            return Err(unknown_scene(scene, &self.scenes()));
         }
-        let described = Description::read(&self.root.join(describe::FILE))?;
-        let mut timed = self.timed(described.pictures_per_s.unwrap_or(1.0))?;
+        let described = RecordingDescription::read(&self.root.join(describe::FOLDER_FILE))?;
+        let mut timed = self.timed_pictures(described.pictures_per_s.unwrap_or(1.0))?;
         timed.sort_by(|a, b| a.0.total_cmp(&b.0));
         let (times_s, files) = timed.into_iter().unzip();
-        let reel = Pictures { times_s, files };
-        let poses = poses::beside(&self.root, &described)?;
-        let track = poses.map(|file| poses::track(&file, &described, &reel.times_s, &|number| reel.name(number)));
+        let reel = FolderReel { times_s, files };
+        let poses = poses::find_pose_file(&self.root, &described)?;
+        let track =
+            poses.map(|file| poses::read_track(&file, &described, &reel.times_s, &|number| reel.picture_name(number)));
         Ok(Recording { track: track.transpose()?, reel: Box::new(reel), horizontal_fov_rad: None, described })
     }
 
     fn files(&self, scene: &SceneId) -> Result<Vec<PathBuf>, PlatformError> {
         if *scene != self.scene {
-            return Err(unknown(scene, &self.scenes()));
+            return Err(unknown_scene(scene, &self.scenes()));
         }
-        let description = self.root.join(describe::FILE);
-        let described = Description::read(&description)?;
-        let pictures = self.timed(described.pictures_per_s.unwrap_or(1.0))?.into_iter().map(|(_, file)| file);
-        let beside = [description, self.root.join(LIST)].into_iter().chain(poses::beside(&self.root, &described)?);
-        Ok(plain(pictures.chain(beside)))
+        let description = self.root.join(describe::FOLDER_FILE);
+        let described = RecordingDescription::read(&description)?;
+        let pictures = self.timed_pictures(described.pictures_per_s.unwrap_or(1.0))?.into_iter().map(|(_, file)| file);
+        let beside = [description, self.root.join(TUM_LIST_FILE)]
+            .into_iter()
+            .chain(poses::find_pose_file(&self.root, &described)?);
+        Ok(plain_files(pictures.chain(beside)))
     }
 }
 
 /// The pictures of a folder.
-struct Pictures {
+struct FolderReel {
     times_s: Vec<f64>,
     files: Vec<PathBuf>,
 }
 
-impl Reel for Pictures {
+impl PictureReel for FolderReel {
     fn times_s(&self) -> &[f64] {
         &self.times_s
     }
 
-    fn name(&self, number: usize) -> String {
+    fn picture_name(&self, number: usize) -> String {
         let name = self.files.get(number).and_then(|file| file.file_name());
         name.map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
     }
 
-    fn pictures(&self, wanted: &[usize], take: &mut Take<'_>) -> Result<(), PlatformError> {
+    fn hand_out_pictures(&self, wanted: &[usize], take: &mut TakePicture<'_>) -> Result<(), PlatformError> {
         for number in wanted {
             let Some(file) = self.files.get(*number) else { continue };
-            let wrong = |reason: String| files::wrong(file, reason, PICTURE_HINT);
+            let wrong = |reason: String| files::file_error(file, reason, PICTURE_HINT);
             let bytes = files::bytes_if_there(file, MAX_PICTURE_BYTES, PICTURE_HINT)?;
             let bytes = bytes.ok_or_else(|| wrong("there is no such file".to_owned()))?;
-            let picture = files::picture(&bytes);
-            take(*number, picture.map_err(|reason| unfit(file).unwrap_or_else(|| wrong(reason)))?)?;
+            let picture = files::decode_picture(&bytes);
+            take(*number, picture.map_err(|reason| unfit_picture(file).unwrap_or_else(|| wrong(reason)))?)?;
         }
         Ok(())
     }
 
-    fn glance(&self, wanted: &[usize]) -> Result<(), PlatformError> {
-        let unfit = wanted.iter().filter_map(|number| self.files.get(*number)).find_map(|file| unfit(file));
+    fn glance_at(&self, wanted: &[usize]) -> Result<(), PlatformError> {
+        let unfit = wanted.iter().filter_map(|number| self.files.get(*number)).find_map(|file| unfit_picture(file));
         unfit.map_or(Ok(()), Err)
     }
 }
 
 /// The error for a file that is neither PNG nor JPEG by its first bytes; `None` if it may be one.
-fn unfit(file: &Path) -> Option<PlatformError> {
-    let kind = Kind::at(file).filter(|kind| !PICTURES.contains(&kind.name))?;
-    Some(files::wrong(file, format!("is {}, neither PNG nor JPEG", kind.name), kind.hint))
+fn unfit_picture(file: &Path) -> Option<PlatformError> {
+    let kind = RecordedFileKind::from_file(file).filter(|kind| !PICTURE_KINDS.contains(&kind.name))?;
+    Some(files::file_error(file, format!("is {}, neither PNG nor JPEG", kind.name), kind.hint))
 }
 
 /// Reads lines of `time file`; the files must lie below the folder.
-fn listed(text: &str, root: &Path) -> Result<Vec<(f64, PathBuf)>, String> {
+fn read_list(text: &str, root: &Path) -> Result<Vec<(f64, PathBuf)>, String> {
     let lines = text.lines().enumerate().filter(|(_, line)| {
         let line = line.trim();
         !line.is_empty() && !line.starts_with('#')
@@ -190,7 +193,9 @@ fn is_picture(name: &str) -> bool {
 pub(crate) fn is_unread_picture(name: &str) -> bool {
     let ending = Path::new(name).extension().and_then(|ending| ending.to_str()).unwrap_or_default();
     // Datasets keep depth maps as TIFF, and these are not missing photographs.
-    !name.starts_with('.') && !is_no_photograph(name) && UNREAD.iter().any(|known| ending.eq_ignore_ascii_case(known))
+    !name.starts_with('.')
+        && !is_no_photograph(name)
+        && UNREAD_ENDINGS.iter().any(|known| ending.eq_ignore_ascii_case(known))
 }
 
 fn is_no_photograph(name: &str) -> bool {
@@ -199,7 +204,7 @@ fn is_no_photograph(name: &str) -> bool {
 }
 
 /// The names without depth maps and the like; all names if no photograph is among them.
-fn photographs(names: Vec<String>) -> Vec<String> {
+fn keep_photographs(names: Vec<String>) -> Vec<String> {
     let photographs: Vec<String> = names.iter().filter(|name| !is_no_photograph(name)).cloned().collect();
     if photographs.is_empty() { names } else { photographs }
 }
@@ -242,7 +247,7 @@ mod tests {
     }
 
     fn open(folder: &Path) -> Recording {
-        let source = Folder::open(folder).unwrap().unwrap();
+        let source = PictureFolder::open(folder).unwrap().unwrap();
         source.open(&source.scenes()[0]).unwrap()
     }
 
@@ -252,13 +257,13 @@ mod tests {
         std::fs::write(folder.path().join("notes.txt"), "no picture").unwrap();
         let recording = open(folder.path());
         assert_eq!(recording.reel.times_s(), [0.0, 1.0]);
-        assert_eq!([0, 1].map(|at| recording.reel.name(at)), ["f2.png", "f10.png"]);
+        assert_eq!([0, 1].map(|at| recording.reel.picture_name(at)), ["f2.png", "f10.png"]);
         let mut reds = Vec::new();
         let take = &mut |at, image: wayword_core::Image| {
-            reds.push((at, image.rgb()[0]));
+            reds.push((at, image.rgb_bytes()[0]));
             Ok(())
         };
-        recording.reel.pictures(&[0, 1], take).unwrap();
+        recording.reel.hand_out_pictures(&[0, 1], take).unwrap();
         assert_eq!(reds, [(0, 1), (1, 0)]);
         assert!(recording.track.is_none());
     }
@@ -267,7 +272,7 @@ mod tests {
     fn depth_maps_beside_photographs_are_no_pictures() {
         let both = folder(&["rgb_0.png", "depth_0.png", "rgb_1.png", "depth_1.png"]);
         let recording = open(both.path());
-        assert_eq!([0, 1].map(|at| recording.reel.name(at)), ["rgb_0.png", "rgb_1.png"]);
+        assert_eq!([0, 1].map(|at| recording.reel.picture_name(at)), ["rgb_0.png", "rgb_1.png"]);
         assert_eq!(open(folder(&["in_depth_1.png"]).path()).reel.times_s().len(), 1);
     }
 
@@ -287,24 +292,24 @@ mod tests {
         std::fs::write(folder.path().join("rgb.txt"), "# time file\n5.5 rgb/b.png\n6.5 rgb/a.png\n").unwrap();
         let recording = open(folder.path());
         assert_eq!(recording.reel.times_s(), [5.5, 6.5]);
-        assert_eq!(recording.reel.name(0), "b.png");
+        assert_eq!(recording.reel.picture_name(0), "b.png");
         for bad in ["1 ../x.png", "1 /etc/x.png", "x rgb/a.png", "1"] {
-            assert!(listed(bad, Path::new("/tmp")).unwrap_err().contains("line 1"), "{bad}");
+            assert!(read_list(bad, Path::new("/tmp")).unwrap_err().contains("line 1"), "{bad}");
         }
-        assert!(listed("1 left/a.png\n2 right/a.png", Path::new("/tmp")).unwrap_err().contains("line 2"));
+        assert!(read_list("1 left/a.png\n2 right/a.png", Path::new("/tmp")).unwrap_err().contains("line 2"));
     }
 
     #[test]
     fn a_broken_picture_is_named() {
         let folder = folder(&["1.png"]);
         std::fs::write(folder.path().join("2.png"), "no picture").unwrap();
-        let error = open(folder.path()).reel.pictures(&[1], &mut |_, _| Ok(())).unwrap_err().to_string();
+        let error = open(folder.path()).reel.hand_out_pictures(&[1], &mut |_, _| Ok(())).unwrap_err().to_string();
         assert!(error.contains("2.png") && error.contains("is text, neither PNG nor JPEG"), "{error}");
     }
 
     #[test]
     fn a_folder_without_pictures_is_no_recording() {
         let folder = tempfile::tempdir().unwrap();
-        assert!(Folder::open(folder.path()).unwrap().is_none());
+        assert!(PictureFolder::open(folder.path()).unwrap().is_none());
     }
 }

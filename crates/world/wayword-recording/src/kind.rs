@@ -1,6 +1,6 @@
 //! Recognises files by their first bytes, to name a file that cannot be read and suggest how to convert it.
 
-use crate::names::entries;
+use crate::names::sorted_entries;
 use std::{collections::BTreeMap, fs::File, io::Read, path::Path};
 use wayword_core::PlatformError;
 #[cfg(any(feature = "mcap", feature = "video"))]
@@ -8,16 +8,16 @@ use wayword_world::files;
 
 /// Converts any video that ffmpeg reads. The command encodes the pictures again, because only H.264 and AV1 could be
 /// copied, and few videos hold these.
-pub(crate) const ENCODE: &str =
+pub(crate) const ENCODE_HINT: &str =
     "if a video player shows it, convert it: ffmpeg -i IN -c:v libx264 -pix_fmt yuv420p -an OUT.mp4";
-const CONVERT: &str = "convert it: ffmpeg -i IN -frames:v 1 OUT.png";
+const CONVERT_HINT: &str = "convert it: ffmpeg -i IN -frames:v 1 OUT.png";
 const CONVERT_HEIC: &str = "convert it: heif-convert IN OUT.jpg (package libheif-examples), \
                             or on macOS: sips -s format jpeg IN --out OUT.jpg";
 const BAG_1: &str =
     "convert it: rosbags-convert --src IN.bag --dst OUT --dst-storage mcap --dst-typestore ros2_humble (PyPI rosbags)";
 const BAG_2: &str = "convert it: rosbags-convert --src FOLDER --dst OUT --dst-storage mcap (PyPI rosbags)";
-const POINTER: &str = "fetch the file itself: git lfs pull";
-const AGAIN: &str = "copy or record it again";
+const GIT_LFS_HINT: &str = "fetch the file itself: git lfs pull";
+const COPY_AGAIN_HINT: &str = "copy or record it again";
 
 /// First bytes of a file that show its kind.
 const HEAD_BYTES: u64 = 512;
@@ -26,7 +26,7 @@ const MOST_LOOKED_INTO: usize = 200;
 
 /// The kind of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Kind {
+pub(crate) struct RecordedFileKind {
     /// Its name with an article, to follow "is".
     pub(crate) name: &'static str,
     /// A way to use it, or to get an intact file.
@@ -35,91 +35,96 @@ pub(crate) struct Kind {
     pub(crate) is_recording: bool,
 }
 
-impl Kind {
-    const fn recording(name: &'static str, hint: &'static str) -> Self {
+impl RecordedFileKind {
+    const fn recording_kind(name: &'static str, hint: &'static str) -> Self {
         Self { name, hint, is_recording: true }
     }
 
-    const fn other(name: &'static str, hint: &'static str) -> Self {
+    const fn other_kind(name: &'static str, hint: &'static str) -> Self {
         Self { name, hint, is_recording: false }
     }
 
     /// The kind of a file; `None` where it is not known.
-    pub(crate) fn at(file: &Path) -> Option<Self> {
+    pub(crate) fn from_file(file: &Path) -> Option<Self> {
         if !file.is_file() {
             return None;
         }
         let mut head = Vec::new();
         File::open(file).ok()?.take(HEAD_BYTES).read_to_end(&mut head).ok()?;
-        Self::of(&head)
+        Self::from_head(&head)
     }
 
     /// The kind of a file that begins with these bytes.
-    fn of(head: &[u8]) -> Option<Self> {
+    fn from_head(head: &[u8]) -> Option<Self> {
         if head.is_empty() {
-            return Some(EMPTY);
+            return Some(EMPTY_KIND);
         }
         let begins = |at: usize, bytes: &[u8]| head.get(at..).is_some_and(|rest| rest.starts_with(bytes));
-        if [0, 188, 376].iter().all(|at| begins(*at, b"G")) && text(head).is_none() {
-            return Some(Self::recording("an MPEG transport stream", ENCODE));
+        if [0, 188, 376].iter().all(|at| begins(*at, b"G")) && head_text(head).is_none() {
+            return Some(Self::recording_kind("an MPEG transport stream", ENCODE_HINT));
         }
-        if begins(0, MATROSKA) && head.windows(4).take(60).any(|four| four == b"webm") {
-            return Some(Self::recording("a WebM video", ENCODE));
+        if begins(0, MATROSKA_MAGIC) && head.windows(4).take(60).any(|four| four == b"webm") {
+            return Some(Self::recording_kind("a WebM video", ENCODE_HINT));
         }
         if begins(0, b"BM") && is_bitmap(head) {
-            return Some(Self::recording("a BMP picture", CONVERT));
+            return Some(Self::recording_kind("a BMP picture", CONVERT_HINT));
         }
         let is_held = |at: usize| match at {
             4 => is_box(head),
             8 => begins(0, b"RIFF"),
             _ => true,
         };
-        let known = STARTS.iter().find(|(at, bytes, _)| begins(*at, bytes) && is_held(*at)).map(|(.., kind)| *kind);
+        let known =
+            KNOWN_STARTS.iter().find(|(at, bytes, _)| begins(*at, bytes) && is_held(*at)).map(|(.., kind)| *kind);
         known.or_else(|| of_text(head))
     }
 }
 
 /// A file without any bytes: its writer did not finish.
-const EMPTY: Kind = Kind::other("empty", AGAIN);
+const EMPTY_KIND: RecordedFileKind = RecordedFileKind::other_kind("empty", COPY_AGAIN_HINT);
 /// EBML's magic number, with which Matroska and WebM begin.
-const MATROSKA: &[u8] = &[0x1a, 0x45, 0xdf, 0xa3];
-const HEIC: Kind = Kind::recording("an HEIC picture", CONVERT_HEIC);
-const MP4: Kind = Kind::recording("an MP4 video", "rename it to end in .mp4");
+const MATROSKA_MAGIC: &[u8] = &[0x1a, 0x45, 0xdf, 0xa3];
+const HEIC_KIND: RecordedFileKind = RecordedFileKind::recording_kind("an HEIC picture", CONVERT_HEIC);
+const MP4_KIND: RecordedFileKind = RecordedFileKind::recording_kind("an MP4 video", "rename it to end in .mp4");
 /// Offset and bytes that show a kind; the first that fits counts. At offset 4 it is the kind of an MP4 box, at 8 that
 /// of a RIFF file.
-const STARTS: &[(usize, &[u8], Kind)] = &[
-    (0, b"\x89PNG\r\n\x1a\n", Kind::recording("a PNG picture", "rename it to end in .png")),
-    (0, &[0xff, 0xd8, 0xff], Kind::recording("a JPEG picture", "rename it to end in .jpg")),
-    (0, b"GIF87a", Kind::recording("a GIF picture", CONVERT)),
-    (0, b"GIF89a", Kind::recording("a GIF picture", CONVERT)),
-    (0, b"II*\0", Kind::recording("a TIFF or raw picture", CONVERT)),
-    (0, b"MM\0*", Kind::recording("a TIFF or raw picture", CONVERT)),
-    (8, b"WEBP", Kind::recording("a WebP picture", CONVERT)),
-    (4, b"ftypavif", Kind::recording("an AVIF picture", CONVERT)),
-    (4, b"ftypavis", Kind::recording("an AVIF picture", CONVERT)),
-    (4, b"ftyphei", HEIC),
-    (4, b"ftyphev", HEIC),
-    (4, b"ftypmif1", HEIC),
-    (4, b"ftypmsf1", HEIC),
-    (4, b"ftypcrx ", Kind::recording("a raw picture", "make a JPEG of it")),
-    (4, b"ftyp", MP4),
-    (4, b"moov", MP4),
-    (4, b"mdat", MP4),
-    (4, b"wide", MP4),
-    (4, b"free", MP4),
-    (8, b"AVI ", Kind::recording("an AVI video", ENCODE)),
-    (0, MATROSKA, Kind::recording("a Matroska video", ENCODE)),
-    (0, b"FLV\x01", Kind::recording("a Flash video", ENCODE)),
-    (0, &[0x30, 0x26, 0xb2, 0x75, 0x8e, 0x66, 0xcf, 0x11], Kind::recording("a Windows Media video", ENCODE)),
-    (0, b"OggS", Kind::recording("an Ogg video", ENCODE)),
-    (0, &[0, 0, 1, 0xba], Kind::recording("an MPEG video", ENCODE)),
-    (0, &[0, 0, 0, 1], Kind::recording("a bare video stream", ENCODE)),
-    (0, b"#ROSBAG V", Kind::recording("a ROS 1 bag", BAG_1)),
-    (0, b"SQLite format 3\0", Kind::recording("an SQLite file, as ROS 2 bags are", BAG_2)),
-    (0, b"\x89MCAP0\r\n", Kind::recording("an MCAP file", "rename it to end in .mcap")),
-    (0, &[0x1f, 0x8b], Kind::other("an archive", "unpack it")),
-    (0, b"PK\x03\x04", Kind::other("an archive", "unpack it")),
-    (0, b"version https://git-lfs", Kind::other("a pointer of git-lfs", POINTER)),
+const KNOWN_STARTS: &[(usize, &[u8], RecordedFileKind)] = &[
+    (0, b"\x89PNG\r\n\x1a\n", RecordedFileKind::recording_kind("a PNG picture", "rename it to end in .png")),
+    (0, &[0xff, 0xd8, 0xff], RecordedFileKind::recording_kind("a JPEG picture", "rename it to end in .jpg")),
+    (0, b"GIF87a", RecordedFileKind::recording_kind("a GIF picture", CONVERT_HINT)),
+    (0, b"GIF89a", RecordedFileKind::recording_kind("a GIF picture", CONVERT_HINT)),
+    (0, b"II*\0", RecordedFileKind::recording_kind("a TIFF or raw picture", CONVERT_HINT)),
+    (0, b"MM\0*", RecordedFileKind::recording_kind("a TIFF or raw picture", CONVERT_HINT)),
+    (8, b"WEBP", RecordedFileKind::recording_kind("a WebP picture", CONVERT_HINT)),
+    (4, b"ftypavif", RecordedFileKind::recording_kind("an AVIF picture", CONVERT_HINT)),
+    (4, b"ftypavis", RecordedFileKind::recording_kind("an AVIF picture", CONVERT_HINT)),
+    (4, b"ftyphei", HEIC_KIND),
+    (4, b"ftyphev", HEIC_KIND),
+    (4, b"ftypmif1", HEIC_KIND),
+    (4, b"ftypmsf1", HEIC_KIND),
+    (4, b"ftypcrx ", RecordedFileKind::recording_kind("a raw picture", "make a JPEG of it")),
+    (4, b"ftyp", MP4_KIND),
+    (4, b"moov", MP4_KIND),
+    (4, b"mdat", MP4_KIND),
+    (4, b"wide", MP4_KIND),
+    (4, b"free", MP4_KIND),
+    (8, b"AVI ", RecordedFileKind::recording_kind("an AVI video", ENCODE_HINT)),
+    (0, MATROSKA_MAGIC, RecordedFileKind::recording_kind("a Matroska video", ENCODE_HINT)),
+    (0, b"FLV\x01", RecordedFileKind::recording_kind("a Flash video", ENCODE_HINT)),
+    (
+        0,
+        &[0x30, 0x26, 0xb2, 0x75, 0x8e, 0x66, 0xcf, 0x11],
+        RecordedFileKind::recording_kind("a Windows Media video", ENCODE_HINT),
+    ),
+    (0, b"OggS", RecordedFileKind::recording_kind("an Ogg video", ENCODE_HINT)),
+    (0, &[0, 0, 1, 0xba], RecordedFileKind::recording_kind("an MPEG video", ENCODE_HINT)),
+    (0, &[0, 0, 0, 1], RecordedFileKind::recording_kind("a bare video stream", ENCODE_HINT)),
+    (0, b"#ROSBAG V", RecordedFileKind::recording_kind("a ROS 1 bag", BAG_1)),
+    (0, b"SQLite format 3\0", RecordedFileKind::recording_kind("an SQLite file, as ROS 2 bags are", BAG_2)),
+    (0, b"\x89MCAP0\r\n", RecordedFileKind::recording_kind("an MCAP file", "rename it to end in .mcap")),
+    (0, &[0x1f, 0x8b], RecordedFileKind::other_kind("an archive", "unpack it")),
+    (0, b"PK\x03\x04", RecordedFileKind::other_kind("an archive", "unpack it")),
+    (0, b"version https://git-lfs", RecordedFileKind::other_kind("a pointer of git-lfs", GIT_LFS_HINT)),
 ];
 
 /// Whether a file can begin with a box of MP4: its length comes first; 0 means "up to the end", and 1 that the length
@@ -128,7 +133,7 @@ fn is_box(head: &[u8]) -> bool {
     let Some(first) = head.first_chunk::<4>() else { return false };
     let is_length = matches!(u32::from_be_bytes(*first), 0 | 1 | 8..=0x8000_0000);
     let is_printable = first.iter().all(|byte| byte.is_ascii_graphic() || byte.is_ascii_whitespace());
-    is_length && !is_printable && text(head).is_none()
+    is_length && !is_printable && head_text(head).is_none()
 }
 
 /// Whether a file that begins with "BM" goes on as a bitmap: four zero bytes, and after 14 bytes a header with one of
@@ -139,7 +144,7 @@ fn is_bitmap(head: &[u8]) -> bool {
 }
 
 /// Bytes as text; `None` where they are not text.
-fn text(head: &[u8]) -> Option<&str> {
+fn head_text(head: &[u8]) -> Option<&str> {
     // The last character may be cut.
     let text = match std::str::from_utf8(head) {
         Ok(text) => text,
@@ -149,18 +154,21 @@ fn text(head: &[u8]) -> Option<&str> {
     text.chars().all(|c| !c.is_control() || matches!(c, '\n' | '\r' | '\t')).then_some(text)
 }
 
-fn of_text(head: &[u8]) -> Option<Kind> {
-    let text = text(head)?;
+fn of_text(head: &[u8]) -> Option<RecordedFileKind> {
+    let text = head_text(head)?;
     let start = text.trim_start().to_ascii_lowercase();
     if start.starts_with("<!doctype html") || start.starts_with("<html") {
-        return Some(Kind::other("a web page", "a server sent this page instead of the file; fetch the file again"));
+        return Some(RecordedFileKind::other_kind(
+            "a web page",
+            "a server sent this page instead of the file; fetch the file again",
+        ));
     }
-    Some(Kind::other("text", AGAIN))
+    Some(RecordedFileKind::other_kind("text", COPY_AGAIN_HINT))
 }
 
 /// Recordings that cannot be read, in words, and what to do about the most frequent kind.
 #[derive(Debug, PartialEq, Eq)]
-pub(crate) struct Unread {
+pub(crate) struct UnreadRecordings {
     /// As "a WebM video", or of a folder "1.heic is an HEIC picture (and 3 more)".
     pub(crate) what: String,
     pub(crate) hint: &'static str,
@@ -171,17 +179,17 @@ pub(crate) struct Unread {
 ///
 /// # Errors
 /// When a folder cannot be read.
-pub(crate) fn unread(path: &Path, within: &[&str]) -> Result<Option<Unread>, PlatformError> {
+pub(crate) fn find_unread(path: &Path, within: &[&str]) -> Result<Option<UnreadRecordings>, PlatformError> {
     if !path.is_dir() {
-        let kind = Kind::at(path).filter(|kind| kind.is_recording);
-        return Ok(kind.map(|kind| Unread { what: kind.name.to_owned(), hint: kind.hint }));
+        let kind = RecordedFileKind::from_file(path).filter(|kind| kind.is_recording);
+        return Ok(kind.map(|kind| UnreadRecordings { what: kind.name.to_owned(), hint: kind.hint }));
     }
     let folders = std::iter::once(path.to_owned()).chain(within.iter().map(|name| path.join(name)));
     let mut counts: BTreeMap<&str, (usize, String, &'static str)> = BTreeMap::new();
     for folder in folders.filter(|folder| folder.is_dir()) {
-        let names = entries(&folder)?.into_iter().filter(|name| !name.starts_with('.'));
+        let names = sorted_entries(&folder)?.into_iter().filter(|name| !name.starts_with('.'));
         for name in names.take(MOST_LOOKED_INTO) {
-            if let Some(kind) = Kind::at(&folder.join(&name)).filter(|kind| kind.is_recording) {
+            if let Some(kind) = RecordedFileKind::from_file(&folder.join(&name)).filter(|kind| kind.is_recording) {
                 counts.entry(kind.name).or_insert((0, name, kind.hint)).0 += 1;
             }
         }
@@ -191,18 +199,18 @@ pub(crate) fn unread(path: &Path, within: &[&str]) -> Result<Option<Unread>, Pla
         1 => format!("{name} is {kind}"),
         more => format!("{name} is {kind} (and {} more)", more - 1),
     });
-    Ok(Some(Unread { what: told.collect::<Vec<_>>().join("; "), hint }))
+    Ok(Some(UnreadRecordings { what: told.collect::<Vec<_>>().join("; "), hint }))
 }
 
 /// The error for a file with a misleading name: it names the true kind, or else gives the reader's reason.
 #[cfg(any(feature = "mcap", feature = "video"))]
-pub(crate) fn refusal(file: &Path, own: &str, (reason, hint): (String, &'static str)) -> PlatformError {
-    match Kind::at(file).filter(|kind| kind.name != own) {
+pub(crate) fn refuse_file(file: &Path, own: &str, (reason, hint): (String, &'static str)) -> PlatformError {
+    match RecordedFileKind::from_file(file).filter(|kind| kind.name != own) {
         Some(kind) if kind.hint.starts_with("rename") => {
-            files::wrong(file, format!("is {}, although its name says otherwise", kind.name), kind.hint)
+            files::file_error(file, format!("is {}, although its name says otherwise", kind.name), kind.hint)
         }
-        Some(kind) => files::wrong(file, format!("is {}, not {own}", kind.name), kind.hint),
-        None => files::wrong(file, reason, hint),
+        Some(kind) => files::file_error(file, format!("is {}, not {own}", kind.name), kind.hint),
+        None => files::file_error(file, reason, hint),
     }
 }
 
@@ -211,7 +219,7 @@ mod tests {
     use super::*;
 
     fn name(head: &[u8]) -> &'static str {
-        Kind::of(head).map_or("?", |kind| kind.name)
+        RecordedFileKind::from_head(head).map_or("?", |kind| kind.name)
     }
 
     #[test]
@@ -262,7 +270,7 @@ mod tests {
 
     #[test]
     fn conversion_commands_encode_videos_again() {
-        for (_, _, kind) in STARTS {
+        for (_, _, kind) in KNOWN_STARTS {
             assert!(!kind.hint.contains("copy "), "{}", kind.hint);
         }
     }

@@ -7,7 +7,7 @@ use std::{
 use wayword_core::{PlatformError, SceneId};
 use wayword_world::files;
 
-const HINT: &str = "give a folder that can be read";
+const FOLDER_HINT: &str = "give a folder that can be read";
 /// Most recordings that an error names.
 const MOST_NAMED: usize = 12;
 /// Most entries of a folder that are looked at.
@@ -21,16 +21,17 @@ pub(crate) fn scene_of(path: &Path) -> Result<SceneId, PlatformError> {
         // "." and "/" have no name of their own.
         None => "recording".to_owned(),
     };
-    SceneId::new(name).map_err(|error| files::wrong(path, error.to_string(), "give the file or folder another name"))
+    SceneId::new(name)
+        .map_err(|error| files::file_error(path, error.to_string(), "give the file or folder another name"))
 }
 
 /// The names in a folder, sorted as people count: `2.png` before `10.png`.
-pub(crate) fn entries(folder: &Path) -> Result<Vec<String>, PlatformError> {
-    let wrong = |error: std::io::Error| files::wrong(folder, error.to_string(), HINT);
+pub(crate) fn sorted_entries(folder: &Path) -> Result<Vec<String>, PlatformError> {
+    let wrong = |error: std::io::Error| files::file_error(folder, error.to_string(), FOLDER_HINT);
     let mut names = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(wrong)? {
         if names.len() == MAX_ENTRIES {
-            return Err(files::wrong(
+            return Err(files::file_error(
                 folder,
                 format!("holds more than {MAX_ENTRIES} files"),
                 "split it into several folders",
@@ -44,7 +45,7 @@ pub(crate) fn entries(folder: &Path) -> Result<Vec<String>, PlatformError> {
 }
 
 /// Those of these files that exist and are plain files, sorted, each once.
-pub(crate) fn plain(files: impl IntoIterator<Item = PathBuf>) -> Vec<PathBuf> {
+pub(crate) fn plain_files(files: impl IntoIterator<Item = PathBuf>) -> Vec<PathBuf> {
     let mut plain: Vec<PathBuf> = files.into_iter().filter(|file| file.is_file()).collect();
     plain.sort();
     plain.dedup();
@@ -52,7 +53,7 @@ pub(crate) fn plain(files: impl IntoIterator<Item = PathBuf>) -> Vec<PathBuf> {
 }
 
 /// The error for a recording that is not among `there`.
-pub(crate) fn unknown(scene: &SceneId, there: &[SceneId]) -> PlatformError {
+pub(crate) fn unknown_scene(scene: &SceneId, there: &[SceneId]) -> PlatformError {
     let names: Vec<&str> = there.iter().map(SceneId::as_str).take(MOST_NAMED).collect();
     let more = if there.len() > MOST_NAMED { ", ..." } else { "" };
     let hint = format!("--data holds {}{more}", names.join(", "));

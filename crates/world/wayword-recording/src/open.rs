@@ -1,24 +1,24 @@
 //! Opens a path as a recording, of the kind that its contents have.
 
 #[cfg(any(feature = "lerobot", feature = "mcap", feature = "video"))]
-use crate::describe::Description;
+use crate::describe::RecordingDescription;
 use crate::{
-    folder::{Folder, WITHIN, is_unread_picture},
-    kind::{self, Kind, Unread},
-    names::{entries, scene_of},
-    reel::Source,
-    shelf::{Shelf, Unopened},
+    folder::{PICTURE_FOLDERS, PictureFolder, is_unread_picture},
+    kind::{self, RecordedFileKind, UnreadRecordings},
+    names::{scene_of, sorted_entries},
+    reel::RecordingSource,
+    shelf::{RecordingShelf, UnopenedRecording},
 };
 use std::{collections::BTreeSet, path::Path};
 use wayword_core::PlatformError;
 use wayword_world::files;
 
-const HINT: &str =
+const RECORDING_HINT: &str =
     "give a folder of pictures (PNG, JPEG), a folder of recordings, a LeRobot dataset, or a .mp4 or .mcap file";
 
 /// Opens a path: one recording, or a folder with several. `hear` gets a line for each file that is skipped.
-pub(crate) fn open(path: &Path, hear: &dyn Fn(&str)) -> Result<Box<dyn Source>, PlatformError> {
-    if let Some(source) = one(path)? {
+pub(crate) fn open_source(path: &Path, hear: &dyn Fn(&str)) -> Result<Box<dyn RecordingSource>, PlatformError> {
+    if let Some(source) = open_one(path)? {
         return Ok(source);
     }
     if !path.is_dir() {
@@ -26,8 +26,8 @@ pub(crate) fn open(path: &Path, hear: &dyn Fn(&str)) -> Result<Box<dyn Source>, 
     }
     let (mut sources, mut passed_over, mut broken) = (Vec::new(), Vec::new(), Vec::new());
     // macOS leaves "._x.mp4" next to "x.mp4" on foreign disks, and file managers leave hidden folders of thumbnails.
-    for entry in entries(path)?.into_iter().filter(|name| !name.starts_with('.')) {
-        match one(&path.join(&entry)) {
+    for entry in sorted_entries(path)?.into_iter().filter(|name| !name.starts_with('.')) {
+        match open_one(&path.join(&entry)) {
             Ok(Some(source)) => sources.push(source),
             Ok(None) => passed_over.push(entry),
             Err(error) => broken.push((entry, error)),
@@ -37,16 +37,16 @@ pub(crate) fn open(path: &Path, hear: &dyn Fn(&str)) -> Result<Box<dyn Source>, 
         if let Some((_, error)) = broken.into_iter().next() {
             return Err(error);
         }
-        return Err(match kind::unread(path, &WITHIN)? {
-            Some(Unread { what, hint }) => {
-                files::wrong(path, format!("holds no recording that can be read: {what}"), hint)
+        return Err(match kind::find_unread(path, &PICTURE_FOLDERS)? {
+            Some(UnreadRecordings { what, hint }) => {
+                files::file_error(path, format!("holds no recording that can be read: {what}"), hint)
             }
-            None => files::wrong(path, "holds no pictures and no recordings", HINT),
+            None => files::file_error(path, "holds no pictures and no recordings", RECORDING_HINT),
         });
     }
     for entry in passed_over {
         let file = path.join(&entry);
-        if let Some(Unread { what, hint }) = kind::unread(&file, &WITHIN)? {
+        if let Some(UnreadRecordings { what, hint }) = kind::find_unread(&file, &PICTURE_FOLDERS)? {
             let why = if file.is_dir() { what } else { format!("it is {what}") };
             hear(&format!("{entry} is skipped: {why}, which cannot be read as it is; {hint}"));
         }
@@ -54,7 +54,7 @@ pub(crate) fn open(path: &Path, hear: &dyn Fn(&str)) -> Result<Box<dyn Source>, 
     for (entry, error) in broken {
         let path = path.join(&entry);
         match scene_of(&path) {
-            Ok(scene) => sources.push(Box::new(Unopened { scene, path })),
+            Ok(scene) => sources.push(Box::new(UnopenedRecording { scene, path })),
             // Without a valid name, no setting can choose it.
             Err(_) => hear(&format!("{entry} is skipped: {error}")),
         }
@@ -62,19 +62,19 @@ pub(crate) fn open(path: &Path, hear: &dyn Fn(&str)) -> Result<Box<dyn Source>, 
     let mut scenes = BTreeSet::new();
     if let Some(twice) = sources.iter().flat_map(|source| source.scenes()).find(|scene| !scenes.insert(scene.clone())) {
         let reason = format!("holds two recordings with the name {twice}");
-        return Err(files::wrong(path, reason, "give one of them another name, or name the file itself"));
+        return Err(files::file_error(path, reason, "give one of them another name, or name the file itself"));
     }
-    Ok(Box::new(Shelf { sources }))
+    Ok(Box::new(RecordingShelf { sources }))
 }
 
 /// The error for a path that is no recording and no folder.
 fn no_recording(path: &Path) -> PlatformError {
-    match Kind::at(path) {
+    match RecordedFileKind::from_file(path) {
         Some(kind) => {
-            files::wrong(path, format!("is not a recording that can be read: it is {}", kind.name), kind.hint)
+            files::file_error(path, format!("is not a recording that can be read: it is {}", kind.name), kind.hint)
         }
-        None if path.exists() => files::wrong(path, "is not a recording of a known kind", HINT),
-        None => files::wrong(path, "there is no such file or folder", HINT),
+        None if path.exists() => files::file_error(path, "is not a recording of a known kind", RECORDING_HINT),
+        None => files::file_error(path, "there is no such file or folder", RECORDING_HINT),
     }
 }
 
@@ -82,87 +82,87 @@ fn no_recording(path: &Path) -> PlatformError {
 ///
 /// # Errors
 /// When there is none, or it cannot be opened.
-pub(crate) fn recording(path: &Path) -> Result<Box<dyn Source>, PlatformError> {
-    one(path)?.ok_or_else(|| no_recording(path))
+pub(crate) fn open_recording(path: &Path) -> Result<Box<dyn RecordingSource>, PlatformError> {
+    open_one(path)?.ok_or_else(|| no_recording(path))
 }
 
 /// The source at a path; `None` where there is none.
-fn one(path: &Path) -> Result<Option<Box<dyn Source>>, PlatformError> {
+fn open_one(path: &Path) -> Result<Option<Box<dyn RecordingSource>>, PlatformError> {
     if path.is_dir() {
         if path.join("meta").join("info.json").is_file() {
-            return lerobot(path).map(Some);
+            return open_lerobot(path).map(Some);
         }
-        let Some(folder) = Folder::open(path)? else { return Ok(None) };
+        let Some(folder) = PictureFolder::open(path)? else { return Ok(None) };
         // A picture may be among videos by chance, so the program does not guess which of them the user wants.
         if let Some((file, _)) = folder.beside_pictures(is_file_of_ours)? {
             let file = file.file_name().unwrap_or_default().display();
             let reason = format!("holds pictures and also recordings, such as {file}");
-            return Err(files::wrong(path, reason, "give the recording's own path, or move the pictures away"));
+            return Err(files::file_error(path, reason, "give the recording's own path, or move the pictures away"));
         }
         // The picture files that cannot be read may be part of the same recording, so its path would have gaps.
         if let Some((file, count)) = folder.beside_pictures(is_unread_picture)? {
-            let kind = Kind::at(&file).map_or("a picture that cannot be read", |kind| kind.name);
+            let kind = RecordedFileKind::from_file(&file).map_or("a picture that cannot be read", |kind| kind.name);
             let more = if count > 1 { format!(" (and {} more)", count - 1) } else { String::new() };
             let reason =
                 format!("holds pictures, but {} is {kind}{more}", file.file_name().unwrap_or_default().display());
-            let hint = Kind::at(&file).map_or("move it away", |kind| kind.hint);
-            return Err(files::wrong(path, reason, hint));
+            let hint = RecordedFileKind::from_file(&file).map_or("move it away", |kind| kind.hint);
+            return Err(files::file_error(path, reason, hint));
         }
         return Ok(Some(Box::new(folder)));
     }
     if !path.is_file() {
         return Ok(None);
     }
-    match ending(path).as_str() {
-        "mp4" | "m4v" | "mov" => video(path).map(Some),
-        "mcap" => mcap(path).map(Some),
+    match file_ending(path).as_str() {
+        "mp4" | "m4v" | "mov" => open_video(path).map(Some),
+        "mcap" => open_mcap(path).map(Some),
         _ => Ok(None),
     }
 }
 
-fn ending(path: &Path) -> String {
+fn file_ending(path: &Path) -> String {
     path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase()
 }
 
 fn is_file_of_ours(name: &str) -> bool {
-    !name.starts_with('.') && matches!(ending(Path::new(name)).as_str(), "mp4" | "m4v" | "mov" | "mcap")
+    !name.starts_with('.') && matches!(file_ending(Path::new(name)).as_str(), "mp4" | "m4v" | "mov" | "mcap")
 }
 
 #[cfg(feature = "lerobot")]
-fn lerobot(path: &Path) -> Result<Box<dyn Source>, PlatformError> {
-    let described = Description::read(&path.join(crate::describe::FILE))?;
-    Ok(Box::new(crate::lerobot::Dataset::open(path, described)?))
+fn open_lerobot(path: &Path) -> Result<Box<dyn RecordingSource>, PlatformError> {
+    let described = RecordingDescription::read(&path.join(crate::describe::FOLDER_FILE))?;
+    Ok(Box::new(crate::lerobot::LeRobotDataset::open(path, described)?))
 }
 
 #[cfg(not(feature = "lerobot"))]
-fn lerobot(path: &Path) -> Result<Box<dyn Source>, PlatformError> {
-    Err(absent(path, "LeRobot datasets"))
+fn open_lerobot(path: &Path) -> Result<Box<dyn RecordingSource>, PlatformError> {
+    Err(not_built(path, "LeRobot datasets"))
 }
 
 #[cfg(feature = "video")]
-fn video(path: &Path) -> Result<Box<dyn Source>, PlatformError> {
-    Ok(Box::new(crate::video::FilmFile::open(path, Description::beside(path)?)?))
+fn open_video(path: &Path) -> Result<Box<dyn RecordingSource>, PlatformError> {
+    Ok(Box::new(crate::video::FilmFile::open(path, RecordingDescription::read_beside(path)?)?))
 }
 
 #[cfg(not(feature = "video"))]
-fn video(path: &Path) -> Result<Box<dyn Source>, PlatformError> {
-    Err(absent(path, "MP4 files"))
+fn open_video(path: &Path) -> Result<Box<dyn RecordingSource>, PlatformError> {
+    Err(not_built(path, "MP4 files"))
 }
 
 #[cfg(feature = "mcap")]
-fn mcap(path: &Path) -> Result<Box<dyn Source>, PlatformError> {
-    Ok(Box::new(crate::mcap::McapFile::open(path, Description::beside(path)?)?))
+fn open_mcap(path: &Path) -> Result<Box<dyn RecordingSource>, PlatformError> {
+    Ok(Box::new(crate::mcap::McapFile::open(path, RecordingDescription::read_beside(path)?)?))
 }
 
 #[cfg(not(feature = "mcap"))]
-fn mcap(path: &Path) -> Result<Box<dyn Source>, PlatformError> {
-    Err(absent(path, "MCAP files"))
+fn open_mcap(path: &Path) -> Result<Box<dyn RecordingSource>, PlatformError> {
+    Err(not_built(path, "MCAP files"))
 }
 
 #[cfg(not(all(feature = "lerobot", feature = "mcap", feature = "video")))]
-fn absent(path: &Path, what: &str) -> PlatformError {
+fn not_built(path: &Path, what: &str) -> PlatformError {
     let hint = "build it with `cargo build --release --features full`";
-    files::wrong(path, format!("this build cannot read {what}"), hint)
+    files::file_error(path, format!("this build cannot read {what}"), hint)
 }
 
 #[cfg(test)]
@@ -185,7 +185,7 @@ mod tests {
     fn open_skips_hidden_entries_of_a_folder_of_recordings() {
         let shelf = shelf(&["b/1.png", "a/rgb/1.png", ".small/1.png", "notes/1.txt"]);
         std::fs::write(shelf.path().join("._a.mp4"), "").unwrap();
-        let scenes = open(shelf.path(), &|_| ()).map(|source| source.scenes()).unwrap();
+        let scenes = open_source(shelf.path(), &|_| ()).map(|source| source.scenes()).unwrap();
         assert_eq!(scenes.iter().map(SceneId::as_str).collect::<Vec<_>>(), ["a", "b"]);
     }
 
@@ -193,7 +193,7 @@ mod tests {
     fn open_refuses_a_folder_with_pictures_and_recordings() {
         let shelf = shelf(&["map.png"]);
         std::fs::write(shelf.path().join("walk.mp4"), "").unwrap();
-        let error = open(shelf.path(), &|_| ()).err().unwrap().to_string();
+        let error = open_source(shelf.path(), &|_| ()).err().unwrap().to_string();
         assert!(error.contains("holds pictures and also recordings, such as walk.mp4"), "{error}");
     }
 
@@ -210,7 +210,7 @@ mod tests {
             std::fs::create_dir_all(file.parent().unwrap()).unwrap();
             std::fs::write(file, bytes).unwrap();
         }
-        open(&folder.path().join(path), &|_| ()).err().unwrap().to_string()
+        open_source(&folder.path().join(path), &|_| ()).err().unwrap().to_string()
     }
 
     #[test]
@@ -253,7 +253,7 @@ mod tests {
         std::fs::write(shelf.path().join("c/1.heic"), HEIC).unwrap();
         std::fs::write(shelf.path().join("notes.txt"), "notes").unwrap();
         let heard = std::cell::RefCell::new(Vec::new());
-        open(shelf.path(), &|line| heard.borrow_mut().push(line.to_owned())).unwrap();
+        open_source(shelf.path(), &|line| heard.borrow_mut().push(line.to_owned())).unwrap();
         let heard = heard.into_inner();
         assert_eq!(heard.len(), 2, "{heard:?}");
         assert!(
@@ -269,7 +269,7 @@ mod tests {
     #[test]
     fn an_unknown_recording_error_lists_the_known_ones() {
         let shelf = shelf(&["b/1.png", "a/1.png"]);
-        let source = open(shelf.path(), &|_| ()).unwrap();
+        let source = open_source(shelf.path(), &|_| ()).unwrap();
         let error = source.open(&SceneId::new("c").unwrap()).err().unwrap().to_string();
         assert!(error.contains("--data holds a, b"), "{error}");
     }
@@ -279,7 +279,7 @@ mod tests {
     fn open_refuses_two_recordings_with_one_name() {
         let shelf = shelf(&["walk/1.png"]);
         std::fs::write(shelf.path().join("walk.mp4"), "").unwrap();
-        let error = open(shelf.path(), &|_| ()).err().unwrap().to_string();
+        let error = open_source(shelf.path(), &|_| ()).err().unwrap().to_string();
         assert!(error.contains("two recordings with the name walk"), "{error}");
     }
 }

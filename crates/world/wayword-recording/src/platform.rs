@@ -1,10 +1,10 @@
 //! Recordings as a [`Platform`].
 
 use crate::{
-    choose::{Choice, choose},
+    choose::{FrameChoice, choose_frames},
     open,
-    reel::{Recording, Source},
-    track::Track,
+    reel::{Recording, RecordingSource},
+    track::CameraTrack,
 };
 use image::imageops::{FilterType, resize};
 use rand::Rng;
@@ -15,17 +15,17 @@ use std::{
     sync::Arc,
 };
 use wayword_core::{
-    DVec3, Frame, Gaze, Heading, Image, Motion, ObjectId, Path, PathRequest, Platform, PlatformError, Pose, Recent,
-    SceneId, View, ViewpointGraph, ViewpointId, path::Stop, rng,
+    DVec3, Frame, Heading, Image, ObjectId, Path, PathMotion, PathRequest, Platform, PlatformError, Pose, RecentCache,
+    SceneId, View, ViewGaze, ViewpointGraph, ViewpointId, path::PathStop, seeded_rng,
 };
-use wayword_world::{files, said::Hear};
+use wayword_world::{files, said::OutputListener};
 
 /// Most recordings that stay open.
-const OPEN: usize = 8;
+const MAX_OPEN_RECORDINGS: usize = 8;
 /// Most pictures that stay in memory: 1.2 MB each at most.
-const KEPT: usize = 256;
+const MAX_CACHED_PICTURES: usize = 256;
 /// Frames that are read together, because a video has to be decoded from a key picture on, whichever picture is wanted.
-const AHEAD: usize = 16;
+const READ_AHEAD_FRAMES: usize = 16;
 /// Pictures are scaled down until their longer side has at most this length, pixels. Other platforms draw pictures of about
 /// this size, and vision models take them.
 const LONGEST_PX: u32 = 640;
@@ -33,10 +33,10 @@ const LONGEST_PX: u32 = 640;
 /// camera.
 const USUAL_FOV_RAD: f64 = 70.0 * std::f64::consts::PI / 180.0;
 /// A recording with at most this many frames is one path, however short or long it is.
-pub(crate) const WHOLE: usize = 12;
+pub(crate) const MAX_WHOLE_FRAMES: usize = 12;
 /// Most unreadable recordings that an error lists.
 const MOST_TOLD: usize = 3;
-const HINT: &str = "record more, or set interval_m or interval_s in a recording.toml (docs/RECORDINGS.md)";
+const INTERVAL_HINT: &str = "record more, or set interval_m or interval_s in a recording.toml (docs/RECORDINGS.md)";
 
 /// Folders of pictures, videos, MCAP files and LeRobot datasets.
 ///
@@ -44,15 +44,15 @@ const HINT: &str = "record more, or set interval_m or interval_s in a recording.
 /// pictures. It has no labels and no rooms.
 pub struct RecordingPlatform {
     path: PathBuf,
-    source: Box<dyn Source>,
-    hear: Hear,
+    source: Box<dyn RecordingSource>,
+    hear: OutputListener,
     /// Opened one at a time, because opening looks at many pictures of a recording.
-    opened: Recent<SceneId, Opened>,
-    pictures: Recent<(SceneId, usize), Image>,
+    opened: RecentCache<SceneId, OpenedRecording>,
+    pictures: RecentCache<(SceneId, usize), Image>,
 }
 
 /// An open recording with its chosen frames.
-struct Opened {
+struct OpenedRecording {
     recording: Recording,
     /// Numbers of the pictures that are frames, in order.
     stops: Vec<usize>,
@@ -69,28 +69,28 @@ impl RecordingPlatform {
     ///
     /// # Errors
     /// When there is none, or this build cannot read its kind.
-    pub fn open(path: &FilePath, hear: Hear) -> Result<Self, PlatformError> {
-        let source = open::open(path, &*hear)?;
+    pub fn open(path: &FilePath, hear: OutputListener) -> Result<Self, PlatformError> {
+        let source = open::open_source(path, &*hear)?;
         Ok(Self {
             path: path.to_owned(),
             source,
             hear,
-            opened: Recent::one_at_a_time(OPEN),
-            pictures: Recent::new(KEPT),
+            opened: RecentCache::one_at_a_time(MAX_OPEN_RECORDINGS),
+            pictures: RecentCache::new(MAX_CACHED_PICTURES),
         })
     }
 
-    fn opened(&self, scene: &SceneId) -> Result<Arc<Opened>, PlatformError> {
+    fn open_scene(&self, scene: &SceneId) -> Result<Arc<OpenedRecording>, PlatformError> {
         self.opened.get_or_make(scene.clone(), || {
             let recording = self.source.open(scene)?;
             let mut seen: BTreeMap<usize, Image> = BTreeMap::new();
-            let choice = choose(&recording, &mut |number, image| {
-                if seen.len() < KEPT {
-                    seen.insert(number, scaled(image));
+            let choice = choose_frames(&recording, &mut |number, image| {
+                if seen.len() < MAX_CACHED_PICTURES {
+                    seen.insert(number, scale_down(image));
                 }
             })?;
-            (self.hear)(&told(scene, &recording, &choice));
-            if let Some(doubt) = recording.track.as_ref().and_then(Track::doubt) {
+            (self.hear)(&describe_choice(scene, &recording, &choice));
+            if let Some(doubt) = recording.track.as_ref().and_then(CameraTrack::doubt) {
                 (self.hear)(doubt);
             }
             for number in &choice.stops {
@@ -98,17 +98,17 @@ impl RecordingPlatform {
                     self.pictures.put((scene.clone(), *number), image);
                 }
             }
-            Opened::new(scene, recording, choice)
+            OpenedRecording::new(scene, recording, choice)
         })
     }
 
     /// The picture of a frame. The pictures of the next frames are read with it, and stay in memory.
-    fn picture(&self, scene: &SceneId, opened: &Opened, at: usize) -> Result<Arc<Image>, PlatformError> {
+    fn frame_picture(&self, scene: &SceneId, opened: &OpenedRecording, at: usize) -> Result<Arc<Image>, PlatformError> {
         self.pictures.get_or_make((scene.clone(), opened.stops[at]), || {
-            let wanted = &opened.stops[at..opened.stops.len().min(at + AHEAD)];
+            let wanted = &opened.stops[at..opened.stops.len().min(at + READ_AHEAD_FRAMES)];
             let mut first = None;
-            opened.recording.reel.pictures(wanted, &mut |number, image| {
-                let image = scaled(&image);
+            opened.recording.reel.hand_out_pictures(wanted, &mut |number, image| {
+                let image = scale_down(&image);
                 if number == wanted[0] {
                     first = Some(image);
                 } else {
@@ -117,71 +117,75 @@ impl RecordingPlatform {
                 Ok(())
             })?;
             let name = || FilePath::new(opened.ids[at].as_str()).to_owned();
-            first.ok_or_else(|| files::wrong(&name(), "this picture cannot be read from the recording", HINT))
+            first.ok_or_else(|| {
+                files::file_error(&name(), "this picture cannot be read from the recording", INTERVAL_HINT)
+            })
         })
     }
 }
 
-impl Opened {
-    fn new(scene: &SceneId, recording: Recording, choice: Choice) -> Result<Self, PlatformError> {
-        let Choice { stops, breaks, .. } = choice;
+impl OpenedRecording {
+    fn new(scene: &SceneId, recording: Recording, choice: FrameChoice) -> Result<Self, PlatformError> {
+        let FrameChoice { stops, breaks, .. } = choice;
         let ids = stops.iter().map(|number| {
-            let name = recording.reel.name(*number);
-            ViewpointId::new(name).map_err(|error| files::wrong(FilePath::new(scene.as_str()), error.to_string(), HINT))
+            let name = recording.reel.picture_name(*number);
+            ViewpointId::new(name)
+                .map_err(|error| files::file_error(FilePath::new(scene.as_str()), error.to_string(), INTERVAL_HINT))
         });
         let ids: Vec<ViewpointId> = ids.collect::<Result<_, _>>()?;
         let times_s = recording.reel.times_s();
         let places: Vec<DVec3> = match &recording.track {
-            Some(track) => stops.iter().filter_map(|number| Some(track.at(times_s[*number])?.position)).collect(),
+            Some(track) => stops.iter().filter_map(|number| Some(track.fix_at(times_s[*number])?.position)).collect(),
             None => Vec::new(),
         };
-        let graph =
-            chain(&ids, &places, &breaks).map_err(|source| PlatformError::Graph { scene: scene.clone(), source })?;
+        let graph = chain_graph(&ids, &places, &breaks)
+            .map_err(|source| PlatformError::Graph { scene: scene.clone(), source })?;
         Ok(Self { recording, stops, ids, places, breaks, graph: Arc::new(graph) })
     }
 
-    fn motion(&self) -> Motion {
-        if self.recording.track.is_some() { Motion::Known } else { Motion::Unknown }
+    fn motion(&self) -> PathMotion {
+        if self.recording.track.is_some() { PathMotion::Known } else { PathMotion::Unknown }
     }
 
     /// Whether it has few frames, and no gap in its track.
     fn is_short(&self) -> bool {
-        self.stops.len() <= WHOLE && self.breaks.is_empty()
+        self.stops.len() <= MAX_WHOLE_FRAMES && self.breaks.is_empty()
     }
 
     /// Frames from one stop to another, both included.
-    fn frames(&self, first: usize, last: usize) -> Vec<Frame> {
+    fn frames_between(&self, first: usize, last: usize) -> Vec<Frame> {
         if self.recording.track.is_none() {
             let frame = |id: &ViewpointId| Frame {
-                pose: Pose::level(DVec3::ZERO, Heading::NORTH),
+                pose: Pose::looking_level(DVec3::ZERO, Heading::NORTH),
                 viewpoint: Some(id.clone()),
                 level: None,
             };
             return self.ids[first..=last].iter().map(frame).collect();
         }
-        let stop = |at: usize| Stop { position: self.places[at], viewpoint: Some(self.ids[at].clone()), level: None };
-        Path::frames_along((first..=last).map(stop).collect(), self.looking(first))
+        let stop =
+            |at: usize| PathStop { position: self.places[at], viewpoint: Some(self.ids[at].clone()), level: None };
+        Path::frames_along((first..=last).map(stop).collect(), self.heading_at(first))
     }
 
     /// The camera's heading at a frame: from the track if it has one, else along the path.
-    fn looking(&self, at: usize) -> Option<Heading> {
+    fn heading_at(&self, at: usize) -> Option<Heading> {
         let track = self.recording.track.as_ref()?;
         let along = || {
             let hop = |from: usize, to: usize| Heading::towards(*self.places.get(from)?, *self.places.get(to)?);
             let before = at.checked_sub(1).filter(|_| !self.breaks.contains(&at));
             before.and_then(|before| hop(before, at)).or_else(|| hop(at, at + 1))
         };
-        track.at(self.recording.reel.times_s()[self.stops[at]])?.heading.or_else(along)
+        track.fix_at(self.recording.reel.times_s()[self.stops[at]])?.heading.or_else(along)
     }
 
     /// First and last stop of a path that fits the request: the whole recording if it fits, else a stretch of it;
     /// `None` if there is none. A short recording is taken whole, unless the request asks for another length than usual.
-    fn stretch(&self, request: &PathRequest, dice: &mut impl Rng) -> Option<(usize, usize)> {
+    fn choose_stretch(&self, request: &PathRequest, dice: &mut impl Rng) -> Option<(usize, usize)> {
         let end = self.stops.len().checked_sub(1).filter(|end| *end > 0)?;
         if self.is_short() && *request == PathRequest::default() {
             return Some((0, end));
         }
-        let (far, wanted) = self.measured(request);
+        let (far, wanted) = self.measure_stops(request);
         // Lengths grow with the last stop, so the stops that fit follow each other.
         let lasts = |first: usize| {
             let behind = self.breaks.range(first + 1..).next().copied().unwrap_or(end + 1);
@@ -200,8 +204,8 @@ impl Opened {
 
     /// The distance of each stop from the first along the path, and the lengths that the request allows: in metres, or in
     /// hops without poses.
-    fn measured(&self, request: &PathRequest) -> (Vec<f64>, RangeInclusive<f64>) {
-        if self.motion() == Motion::Unknown {
+    fn measure_stops(&self, request: &PathRequest) -> (Vec<f64>, RangeInclusive<f64>) {
+        if self.motion() == PathMotion::Unknown {
             let hops = (0..self.stops.len()).map(|at| at as f64).collect();
             return (hops, *request.hops.start() as f64..=*request.hops.end() as f64);
         }
@@ -218,7 +222,7 @@ impl Platform for RecordingPlatform {
         "recording"
     }
 
-    fn scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
+    fn list_scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
         Ok(self.source.scenes())
     }
 
@@ -228,7 +232,7 @@ impl Platform for RecordingPlatform {
     }
 
     /// Opens each recording and reads its first picture, to report all errors before a run meets them item by item.
-    fn check(&self, scenes: &BTreeSet<&SceneId>) -> Result<(), PlatformError> {
+    fn check_scenes(&self, scenes: &BTreeSet<&SceneId>) -> Result<(), PlatformError> {
         let all = self.source.scenes();
         let known = scenes.iter().filter(|scene| all.binary_search(scene).is_ok());
         let mut wrong: Vec<PlatformError> = known.filter_map(|scene| self.source.check(scene).err()).collect();
@@ -246,61 +250,66 @@ impl Platform for RecordingPlatform {
             wrong.len(),
             all.len()
         );
-        Err(files::wrong(&self.path, reason, "docs/RECORDINGS.md lists what can be read"))
+        Err(files::file_error(&self.path, reason, "docs/RECORDINGS.md lists what can be read"))
     }
 
     /// The frames in order, each joined to the next unless the way between them is unknown; empty without poses.
-    fn graph(&self, scene: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {
-        Ok(self.opened(scene)?.graph.clone())
+    fn graph_for_scene(&self, scene: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {
+        Ok(self.open_scene(scene)?.graph.clone())
     }
 
     /// The whole recording if its length fits, else a stretch of it. Without poses the number of hops counts instead of
     /// the length.
     fn sample_path(&self, scene: &SceneId, request: &PathRequest, seed: u64) -> Result<Path, PlatformError> {
-        let opened = self.opened(scene)?;
-        let mut dice = rng(seed, &["stretch", scene.as_str()]);
-        let (first, last) = opened.stretch(request, &mut dice).ok_or_else(|| {
+        let opened = self.open_scene(scene)?;
+        let mut dice = seeded_rng(seed, &["stretch", scene.as_str()]);
+        let (first, last) = opened.choose_stretch(request, &mut dice).ok_or_else(|| {
             let (hops, length_m) = (&request.hops, &request.length_m);
             let (request, hint) = match opened.motion() {
                 _ if opened.graph.viewpoints().count() < 2 => (
                     format!("2 frames, because it has only {}", opened.graph.viewpoints().count()),
                     "record while moving, or set a smaller interval_m or interval_s in recording.toml",
                 ),
-                Motion::Known => (
+                PathMotion::Known => (
                     format!("{} to {} metres", length_m.start(), length_m.end()),
                     "widen --metres, or set a smaller interval_m in recording.toml (docs/RECORDINGS.md)",
                 ),
-                Motion::Unknown => (
+                PathMotion::Unknown => (
                     format!("{} to {} hops", hops.start(), hops.end()),
                     "widen --hops, or set a smaller interval_s in recording.toml (docs/RECORDINGS.md)",
                 ),
             };
             PlatformError::NoSuchPath { scene: scene.clone(), request, hint }
         })?;
-        let frames = opened.frames(first, last);
+        let frames = opened.frames_between(first, last);
         Ok(Path { id: format!("{scene}_{seed}"), scene: scene.clone(), frames, target: None, motion: opened.motion() })
     }
 
     /// The picture of this frame if the camera looked in this direction; else a view without a picture.
-    fn look(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
-        let opened = self.opened(scene)?;
+    fn look_from(&self, scene: &SceneId, from: &Frame, gaze: ViewGaze) -> Result<View, PlatformError> {
+        let opened = self.open_scene(scene)?;
         let id = from.viewpoint.as_ref().ok_or_else(|| PlatformError::NotAViewpoint { scene: scene.clone() })?;
         let unknown = || PlatformError::UnknownViewpoint { scene: scene.clone(), viewpoint: id.clone() };
         let at = opened.ids.iter().position(|other| other == id).ok_or_else(unknown)?;
         // Without a pose, the picture counts as the view ahead.
-        let looking = opened.looking(at).unwrap_or(from.pose.heading);
-        if !gaze.holds(looking) {
-            return Ok(View::new(Pose::level(from.pose.position, gaze.heading), gaze.horizontal_fov_rad, None, None));
+        let looking = opened.heading_at(at).unwrap_or(from.pose.heading);
+        if !gaze.holds_heading(looking) {
+            return Ok(View::new(
+                Pose::looking_level(from.pose.position, gaze.heading),
+                gaze.horizontal_fov_rad,
+                None,
+                None,
+            ));
         }
         let described = opened.recording.described.horizontal_fov_deg.map(f64::to_radians);
         let fov_rad = described.or(opened.recording.horizontal_fov_rad).unwrap_or(USUAL_FOV_RAD);
-        let picture = self.picture(scene, &opened, at)?;
-        Ok(View::new(Pose::level(from.pose.position, looking), fov_rad, Some(picture), None))
+        let picture = self.frame_picture(scene, &opened, at)?;
+        Ok(View::new(Pose::looking_level(from.pose.position, looking), fov_rad, Some(picture), None))
     }
 
-    fn look_without_picture(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
-        self.opened(scene)?;
-        Ok(View::new(Pose::level(from.pose.position, gaze.heading), gaze.horizontal_fov_rad, None, None))
+    fn look_without_picture(&self, scene: &SceneId, from: &Frame, gaze: ViewGaze) -> Result<View, PlatformError> {
+        self.open_scene(scene)?;
+        Ok(View::new(Pose::looking_level(from.pose.position, gaze.heading), gaze.horizontal_fov_rad, None, None))
     }
 
     fn object_name(&self, _: &SceneId, _: &Frame, _: &ObjectId) -> Result<Option<String>, PlatformError> {
@@ -311,25 +320,25 @@ impl Platform for RecordingPlatform {
         Ok(None)
     }
 
-    fn files(&self, scene: &SceneId) -> Result<Vec<PathBuf>, PlatformError> {
+    fn source_files(&self, scene: &SceneId) -> Result<Vec<PathBuf>, PlatformError> {
         self.source.files(scene)
     }
 }
 
 /// A graph of places in order, each joined to the next unless there is a break.
-fn chain(
+fn chain_graph(
     ids: &[ViewpointId],
     places: &[DVec3],
     breaks: &BTreeSet<usize>,
 ) -> Result<ViewpointGraph, wayword_core::graph::GraphError> {
     let mut graph = ViewpointGraph::default();
     for (id, place) in ids.iter().zip(places) {
-        graph.add(id.clone(), *place, None)?;
+        graph.add_viewpoint(id.clone(), *place, None)?;
     }
     if !places.is_empty() {
         for (before, pair) in ids.windows(2).enumerate() {
             if !breaks.contains(&(before + 1)) {
-                graph.join(&pair[0], &pair[1])?;
+                graph.join_viewpoints(&pair[0], &pair[1])?;
             }
         }
     }
@@ -337,7 +346,7 @@ fn chain(
 }
 
 /// A picture at most [`LONGEST_PX`] wide and high.
-fn scaled(image: &Image) -> Image {
+fn scale_down(image: &Image) -> Image {
     let (width, height) = (image.width_px(), image.height_px());
     let longest = width.max(height);
     if longest <= LONGEST_PX {
@@ -345,13 +354,13 @@ fn scaled(image: &Image) -> Image {
     }
     let scaled = |side: u32| (u64::from(side) * u64::from(LONGEST_PX) / u64::from(longest)).max(1) as u32;
     let (wide, high) = (scaled(width), scaled(height));
-    let pixels = image::ImageBuffer::<image::Rgb<u8>, &[u8]>::from_raw(width, height, image.rgb());
+    let pixels = image::ImageBuffer::<image::Rgb<u8>, &[u8]>::from_raw(width, height, image.rgb_bytes());
     let small = pixels.map(|pixels| resize(&pixels, wide, high, FilterType::Triangle));
     small.and_then(|small| Image::new(wide, high, small.into_raw()).ok()).unwrap_or_else(|| image.clone())
 }
 
 /// A line with the number of frames that were chosen, and of those that were left out, with the reasons.
-fn told(scene: &SceneId, recording: &Recording, choice: &Choice) -> String {
+fn describe_choice(scene: &SceneId, recording: &Recording, choice: &FrameChoice) -> String {
     let count = |count: usize, what: &str| if count == 1 { format!("1 {what}") } else { format!("{count} {what}s") };
     let left_out = |places: usize, why: &str| match places {
         0 => String::new(),

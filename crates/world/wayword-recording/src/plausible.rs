@@ -6,8 +6,8 @@
 //! user's settings `world` and `orientation` in a `recording.toml` are not questioned.
 
 use crate::{
-    axes::{Axes, Body, World},
-    describe::Description,
+    axes::{PoseAxes, PoseBody, WorldUpAxis},
+    describe::RecordingDescription,
 };
 use wayword_core::DVec3;
 
@@ -16,24 +16,24 @@ const LEAST_M: f64 = 3.0;
 /// Least length of a step of a path, metres: shorter ones are the tracker's noise.
 const STEP_M: f64 = 0.4;
 /// Steps that rise or fall by more than this share of their length are steeper than stairs and ramps (55 degrees).
-const STEEP: f64 = 0.82;
+const STEEP_SHARE: f64 = 0.82;
 /// A path climbs if such steps make up this share of its length, which is more than a ladder.
-const CLIMBING: f64 = 0.25;
+const CLIMBING_SHARE: f64 = 0.25;
 /// A path is level if it rises by at most this, metres, or by this share of its longest side.
 const PLANE_M: f64 = 0.5;
 const PLANE_SHARE: f64 = 0.08;
 /// A camera is upright if its own up direction is within 60 degrees of the vertical (this is the cosine).
-const UPRIGHT: f64 = 0.5;
+const UPRIGHT_COSINE: f64 = 0.5;
 /// Cameras are upright in at least this share of the poses, if these are read with the right axes.
-const MOSTLY: f64 = 0.9;
+const UPRIGHT_POSES_SHARE: f64 = 0.9;
 /// Other axes are only suggested if the cameras are this upright on average with them (the cosine of 37 degrees).
 const WELL_UPRIGHT: f64 = 0.8;
 /// Least share of the poses that must have an orientation.
-const TOLD: f64 = 0.8;
+const LEAST_ORIENTED_SHARE: f64 = 0.8;
 
 /// A pose as it was recorded.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Sample {
+pub(crate) struct PoseSample {
     pub(crate) position: DVec3,
     /// recorded_from_body by its columns, if the pose has an orientation.
     pub(crate) held: Option<[DVec3; 3]>,
@@ -41,7 +41,7 @@ pub(crate) struct Sample {
 
 /// Why poses are probably read with the wrong axes.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Doubt {
+pub(crate) enum PoseDoubt {
     /// With other axes the path is plausible: the user has to choose.
     Misread(String),
     /// The path is unusual, but may be right.
@@ -49,7 +49,7 @@ pub(crate) enum Doubt {
 }
 
 #[cfg(any(feature = "lerobot", feature = "mcap"))]
-impl Doubt {
+impl PoseDoubt {
     pub(crate) fn into_words(self) -> String {
         match self {
             Self::Misread(words) | Self::Odd(words) => words,
@@ -58,14 +58,18 @@ impl Doubt {
 }
 
 /// The doubt about poses, in the order of their times, if they are read with these axes.
-pub(crate) fn doubt(samples: &[Sample], axes: Axes, described: &Description) -> Option<Doubt> {
-    let walk = Walk::of(samples).filter(|walk| walk.length_m >= LEAST_M)?;
-    let climbs = walk.climbs(axes.world) && !walk.is_level(axes.world);
-    let stands = walk.stands(axes);
+pub(crate) fn find_doubt(
+    samples: &[PoseSample],
+    axes: PoseAxes,
+    described: &RecordingDescription,
+) -> Option<PoseDoubt> {
+    let walk = RecordedWalk::from_samples(samples).filter(|walk| walk.length_m >= LEAST_M)?;
+    let climbs = walk.is_climbing(axes.world) && !walk.is_level(axes.world);
+    let stands = walk.is_upright(axes);
     if stands == Some(true) && !climbs {
         return None;
     }
-    if let Some(meant) = meant(&walk, axes, described) {
+    if let Some(meant) = likely_axes(&walk, axes, described) {
         let odd = match (stands == Some(true), climbs) {
             (true, _) => "the path climbs straight up",
             (false, true) => "the camera lies on its side and the path climbs straight up",
@@ -74,35 +78,36 @@ pub(crate) fn doubt(samples: &[Sample], axes: Axes, described: &Description) -> 
         let words = format!(
             "read with {}, {odd}; read with {}, the camera is upright and the path is level. Write {} into a \
              recording.toml beside it, or {} if the poses are right as they are",
-            told(axes),
-            told(meant),
-            changed(axes, meant),
-            told(axes)
+            axes_setting(axes),
+            axes_setting(meant),
+            changed_settings(axes, meant),
+            axes_setting(axes)
         );
         // A drone may look straight down or go straight up, and a phone may be turned on its side. Only both together are
         // certain.
         let is_misread = climbs && stands == Some(false) && meant.world != axes.world;
-        return Some(if is_misread { Doubt::Misread(words) } else { Doubt::Odd(words) });
+        return Some(if is_misread { PoseDoubt::Misread(words) } else { PoseDoubt::Odd(words) });
     }
     match stands {
         Some(true) => None,
-        Some(false) => walk.upright(axes).filter(|upright| *upright <= -WELL_UPRIGHT).map(|_| {
-            Doubt::Odd(format!(
+        Some(false) => walk.mean_up(axes).filter(|upright| *upright <= -WELL_UPRIGHT).map(|_| {
+            PoseDoubt::Odd(format!(
                 "read with {}, the camera is upside down: set `world` and `orientation` in a recording.toml, or \
                  rotate the poses so that z is up",
-                told(axes)
+                axes_setting(axes)
             ))
         }),
-        None => plane(&walk, axes, described).filter(|_| climbs),
+        None => doubt_plane(&walk, axes, described).filter(|_| climbs),
     }
 }
 
 /// The doubt about positions alone: they stay in a plane that would be level in another world.
-fn plane(walk: &Walk, axes: Axes, described: &Description) -> Option<Doubt> {
-    let is_meant = |world: &World| *world != axes.world && walk.is_level(*world) && !walk.climbs(*world);
-    let meant = [World::ZUp, World::YUp].into_iter().find(is_meant).filter(|_| described.world.is_none())?;
-    let (now, meant) = (world_told(axes.world), world_told(meant));
-    Some(Doubt::Odd(format!(
+fn doubt_plane(walk: &RecordedWalk, axes: PoseAxes, described: &RecordingDescription) -> Option<PoseDoubt> {
+    let is_meant = |world: &WorldUpAxis| *world != axes.world && walk.is_level(*world) && !walk.is_climbing(*world);
+    let meant =
+        [WorldUpAxis::ZUp, WorldUpAxis::YUp].into_iter().find(is_meant).filter(|_| described.world.is_none())?;
+    let (now, meant) = (world_setting(axes.world), world_setting(meant));
+    Some(PoseDoubt::Odd(format!(
         "read with {now}, the path climbs and falls {:.1} m; read with {meant}, it stays level. If that is right, \
          write {meant} into a recording.toml beside it (y-down if y grows downwards), else write {now}",
         walk.climbed_m(axes.world)
@@ -111,20 +116,24 @@ fn plane(walk: &Walk, axes: Axes, described: &Description) -> Option<Doubt> {
 
 /// Other axes with which the cameras are upright and the path is level. Those that differ least from the present axes come
 /// first, then those with which the camera looks in the direction of movement.
-fn meant(walk: &Walk, axes: Axes, described: &Description) -> Option<Axes> {
-    let worlds = [World::ZUp, World::YUp, World::YDown].into_iter();
+fn likely_axes(walk: &RecordedWalk, axes: PoseAxes, described: &RecordingDescription) -> Option<PoseAxes> {
+    let worlds = [WorldUpAxis::ZUp, WorldUpAxis::YUp, WorldUpAxis::YDown].into_iter();
     let worlds = worlds.filter(|world| *world == axes.world || described.world.is_none());
-    let all =
-        worlds.flat_map(|world| [Body::Robot, Body::Optical, Body::OpenGl].map(|body| Axes { world, body, ..axes }));
+    let all = worlds.flat_map(|world| {
+        [PoseBody::Robot, PoseBody::Optical, PoseBody::OpenGl].map(|body| PoseAxes { world, body, ..axes })
+    });
     let could = all.filter(|other| *other != axes && (other.body == axes.body || described.orientation.is_none()));
-    let fits =
-        |other: &Axes| walk.upright(*other).is_some_and(|upright| upright >= WELL_UPRIGHT) && !walk.climbs(other.world);
-    let changes = |other: &Axes| usize::from(other.world != axes.world) + usize::from(other.body != axes.body);
-    could.filter(fits).min_by(|a, b| changes(a).cmp(&changes(b)).then(walk.ahead(*b).total_cmp(&walk.ahead(*a))))
+    let fits = |other: &PoseAxes| {
+        walk.mean_up(*other).is_some_and(|upright| upright >= WELL_UPRIGHT) && !walk.is_climbing(other.world)
+    };
+    let changes = |other: &PoseAxes| usize::from(other.world != axes.world) + usize::from(other.body != axes.body);
+    could
+        .filter(fits)
+        .min_by(|a, b| changes(a).cmp(&changes(b)).then(walk.distance_ahead(*b).total_cmp(&walk.distance_ahead(*a))))
 }
 
 /// A path in the frame of its recording.
-struct Walk {
+struct RecordedWalk {
     /// At least a step apart.
     places: Vec<DVec3>,
     length_m: f64,
@@ -132,8 +141,8 @@ struct Walk {
     held: Vec<[DVec3; 3]>,
 }
 
-impl Walk {
-    fn of(samples: &[Sample]) -> Option<Self> {
+impl RecordedWalk {
+    fn from_samples(samples: &[PoseSample]) -> Option<Self> {
         let mut places: Vec<DVec3> = Vec::new();
         let mut held = Vec::new();
         for sample in samples.iter().filter(|sample| sample.position.is_finite()) {
@@ -142,7 +151,7 @@ impl Walk {
                 held.extend(sample.held);
             }
         }
-        if (held.len() as f64) < TOLD * places.len() as f64 {
+        if (held.len() as f64) < LEAST_ORIENTED_SHARE * places.len() as f64 {
             held.clear();
         }
         let length_m = places.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
@@ -154,71 +163,71 @@ impl Walk {
     }
 
     /// The vertical component of the camera's up direction, pose by pose; empty if too few poses have an orientation.
-    fn ups(&self, axes: Axes) -> impl Iterator<Item = f64> {
-        self.held.iter().map(move |held| axes.wayword_from_recorded(along(held, axes.above())).z)
+    fn up_components(&self, axes: PoseAxes) -> impl Iterator<Item = f64> {
+        self.held.iter().map(move |held| axes.wayword_from_recorded(recorded_direction(held, axes.body_up())).z)
     }
 
-    /// The mean of [`Walk::ups`].
-    fn upright(&self, axes: Axes) -> Option<f64> {
-        (!self.held.is_empty()).then(|| self.ups(axes).sum::<f64>() / self.held.len() as f64)
+    /// The mean of [`RecordedWalk::up_components`].
+    fn mean_up(&self, axes: PoseAxes) -> Option<f64> {
+        (!self.held.is_empty()).then(|| self.up_components(axes).sum::<f64>() / self.held.len() as f64)
     }
 
     /// Whether the camera is upright in most of the poses; `None` if too few of them have an orientation.
-    fn stands(&self, axes: Axes) -> Option<bool> {
-        let upright = self.ups(axes).filter(|up| *up >= UPRIGHT).count();
-        (!self.held.is_empty()).then_some(upright as f64 >= MOSTLY * self.held.len() as f64)
+    fn is_upright(&self, axes: PoseAxes) -> Option<bool> {
+        let upright = self.up_components(axes).filter(|up| *up >= UPRIGHT_COSINE).count();
+        (!self.held.is_empty()).then_some(upright as f64 >= UPRIGHT_POSES_SHARE * self.held.len() as f64)
     }
 
     /// Distance that the steps cover in the camera's view direction, metres.
-    fn ahead(&self, axes: Axes) -> f64 {
-        self.steps().zip(&self.held).map(|(step, held)| along(held, axes.ahead()).dot(step)).sum()
+    fn distance_ahead(&self, axes: PoseAxes) -> f64 {
+        self.steps().zip(&self.held).map(|(step, held)| recorded_direction(held, axes.body_ahead()).dot(step)).sum()
     }
 
     /// Whether a large part of the path goes straight up or down.
-    fn climbs(&self, world: World) -> bool {
-        let up = up(world);
-        let steep = self.steps().filter(|step| step.dot(up).abs() > STEEP * step.length());
-        steep.map(DVec3::length).sum::<f64>() >= CLIMBING * self.length_m
+    fn is_climbing(&self, world: WorldUpAxis) -> bool {
+        let up = up_direction(world);
+        let steep = self.steps().filter(|step| step.dot(up).abs() > STEEP_SHARE * step.length());
+        steep.map(DVec3::length).sum::<f64>() >= CLIMBING_SHARE * self.length_m
     }
 
-    fn climbed_m(&self, world: World) -> f64 {
-        self.steps().map(|step| step.dot(up(world)).abs()).sum()
+    fn climbed_m(&self, world: WorldUpAxis) -> f64 {
+        self.steps().map(|step| step.dot(up_direction(world)).abs()).sum()
     }
 
     /// Whether the path stays in a plane that is level in a world.
-    fn is_level(&self, world: World) -> bool {
+    fn is_level(&self, world: WorldUpAxis) -> bool {
         let low = self.places.iter().copied().fold(DVec3::INFINITY, DVec3::min);
         let high = self.places.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
         let extent = high - low;
-        extent.dot(up(world)).abs() <= PLANE_M.max(PLANE_SHARE * extent.max_element())
+        extent.dot(up_direction(world)).abs() <= PLANE_M.max(PLANE_SHARE * extent.max_element())
     }
 }
 
 /// A direction of the body in the recorded frame.
-fn along([x, y, z]: &[DVec3; 3], of_body: DVec3) -> DVec3 {
+fn recorded_direction([x, y, z]: &[DVec3; 3], of_body: DVec3) -> DVec3 {
     *x * of_body.x + *y * of_body.y + *z * of_body.z
 }
 
 /// The up direction in the recorded frame.
-fn up(world: World) -> DVec3 {
+fn up_direction(world: WorldUpAxis) -> DVec3 {
     match world {
-        World::ZUp => DVec3::Z,
-        World::YUp => DVec3::Y,
-        World::YDown => DVec3::NEG_Y,
+        WorldUpAxis::ZUp => DVec3::Z,
+        WorldUpAxis::YUp => DVec3::Y,
+        WorldUpAxis::YDown => DVec3::NEG_Y,
     }
 }
 
-fn world_told(world: World) -> String {
+fn world_setting(world: WorldUpAxis) -> String {
     format!("world = \"{}\"", world.name())
 }
 
-fn told(axes: Axes) -> String {
+fn axes_setting(axes: PoseAxes) -> String {
     format!("world = \"{}\" and orientation = \"{}\"", axes.world.name(), axes.body.name())
 }
 
 /// The settings that differ between two sets of axes, as they are written in `recording.toml`.
-fn changed(from: Axes, to: Axes) -> String {
-    let world = (from.world != to.world).then(|| world_told(to.world));
+fn changed_settings(from: PoseAxes, to: PoseAxes) -> String {
+    let world = (from.world != to.world).then(|| world_setting(to.world));
     let body = (from.body != to.body).then(|| format!("orientation = \"{}\"", to.body.name()));
     world.into_iter().chain(body).collect::<Vec<_>>().join(" and ")
 }

@@ -1,73 +1,73 @@
 //! The common form of all kinds of recordings: pictures in the order of their times, and the track of the camera.
 
-use crate::{choose::wanted, describe::Description, track::Track};
+use crate::{choose::candidate_pictures, describe::RecordingDescription, track::CameraTrack};
 use std::path::PathBuf;
 use wayword_core::{Image, PlatformError, SceneId};
 
 /// A file or folder that holds recordings.
-pub(crate) trait Source: Send + Sync {
+pub(crate) trait RecordingSource: Send + Sync {
     /// The recordings, sorted.
     fn scenes(&self) -> Vec<SceneId>;
 
-    /// Opens one of [`Source::scenes`]. Reads its times and poses, but no pictures.
+    /// Opens one of [`RecordingSource::scenes`]. Reads its times and poses, but no pictures.
     ///
     /// # Errors
     /// When its files cannot be read.
     fn open(&self, scene: &SceneId) -> Result<Recording, PlatformError>;
 
-    /// The plain files that one of [`Source::scenes`] is read from, sorted: pictures, poses and its description.
+    /// The plain files that one of [`RecordingSource::scenes`] is read from, sorted: pictures, poses and its description.
     ///
     /// # Errors
     /// When the program cannot determine these files.
     fn files(&self, scene: &SceneId) -> Result<Vec<PathBuf>, PlatformError>;
 
-    /// Checks whether one of [`Source::scenes`] can be read: its index, and its first picture.
+    /// Checks whether one of [`RecordingSource::scenes`] can be read: its index, and its first picture.
     ///
     /// # Errors
     /// When it cannot.
     fn check(&self, scene: &SceneId) -> Result<(), PlatformError> {
         let recording = self.open(scene)?;
-        let wanted = wanted(&recording);
-        recording.reel.glance(&wanted)?;
-        recording.reel.pictures(&wanted[..wanted.len().min(1)], &mut |_, _| Ok(()))
+        let wanted = candidate_pictures(&recording);
+        recording.reel.glance_at(&wanted)?;
+        recording.reel.hand_out_pictures(&wanted[..wanted.len().min(1)], &mut |_, _| Ok(()))
     }
 }
 
 /// One recording of one camera.
 pub(crate) struct Recording {
-    pub(crate) reel: Box<dyn Reel>,
+    pub(crate) reel: Box<dyn PictureReel>,
     /// The poses of the camera; `None` if the recording has none.
-    pub(crate) track: Option<Track>,
+    pub(crate) track: Option<CameraTrack>,
     /// Horizontal field of view of its pictures, radians, if the recording itself gives it.
     pub(crate) horizontal_fov_rad: Option<f64>,
     /// The user's description of it.
-    pub(crate) described: Description,
+    pub(crate) described: RecordingDescription,
 }
 
 /// Receives a picture with its number.
-pub(crate) type Take<'a> = dyn FnMut(usize, Image) -> Result<(), PlatformError> + 'a;
+pub(crate) type TakePicture<'a> = dyn FnMut(usize, Image) -> Result<(), PlatformError> + 'a;
 
 /// The pictures of a recording, in the order of their times.
-pub(crate) trait Reel: Send + Sync {
+pub(crate) trait PictureReel: Send + Sync {
     /// Times at which the pictures were taken, seconds on the clock of the recording's track, in ascending order. Equal times
     /// may follow each other.
     fn times_s(&self) -> &[f64];
 
     /// The name of a picture, unique within the recording.
-    fn name(&self, number: usize) -> String;
+    fn picture_name(&self, number: usize) -> String;
 
     /// Hands out the wanted pictures, in order, one at a time: a picture need not stay in memory while the next is
-    /// read. `wanted` ascends without repetition; its numbers are below the length of [`Reel::times_s`].
+    /// read. `wanted` ascends without repetition; its numbers are below the length of [`PictureReel::times_s`].
     ///
     /// # Errors
     /// When one cannot be read, or `take` fails.
-    fn pictures(&self, wanted: &[usize], take: &mut Take<'_>) -> Result<(), PlatformError>;
+    fn hand_out_pictures(&self, wanted: &[usize], take: &mut TakePicture<'_>) -> Result<(), PlatformError>;
 
     /// Checks whether the wanted files are pictures, if that is cheap.
     ///
     /// # Errors
     /// When one is not a picture.
-    fn glance(&self, _wanted: &[usize]) -> Result<(), PlatformError> {
+    fn glance_at(&self, _wanted: &[usize]) -> Result<(), PlatformError> {
         Ok(())
     }
 }

@@ -1,26 +1,26 @@
 //! A folder with several recordings, as one source.
 
 use crate::{
-    names::unknown,
-    open::recording,
-    reel::{Recording, Source},
+    names::unknown_scene,
+    open::open_recording,
+    reel::{Recording, RecordingSource},
 };
 use std::path::PathBuf;
 use wayword_core::{PlatformError, SceneId};
 
 /// Several sources in one folder.
-pub(crate) struct Shelf {
-    pub(crate) sources: Vec<Box<dyn Source>>,
+pub(crate) struct RecordingShelf {
+    pub(crate) sources: Vec<Box<dyn RecordingSource>>,
 }
 
-impl Shelf {
-    fn source(&self, scene: &SceneId) -> Result<&dyn Source, PlatformError> {
+impl RecordingShelf {
+    fn find_source(&self, scene: &SceneId) -> Result<&dyn RecordingSource, PlatformError> {
         let source = self.sources.iter().find(|source| source.scenes().contains(scene));
-        source.map(|source| &**source).ok_or_else(|| unknown(scene, &self.scenes()))
+        source.map(|source| &**source).ok_or_else(|| unknown_scene(scene, &self.scenes()))
     }
 }
 
-impl Source for Shelf {
+impl RecordingSource for RecordingShelf {
     fn scenes(&self) -> Vec<SceneId> {
         let mut scenes: Vec<SceneId> = self.sources.iter().flat_map(|source| source.scenes()).collect();
         scenes.sort();
@@ -28,34 +28,34 @@ impl Source for Shelf {
     }
 
     fn open(&self, scene: &SceneId) -> Result<Recording, PlatformError> {
-        self.source(scene)?.open(scene)
+        self.find_source(scene)?.open(scene)
     }
 
     fn files(&self, scene: &SceneId) -> Result<Vec<PathBuf>, PlatformError> {
-        self.source(scene)?.files(scene)
+        self.find_source(scene)?.files(scene)
     }
 
     fn check(&self, scene: &SceneId) -> Result<(), PlatformError> {
-        self.source(scene)?.check(scene)
+        self.find_source(scene)?.check(scene)
     }
 }
 
 /// A recording that failed to open together with its folder. Its error is reported only when somebody uses this recording.
-pub(crate) struct Unopened {
+pub(crate) struct UnopenedRecording {
     pub(crate) scene: SceneId,
     pub(crate) path: PathBuf,
 }
 
-impl Source for Unopened {
+impl RecordingSource for UnopenedRecording {
     fn scenes(&self) -> Vec<SceneId> {
         vec![self.scene.clone()]
     }
 
     fn open(&self, scene: &SceneId) -> Result<Recording, PlatformError> {
-        recording(&self.path)?.open(scene)
+        open_recording(&self.path)?.open(scene)
     }
 
     fn files(&self, scene: &SceneId) -> Result<Vec<PathBuf>, PlatformError> {
-        recording(&self.path)?.files(scene)
+        open_recording(&self.path)?.files(scene)
     }
 }

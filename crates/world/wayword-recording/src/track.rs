@@ -12,7 +12,7 @@ const MAX_COORDINATE_M: f64 = 2e7;
 
 /// The pose of the camera at one time, in Wayword's frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Fix {
+pub(crate) struct TrackFix {
     /// Time on the clock of the pictures, seconds.
     pub(crate) time_s: f64,
     /// Position of the camera, or of the robot that carries it, metres.
@@ -23,16 +23,16 @@ pub(crate) struct Fix {
 
 /// Fixes in the order of their times.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Track {
-    fixes: Vec<Fix>,
+pub(crate) struct CameraTrack {
+    fixes: Vec<TrackFix>,
     /// A warning about them, in words.
     doubt: Option<String>,
 }
 
-impl Track {
+impl CameraTrack {
     /// A track from fixes in any order; `None` where no fix is left. Fixes without a valid position or time are
     /// dropped, and of several fixes at one time the first counts.
-    pub(crate) fn new(mut fixes: Vec<Fix>) -> Option<Self> {
+    pub(crate) fn new(mut fixes: Vec<TrackFix>) -> Option<Self> {
         fixes.retain(|fix| {
             let place = fix.position;
             fix.time_s.is_finite() && place.is_finite() && place.abs().max_element() <= MAX_COORDINATE_M
@@ -54,35 +54,35 @@ impl Track {
 
     /// Times of the first and last fix, seconds.
     pub(crate) fn span_s(&self) -> (f64, f64) {
-        let time_s = |fix: Option<&Fix>| fix.map_or(0.0, |fix| fix.time_s);
+        let time_s = |fix: Option<&TrackFix>| fix.map_or(0.0, |fix| fix.time_s);
         (time_s(self.fixes.first()), time_s(self.fixes.last()))
     }
 
     /// The pose at a time: on the straight line between two fixes that are at most [`MAX_GAP_S`] apart, else at the nearest
     /// fix if it is at most [`MAX_BEYOND_S`] away; `None` otherwise.
-    pub(crate) fn at(&self, time_s: f64) -> Option<Fix> {
+    pub(crate) fn fix_at(&self, time_s: f64) -> Option<TrackFix> {
         let next = self.fixes.partition_point(|fix| fix.time_s < time_s);
         let (before, after) = (next.checked_sub(1).map(|at| self.fixes[at]), self.fixes.get(next).copied());
         if let (Some(before), Some(after)) = (before, after)
             && after.time_s - before.time_s <= MAX_GAP_S
         {
-            return Some(between(before, after, time_s));
+            return Some(fix_between(before, after, time_s));
         }
         let nearest = [before, after].into_iter().flatten().min_by(|a, b| {
-            let off = |fix: &Fix| (fix.time_s - time_s).abs();
+            let off = |fix: &TrackFix| (fix.time_s - time_s).abs();
             off(a).total_cmp(&off(b))
         })?;
-        ((nearest.time_s - time_s).abs() <= MAX_BEYOND_S).then_some(Fix { time_s, ..nearest })
+        ((nearest.time_s - time_s).abs() <= MAX_BEYOND_S).then_some(TrackFix { time_s, ..nearest })
     }
 }
 
-fn between(before: Fix, after: Fix, time_s: f64) -> Fix {
+fn fix_between(before: TrackFix, after: TrackFix, time_s: f64) -> TrackFix {
     let share = ((time_s - before.time_s) / (after.time_s - before.time_s)).clamp(0.0, 1.0);
     let heading = match (before.heading, after.heading) {
-        (Some(from), Some(to)) => Some(from.turned(from.turn_to(to) * share)),
+        (Some(from), Some(to)) => Some(from.turned_by(from.turn_to(to) * share)),
         (one, other) => one.or(other),
     };
-    Fix { time_s, position: before.position.lerp(after.position, share), heading }
+    TrackFix { time_s, position: before.position.lerp(after.position, share), heading }
 }
 
 #[cfg(test)]
@@ -90,41 +90,41 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn fix(time_s: f64, x: f64, deg: f64) -> Fix {
+    fn fix(time_s: f64, x: f64, deg: f64) -> TrackFix {
         let heading = Heading::new(deg.to_radians()).ok();
-        Fix { time_s, position: DVec3::new(x, 0.0, 0.0), heading }
+        TrackFix { time_s, position: DVec3::new(x, 0.0, 0.0), heading }
     }
 
     #[test]
     fn between_two_fixes_the_way_is_straight_and_the_turn_the_short_one() {
-        let track = Track::new(vec![fix(2.0, 4.0, 10.0), fix(1.0, 2.0, 350.0)]).unwrap();
-        let half = track.at(1.5).unwrap();
+        let track = CameraTrack::new(vec![fix(2.0, 4.0, 10.0), fix(1.0, 2.0, 350.0)]).unwrap();
+        let half = track.fix_at(1.5).unwrap();
         assert_eq!(half.position.x, 3.0);
         assert!(half.heading.unwrap().turn_to(Heading::NORTH).abs() < 1e-9);
     }
 
     #[test]
     fn track_has_no_fix_in_long_gaps_and_beyond_its_ends() {
-        let track = Track::new(vec![fix(0.0, 0.0, 0.0), fix(10.0, 5.0, 0.0)]).unwrap();
-        assert!(track.at(5.0).is_none() && track.at(-1.0).is_none() && track.at(11.0).is_none());
-        assert_eq!(track.at(0.05).unwrap().position.x, 0.0);
-        assert_eq!(track.at(10.05).unwrap().position.x, 5.0);
-        assert_eq!(track.at(9.95).unwrap().position.x, 5.0);
+        let track = CameraTrack::new(vec![fix(0.0, 0.0, 0.0), fix(10.0, 5.0, 0.0)]).unwrap();
+        assert!(track.fix_at(5.0).is_none() && track.fix_at(-1.0).is_none() && track.fix_at(11.0).is_none());
+        assert_eq!(track.fix_at(0.05).unwrap().position.x, 0.0);
+        assert_eq!(track.fix_at(10.05).unwrap().position.x, 5.0);
+        assert_eq!(track.fix_at(9.95).unwrap().position.x, 5.0);
     }
 
     #[test]
     fn track_drops_fixes_without_a_valid_position() {
-        assert!(Track::new(vec![fix(0.0, f64::NAN, 0.0), fix(f64::NAN, 0.0, 0.0), fix(0.0, 1e9, 0.0)]).is_none());
-        assert!(Track::new(vec![fix(0.0, 5.4e6, 0.0)]).is_some());
+        assert!(CameraTrack::new(vec![fix(0.0, f64::NAN, 0.0), fix(f64::NAN, 0.0, 0.0), fix(0.0, 1e9, 0.0)]).is_none());
+        assert!(CameraTrack::new(vec![fix(0.0, 5.4e6, 0.0)]).is_some());
     }
 
     proptest! {
         #[test]
         fn every_place_lies_between_its_fixes(times in prop::collection::vec(0.0..20.0f64, 1..20), at in -1.0..21.0f64) {
             let fixes = times.iter().map(|time_s| fix(*time_s, *time_s, 0.0)).collect();
-            let track = Track::new(fixes).unwrap();
+            let track = CameraTrack::new(fixes).unwrap();
             let (first, last) = track.span_s();
-            if let Some(found) = track.at(at) {
+            if let Some(found) = track.fix_at(at) {
                 prop_assert!((first..=last).contains(&found.position.x));
                 prop_assert!((found.position.x - at).abs() <= MAX_BEYOND_S + 1e-9);
             }

@@ -6,7 +6,10 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use glam::{DMat3, DVec3, Vec2, Vec3};
 use std::hint::black_box;
 use std::time::Instant;
-use wayword_render::{Camera, CubeMap, Face, Filter, Material, Mesh, Scene, Texture, render, sample_view};
+use wayword_render::{
+    CubeFace, CubeMap, Mesh, MeshMaterial, PinholeCamera, RenderScene, Texture, TextureFilter, render_scene,
+    sample_view,
+};
 
 /// How many poses pictures are taken from, all over the scan.
 const POSES: u32 = 100;
@@ -75,37 +78,44 @@ fn grid(mesh: &mut Mesh, [columns, rows]: [u32; 2], [u, v, side]: [f32; 3], plac
     }
 }
 
-fn scene(grain: &Grain) -> Scene {
+fn scene(grain: &Grain) -> RenderScene {
     let texel = |i: u32| {
         let (x, y) = (i % 4096, i / 4096);
         [(x ^ y) as u8, (x >> 4) as u8, (y >> 4) as u8, 255]
     };
     let texture = Texture::new(4096, 4096, (0..4096 * 4096).map(texel).collect()).expect("sizes agree");
-    let material = Material { texture: Some(0), ..Material::default() };
+    let material = MeshMaterial { texture: Some(0), ..MeshMaterial::default() };
     let mesh = scan(grain);
     println!("{}: {} triangles", grain.name, mesh.triangles.len());
-    Scene::new(vec![mesh], vec![material], vec![texture]).expect("the mesh is sound")
+    RenderScene::new(vec![mesh], vec![material], vec![texture]).expect("the mesh is sound")
 }
 
-fn pose(step: u32) -> Camera {
+fn pose(step: u32) -> PinholeCamera {
     let position = DVec3::new(1.65 + 1.45 * f64::from(step % 7), 1.8 + 1.75 * f64::from(step % 4), 1.5);
     let vertical_fov_rad = 60f64.to_radians();
-    Camera { position, heading_rad: f64::from(step), elevation_rad: -0.2, vertical_fov_rad, width: 640, height: 480 }
+    PinholeCamera {
+        position,
+        heading_rad: f64::from(step),
+        elevation_rad: -0.2,
+        vertical_fov_rad,
+        width: 640,
+        height: 480,
+    }
 }
 
 /// Draws one view after another. Criterion's figure is the mean over the poses; the printed figure is the median.
 fn views(criterion: &mut Criterion) {
     for grain in [HALF_A_MILLION, A_MILLION] {
         let mut scene = scene(&grain);
-        for (filter, named) in [(Filter::Bilinear, "bilinear"), (Filter::Trilinear, "trilinear")] {
+        for (filter, named) in [(TextureFilter::Bilinear, "bilinear"), (TextureFilter::Trilinear, "trilinear")] {
             scene = scene.with_filter(filter);
             let name = format!("view 640x480 of {} triangles, 4096 texture, {named}", grain.name);
-            print_times(&name, |step| render(&scene, &pose(step)).expect("the camera is sound"));
+            print_times(&name, |step| render_scene(&scene, &pose(step)).expect("the camera is sound"));
             let mut step = 0;
             criterion.bench_function(&name, |bencher| {
                 bencher.iter(|| {
                     step = (step + 1) % POSES;
-                    render(&scene, &pose(step))
+                    render_scene(&scene, &pose(step))
                 });
             });
         }
@@ -129,7 +139,8 @@ fn print_times<P>(name: &str, draw: impl Fn(u32) -> P) {
 }
 
 fn cube(criterion: &mut Criterion) {
-    let face = |n: u32| Face { side_px: 512, rgb: (0..512 * 512 * 3).map(|i| ((i * (n + 3)) >> 5) as u8).collect() };
+    let face =
+        |n: u32| CubeFace { side_px: 512, rgb: (0..512 * 512 * 3).map(|i| ((i * (n + 3)) >> 5) as u8).collect() };
     let cube = CubeMap::new(std::array::from_fn(|n| face(n as u32))).expect("the faces are square");
     let name = "cube map to view 640x480";
     let view = |step: u32| {

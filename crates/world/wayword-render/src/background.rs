@@ -2,7 +2,7 @@
 
 /// Colour of the pixels that no triangle covers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Background {
+pub enum PictureBackground {
     /// One colour.
     Plain([u8; 3]),
     /// Three colours, blended by the sine of the elevation of the pixel's ray.
@@ -16,16 +16,16 @@ pub enum Background {
     },
 }
 
-impl Default for Background {
+impl Default for PictureBackground {
     /// Black, as in Habitat.
     fn default() -> Self {
         Self::Plain([0; 3])
     }
 }
 
-impl Background {
+impl PictureBackground {
     /// Colour along a ray; `sin_elevation` lies in [-1, 1].
-    pub(crate) fn colour(&self, sin_elevation: f32) -> [u8; 3] {
+    pub(crate) fn colour_along(&self, sin_elevation: f32) -> [u8; 3] {
         match *self {
             Self::Plain(colour) => colour,
             Self::Sky { zenith, horizon, nadir } => {
@@ -46,11 +46,11 @@ mod tests {
 
     #[test]
     fn sky_blends_from_horizon_to_both_ends() {
-        let sky = Background::Sky { zenith: [0, 0, 200], horizon: [100; 3], nadir: [50, 0, 0] };
-        assert_eq!(sky.colour(1.0), [0, 0, 200]);
-        assert_eq!(sky.colour(0.0), [100; 3]);
-        assert_eq!(sky.colour(-1.0), [50, 0, 0]);
-        assert_eq!(sky.colour(0.5), [50, 50, 150]);
-        assert_eq!(Background::default().colour(0.3), [0; 3]);
+        let sky = PictureBackground::Sky { zenith: [0, 0, 200], horizon: [100; 3], nadir: [50, 0, 0] };
+        assert_eq!(sky.colour_along(1.0), [0, 0, 200]);
+        assert_eq!(sky.colour_along(0.0), [100; 3]);
+        assert_eq!(sky.colour_along(-1.0), [50, 0, 0]);
+        assert_eq!(sky.colour_along(0.5), [50, 50, 150]);
+        assert_eq!(PictureBackground::default().colour_along(0.3), [0; 3]);
     }
 }

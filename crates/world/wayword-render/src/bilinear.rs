@@ -5,7 +5,7 @@ use glam::Vec3;
 /// The colour at a pixel position ((0, 0) is the top left corner of the picture), 0..=255 per channel: bilinear between
 /// pixel centres, clamped at the edges. `rgb` holds three bytes for each of `width * height` pixels; there is at least
 /// one pixel.
-pub(crate) fn bilinear(rgb: &[u8], [width, height]: [usize; 2], [x_px, y_px]: [f32; 2]) -> Vec3 {
+pub(crate) fn sample_bilinear(rgb: &[u8], [width, height]: [usize; 2], [x_px, y_px]: [f32; 2]) -> Vec3 {
     let split = |at_px: f32, side: usize| {
         let position = (at_px - 0.5).clamp(0.0, (side - 1) as f32);
         let index = position as usize;

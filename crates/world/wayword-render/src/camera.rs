@@ -2,7 +2,7 @@
 
 use crate::picture::{RenderError, check_finite, check_size};
 use glam::{DMat3, DVec3};
-use wayword_core::Gaze;
+use wayword_core::ViewGaze;
 
 /// Narrowest and widest horizontal field of view of one flat picture, radians.
 const NARROWEST_RAD: f64 = 0.05;
@@ -10,8 +10,8 @@ const WIDEST_RAD: f64 = 2.6;
 
 /// The gaze with its width limited to a field of view that one flat picture can show.
 #[must_use]
-pub fn flat(gaze: Gaze) -> Gaze {
-    Gaze { horizontal_fov_rad: gaze.horizontal_fov_rad.clamp(NARROWEST_RAD, WIDEST_RAD), ..gaze }
+pub fn to_flat_gaze(gaze: ViewGaze) -> ViewGaze {
+    ViewGaze { horizontal_fov_rad: gaze.horizontal_fov_rad.clamp(NARROWEST_RAD, WIDEST_RAD), ..gaze }
 }
 
 /// A pinhole camera without roll. Its axes in the world are forward = (sin h cos e, cos h cos e, sin e),
@@ -20,7 +20,7 @@ pub fn flat(gaze: Gaze) -> Gaze {
 /// Pixel coordinates are continuous, x to the right and y down, (0, 0) the top left corner of the picture: the centre
 /// of the top left pixel is (0.5, 0.5).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Camera {
+pub struct PinholeCamera {
     /// Eye, metres, world frame.
     pub position: DVec3,
     /// 0 along +y, clockwise seen from above.
@@ -35,7 +35,7 @@ pub struct Camera {
     pub height: u32,
 }
 
-impl Camera {
+impl PinholeCamera {
     /// The camera at `position` that looks along `forward` (any length). Use it for poses given as quaternions
     /// (Habitat's): their roll is zero.
     #[must_use]
@@ -53,7 +53,7 @@ impl Camera {
 
     /// The level camera of a gaze, for a picture of `width` and `height` pixels.
     #[must_use]
-    pub fn level(position: DVec3, gaze: Gaze, [width, height]: [u32; 2]) -> Self {
+    pub fn for_level_gaze(position: DVec3, gaze: ViewGaze, [width, height]: [u32; 2]) -> Self {
         let aspect = f64::from(height) / f64::from(width.max(1));
         let vertical_fov_rad = 2.0 * libm::atan(libm::tan(gaze.horizontal_fov_rad / 2.0) * aspect);
         Self { position, heading_rad: gaze.heading.rad(), elevation_rad: 0.0, vertical_fov_rad, width, height }
@@ -73,7 +73,7 @@ impl Camera {
     /// The pixel position and the depth of a world point: (x_px, y_px, depth_m), depth along forward; `None` for points not in
     /// front of the eye. The position may lie outside the picture.
     #[must_use]
-    pub fn project(&self, point: DVec3) -> Option<(f64, f64, f64)> {
+    pub fn project_point(&self, point: DVec3) -> Option<(f64, f64, f64)> {
         let axes = self.world_from_camera();
         let offset = point - self.position;
         let depth_m = -offset.dot(axes.z_axis);
@@ -88,7 +88,7 @@ impl Camera {
 
     /// Unit direction in the world of the ray through a pixel position.
     #[must_use]
-    pub fn ray(&self, x_px: f64, y_px: f64) -> DVec3 {
+    pub fn ray_through(&self, x_px: f64, y_px: f64) -> DVec3 {
         let focal_px = self.focal_px();
         let right = (x_px - 0.5 * f64::from(self.width)) / focal_px;
         let up = (0.5 * f64::from(self.height) - y_px) / focal_px;
@@ -100,7 +100,7 @@ impl Camera {
         0.5 * f64::from(self.height) / libm::tan(0.5 * self.vertical_fov_rad)
     }
 
-    pub(crate) fn check(&self) -> Result<(), RenderError> {
+    pub(crate) fn check_numbers(&self) -> Result<(), RenderError> {
         check_size(self.width.into(), self.height.into())?;
         check_finite("position.x", self.position.x)?;
         check_finite("position.y", self.position.y)?;
@@ -125,18 +125,18 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn camera(heading_rad: f64, elevation_rad: f64) -> Camera {
+    fn camera(heading_rad: f64, elevation_rad: f64) -> PinholeCamera {
         let position = DVec3::new(1.0, -2.0, 1.5);
-        Camera { position, heading_rad, elevation_rad, vertical_fov_rad: 1.0, width: 640, height: 480 }
+        PinholeCamera { position, heading_rad, elevation_rad, vertical_fov_rad: 1.0, width: 640, height: 480 }
     }
 
     #[test]
     fn east_is_right_of_north() {
-        let (x, y, depth) = camera(0.0, 0.0).project(DVec3::new(2.0, 8.0, 1.5)).unwrap();
+        let (x, y, depth) = camera(0.0, 0.0).project_point(DVec3::new(2.0, 8.0, 1.5)).unwrap();
         assert!(x > 320.0 && (y - 240.0).abs() < 1e-9 && (depth - 10.0).abs() < 1e-12);
-        let (_, y, _) = camera(0.0, 0.0).project(DVec3::new(1.0, 8.0, 2.5)).unwrap();
+        let (_, y, _) = camera(0.0, 0.0).project_point(DVec3::new(1.0, 8.0, 2.5)).unwrap();
         assert!(y < 240.0, "a higher point is further up in the picture");
-        assert_eq!(camera(0.0, 0.0).project(DVec3::new(1.0, -3.0, 1.5)), None);
+        assert_eq!(camera(0.0, 0.0).project_point(DVec3::new(1.0, -3.0, 1.5)), None);
     }
 
     #[test]
@@ -148,11 +148,11 @@ mod tests {
 
     #[test]
     fn check_numbers_refuses_impossible_cameras() {
-        assert!(Camera { width: 0, ..camera(0.0, 0.0) }.check().is_err());
-        assert!(Camera { height: MAX + 1, ..camera(0.0, 0.0) }.check().is_err());
-        assert!(Camera { vertical_fov_rad: f64::NAN, ..camera(0.0, 0.0) }.check().is_err());
-        assert!(camera(f64::INFINITY, 0.0).check().is_err());
-        assert!(camera(0.0, 0.0).check().is_ok());
+        assert!(PinholeCamera { width: 0, ..camera(0.0, 0.0) }.check_numbers().is_err());
+        assert!(PinholeCamera { height: MAX + 1, ..camera(0.0, 0.0) }.check_numbers().is_err());
+        assert!(PinholeCamera { vertical_fov_rad: f64::NAN, ..camera(0.0, 0.0) }.check_numbers().is_err());
+        assert!(camera(f64::INFINITY, 0.0).check_numbers().is_err());
+        assert!(camera(0.0, 0.0).check_numbers().is_ok());
     }
     const MAX: u32 = crate::MAX_SIDE_PX;
 
@@ -163,7 +163,7 @@ mod tests {
             x in 0.0..640.0f64, y in 0.0..480.0f64, distance in 0.1..50.0f64,
         ) {
             let camera = camera(heading, elevation);
-            let (back_x, back_y, depth) = camera.project(camera.position + camera.ray(x, y) * distance).unwrap();
+            let (back_x, back_y, depth) = camera.project_point(camera.position + camera.ray_through(x, y) * distance).unwrap();
             prop_assert!((back_x - x).abs() < 1e-6 && (back_y - y).abs() < 1e-6);
             prop_assert!(depth <= distance + 1e-9);
         }
@@ -171,8 +171,8 @@ mod tests {
         #[test]
         fn looking_along_a_cameras_forward_gives_that_camera(heading in -3.1..3.1f64, elevation in -1.5..1.5f64) {
             let camera = camera(heading, elevation);
-            let forward = camera.ray(320.0, 240.0) * 3.0;
-            let back = Camera::looking_along(camera.position, forward, 1.0, 640, 480);
+            let forward = camera.ray_through(320.0, 240.0) * 3.0;
+            let back = PinholeCamera::looking_along(camera.position, forward, 1.0, 640, 480);
             prop_assert!((back.heading_rad - heading).abs() < 1e-9);
             prop_assert!((back.elevation_rad - elevation).abs() < 1e-9);
         }

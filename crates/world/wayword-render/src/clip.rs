@@ -1,6 +1,6 @@
 //! Cuts triangles at planes, one plane after another (Sutherland and Hodgman's algorithm).
 
-use crate::view::Plane;
+use crate::view::ClipPlane;
 use glam::Vec3;
 
 /// A corner of a cut triangle.
@@ -16,7 +16,7 @@ pub(crate) struct ClipVertex {
 ///
 /// Two triangles that share an edge get the same points on it, because a cut is always computed from the end inside the
 /// plane to the end outside.
-pub(crate) fn clip(triangle: [Vec3; 3], planes: &[Plane]) -> Vec<ClipVertex> {
+pub(crate) fn clip_triangle(triangle: [Vec3; 3], planes: &[ClipPlane]) -> Vec<ClipVertex> {
     let [a, b, c] = triangle;
     let mut polygon = vec![
         ClipVertex { point: a, weights: Vec3::X },
@@ -28,14 +28,14 @@ pub(crate) fn clip(triangle: [Vec3; 3], planes: &[Plane]) -> Vec<ClipVertex> {
         kept.clear();
         for (i, &vertex) in polygon.iter().enumerate() {
             let next = polygon[(i + 1) % polygon.len()];
-            let (here, there) = (plane.distance(vertex.point), plane.distance(next.point));
+            let (here, there) = (plane.signed_distance(vertex.point), plane.signed_distance(next.point));
             if here >= 0.0 {
                 kept.push(vertex);
                 if there < 0.0 {
-                    kept.push(cut(vertex, next, here / (here - there)));
+                    kept.push(cut_edge(vertex, next, here / (here - there)));
                 }
             } else if there >= 0.0 {
-                kept.push(cut(next, vertex, there / (there - here)));
+                kept.push(cut_edge(next, vertex, there / (there - here)));
             }
         }
         std::mem::swap(&mut polygon, &mut kept);
@@ -46,7 +46,7 @@ pub(crate) fn clip(triangle: [Vec3; 3], planes: &[Plane]) -> Vec<ClipVertex> {
     polygon
 }
 
-fn cut(kept: ClipVertex, dropped: ClipVertex, share: f32) -> ClipVertex {
+fn cut_edge(kept: ClipVertex, dropped: ClipVertex, share: f32) -> ClipVertex {
     ClipVertex {
         point: kept.point + (dropped.point - kept.point) * share,
         weights: kept.weights + (dropped.weights - kept.weights) * share,
@@ -58,16 +58,16 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    const NEAR: Plane = Plane { normal: Vec3::Z, offset: -1.0 };
+    const NEAR: ClipPlane = ClipPlane { normal: Vec3::Z, offset: -1.0 };
 
     #[test]
     fn one_corner_behind_leaves_four() {
         let triangle = [Vec3::new(0.0, 0.0, 3.0), Vec3::new(1.0, 0.0, 3.0), Vec3::new(0.0, 0.0, -1.0)];
-        let polygon = clip(triangle, &[NEAR]);
+        let polygon = clip_triangle(triangle, &[NEAR]);
         assert_eq!(polygon.len(), 4);
         assert!(polygon.iter().all(|v| v.point.z >= 1.0 - 1e-6));
-        assert!(clip(triangle.map(|p| p - Vec3::Z * 3.0), &[NEAR]).is_empty());
-        assert_eq!(clip(triangle.map(|p| p + Vec3::Z * 3.0), &[NEAR]).len(), 3);
+        assert!(clip_triangle(triangle.map(|p| p - Vec3::Z * 3.0), &[NEAR]).is_empty());
+        assert_eq!(clip_triangle(triangle.map(|p| p + Vec3::Z * 3.0), &[NEAR]).len(), 3);
     }
 
     fn point() -> impl Strategy<Value = Vec3> {
@@ -77,7 +77,7 @@ mod tests {
     proptest! {
         #[test]
         fn weights_give_back_the_points(a in point(), b in point(), c in point()) {
-            for vertex in clip([a, b, c], &[NEAR, Plane { normal: Vec3::X, offset: 2.0 }]) {
+            for vertex in clip_triangle([a, b, c], &[NEAR, ClipPlane { normal: Vec3::X, offset: 2.0 }]) {
                 let again = a * vertex.weights.x + b * vertex.weights.y + c * vertex.weights.z;
                 prop_assert!((again - vertex.point).length() < 1e-4);
                 prop_assert!(vertex.point.z > 1.0 - 1e-4 && vertex.point.x > -2.0 - 1e-4);
@@ -93,8 +93,8 @@ mod tests {
                 points
             };
             // The edge from a to b is run through in opposite directions.
-            let one = cuts(clip([a, b, c], &[NEAR]), |w| w.z);
-            let other = cuts(clip([b, a, d], &[NEAR]), |w| w.z);
+            let one = cuts(clip_triangle([a, b, c], &[NEAR]), |w| w.z);
+            let other = cuts(clip_triangle([b, a, d], &[NEAR]), |w| w.z);
             prop_assert_eq!(one, other);
         }
     }

@@ -7,11 +7,11 @@ use glam::{Vec2, Vec3};
 pub(crate) const CLUSTER_TRIANGLES: usize = 256;
 
 /// Marks a vertex that is not stored yet.
-const NOWHERE: u32 = u32::MAX;
+const NOT_STORED: u32 = u32::MAX;
 
-/// A triangle of a [`Soup`].
+/// A triangle of a [`TriangleSoup`].
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Triangle {
+pub(crate) struct SceneTriangle {
     /// Indices into the soup's vertices.
     pub(crate) corners: [u32; 3],
     /// Number in the caller's order. At equal depth the triangle with the lower number is visible, so that the division into
@@ -21,7 +21,7 @@ pub(crate) struct Triangle {
 
 /// A run of triangles and of the vertices they use.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Cluster {
+pub(crate) struct TriangleCluster {
     pub(crate) first_triangle: u32,
     pub(crate) triangles: u32,
     pub(crate) first_vertex: u32,
@@ -35,21 +35,21 @@ pub(crate) struct Cluster {
 
 /// All meshes of a scene as clusters. A vertex that two clusters use is stored twice.
 #[derive(Debug, Default)]
-pub(crate) struct Soup {
-    pub(crate) clusters: Vec<Cluster>,
-    pub(crate) triangles: Vec<Triangle>,
+pub(crate) struct TriangleSoup {
+    pub(crate) clusters: Vec<TriangleCluster>,
+    pub(crate) triangles: Vec<SceneTriangle>,
     pub(crate) positions: Vec<Vec3>,
     pub(crate) uvs: Vec<Vec2>,
     pub(crate) colours: Vec<[f32; 3]>,
 }
 
-impl Soup {
+impl TriangleSoup {
     /// Adds a checked mesh; `surface` is the index that its clusters get.
-    pub(crate) fn add(&mut self, mesh: &Mesh, surface: u32) {
+    pub(crate) fn add_mesh(&mut self, mesh: &Mesh, surface: u32) {
         let first_source = self.triangles.len() as u32;
         let order = near_order(mesh);
         // Where each of the mesh's vertices was stored last.
-        let mut stored = vec![NOWHERE; mesh.positions.len()];
+        let mut stored = vec![NOT_STORED; mesh.positions.len()];
         for group in order.chunks(CLUSTER_TRIANGLES) {
             self.add_cluster(mesh, group, first_source, surface, &mut stored);
         }
@@ -62,7 +62,7 @@ impl Soup {
             let corners = mesh.triangles[index as usize].map(|vertex| {
                 let vertex = vertex as usize;
                 // Places before this cluster's belong to other clusters.
-                if stored[vertex] == NOWHERE || stored[vertex] < first_vertex {
+                if stored[vertex] == NOT_STORED || stored[vertex] < first_vertex {
                     let position = mesh.positions[vertex];
                     (low, high) = (low.min(position), high.max(position));
                     stored[vertex] = self.positions.len() as u32;
@@ -72,9 +72,9 @@ impl Soup {
                 }
                 stored[vertex]
             });
-            self.triangles.push(Triangle { corners, source: first_source + index });
+            self.triangles.push(SceneTriangle { corners, source: first_source + index });
         }
-        self.clusters.push(Cluster {
+        self.clusters.push(TriangleCluster {
             first_triangle,
             triangles: group.len() as u32,
             first_vertex,
@@ -104,13 +104,13 @@ fn near_order(mesh: &Mesh) -> Vec<u32> {
     }
     // The same scale on all axes, or clusters of a flat mesh would be long and thin.
     let scale = 1023.0 / (high - low).max_element().max(f32::MIN_POSITIVE);
-    let keys: Vec<u32> = mesh.triangles.iter().map(|t| morton((centroid(t) - low) * scale)).collect();
+    let keys: Vec<u32> = mesh.triangles.iter().map(|t| morton_code((centroid(t) - low) * scale)).collect();
     order.sort_by_key(|&index| keys[index as usize]);
     order
 }
 
 /// Interleaves the low ten bits of the coordinates. Sorted by this number, cells follow a Z-shaped curve through space.
-fn morton(cell: Vec3) -> u32 {
+fn morton_code(cell: Vec3) -> u32 {
     let spread = |value: f32| {
         let mut bits = (value as u32).min(1023);
         bits = (bits | bits << 16) & 0x0300_00ff;
@@ -130,9 +130,9 @@ mod tests {
         let positions: Vec<Vec3> = (0..1000).map(|i| Vec3::new((i * 37 % 100) as f32, i as f32, 1.0)).collect();
         let triangles: Vec<[u32; 3]> = (0..900).map(|i| [i, i + 1, (i * 7) % 1000]).collect();
         let mesh = Mesh { positions, triangles, ..Mesh::default() };
-        let mut soup = Soup::default();
-        soup.add(&Mesh { triangles: vec![[0, 1, 2]], ..mesh.clone() }, 0);
-        soup.add(&mesh, 1);
+        let mut soup = TriangleSoup::default();
+        soup.add_mesh(&Mesh { triangles: vec![[0, 1, 2]], ..mesh.clone() }, 0);
+        soup.add_mesh(&mesh, 1);
         assert_eq!(soup.clusters.len(), 1 + 900usize.div_ceil(CLUSTER_TRIANGLES));
         let mut sources: Vec<u32> = soup.triangles.iter().map(|t| t.source).collect();
         sources.sort_unstable();
@@ -154,8 +154,8 @@ mod tests {
 
     #[test]
     fn morton_interleaves() {
-        assert_eq!(morton(Vec3::new(1.0, 0.0, 0.0)), 1);
-        assert_eq!(morton(Vec3::new(0.0, 3.0, 0.0)), 0b010_010);
-        assert_eq!(morton(Vec3::splat(1023.0)), (1 << 30) - 1);
+        assert_eq!(morton_code(Vec3::new(1.0, 0.0, 0.0)), 1);
+        assert_eq!(morton_code(Vec3::new(0.0, 3.0, 0.0)), 0b010_010);
+        assert_eq!(morton_code(Vec3::splat(1023.0)), (1 << 30) - 1);
     }
 }

@@ -4,28 +4,28 @@
 //! the same face. The work is done for some columns at a time, in loops without branches, which compilers turn into
 //! vector instructions.
 
-use crate::cubemap::Face;
+use crate::cubemap::CubeFace;
 use glam::Vec3;
 
 /// Columns that are worked on at a time.
-const COLUMNS: usize = 64;
+const COLUMNS_PER_STEP: usize = 64;
 
 /// 2^23. A number from 0 up to this loses its fraction when this is added to it, because a float has 23 bits for it: the low
 /// bits of the sum are then the nearest whole number.
-const WHOLE: f32 = 8_388_608.0;
+const WHOLE_NUMBER_OFFSET: f32 = 8_388_608.0;
 
 /// One side of the cube, prepared for lookups.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Side {
+pub(crate) struct CubeSide {
     /// Pixels per row, and rows: at least two, so that every place lies between two pixels.
     side_px: usize,
     /// Three bytes per pixel, from the top left, and two more at the end, so that eight bytes can be read at any pair of pixels.
     rgb: Vec<u8>,
 }
 
-impl Side {
+impl CubeSide {
     /// `face` is checked: square, and not empty.
-    pub(crate) fn new(face: Face) -> Self {
+    pub(crate) fn new(face: CubeFace) -> Self {
         let (side_px, mut rgb) = match face.side_px as usize {
             1 => (2, face.rgb.repeat(4)),
             side_px => (side_px, face.rgb),
@@ -36,45 +36,45 @@ impl Side {
     }
 
     /// The pixel at a byte and its neighbour on the right, each in the lowest three bytes.
-    fn pair(&self, start: usize) -> [u32; 2] {
+    fn pixel_pair(&self, start: usize) -> [u32; 2] {
         let eight = self.rgb[start..].first_chunk().copied().unwrap_or_default();
         let both = u64::from_le_bytes(eight);
         [both as u32, (both >> 24) as u32]
     }
 
     /// The four pixels from the one at a column and a row on: left and right in that row, left and right in the next.
-    fn four(&self, [x, y]: [u32; 2]) -> [u32; 4] {
+    fn four_pixels(&self, [x, y]: [u32; 2]) -> [u32; 4] {
         let row = 3 * self.side_px;
         let start = y as usize * row + 3 * x as usize;
-        let ([a, b], [c, d]) = (self.pair(start), self.pair(start + row));
+        let ([a, b], [c, d]) = (self.pixel_pair(start), self.pixel_pair(start + row));
         [a, b, c, d]
     }
 }
 
 /// The rays of a row of pixels, in GL's cube frame: `start + step * across`.
-pub(crate) struct Rays {
+pub(crate) struct RowRays {
     pub(crate) start: Vec3,
     pub(crate) step: Vec3,
 }
 
-impl Rays {
+impl RowRays {
     /// Draws the row: three bytes for each of the columns, which lie at `across`.
-    pub(crate) fn draw(&self, sides: &[Side; 6], across: &[f32], row: &mut [u8]) {
-        for (across, row) in across.chunks(COLUMNS).zip(row.chunks_mut(3 * COLUMNS)) {
-            let met: [u32; COLUMNS] = self.sides_met(across);
+    pub(crate) fn draw_row(&self, sides: &[CubeSide; 6], across: &[f32], row: &mut [u8]) {
+        for (across, row) in across.chunks(COLUMNS_PER_STEP).zip(row.chunks_mut(3 * COLUMNS_PER_STEP)) {
+            let met: [u32; COLUMNS_PER_STEP] = self.sides_met(across);
             let mut from = 0;
             for run in met[..across.len()].chunk_by(|a, b| a == b) {
                 let (to, side) = (from + run.len(), &sides[run[0] as usize]);
                 let rays = [self.start, self.step].map(|ray| on_side(run[0], ray));
-                Places::new(side.side_px, rays, &across[from..to]).draw(side, &mut row[3 * from..3 * to]);
+                RayLandings::new(side.side_px, rays, &across[from..to]).draw_columns(side, &mut row[3 * from..3 * to]);
                 from = to;
             }
         }
     }
 
     /// For each ray the side of the cube that it meets.
-    fn sides_met(&self, across: &[f32]) -> [u32; COLUMNS] {
-        let mut met = [0; COLUMNS];
+    fn sides_met(&self, across: &[f32]) -> [u32; COLUMNS_PER_STEP] {
+        let mut met = [0; COLUMNS_PER_STEP];
         for (met, across) in met.iter_mut().zip(across) {
             let [x, y, z] = (self.start + self.step * *across).to_array();
             let of_x = if x >= 0.0 { 2 } else { 4 };
@@ -103,22 +103,22 @@ fn on_side(side: u32, Vec3 { x, y, z }: Vec3) -> [f32; 3] {
 
 /// The places where the rays of some columns meet a side: for each the pixel to its upper left, and its distances from that
 /// pixel's centre to the right and down, where 1 is the centre of the next pixel.
-struct Places {
+struct RayLandings {
     columns: usize,
-    left: [u32; COLUMNS],
-    above: [u32; COLUMNS],
-    right: [f32; COLUMNS],
-    down: [f32; COLUMNS],
+    left: [u32; COLUMNS_PER_STEP],
+    above: [u32; COLUMNS_PER_STEP],
+    right: [f32; COLUMNS_PER_STEP],
+    down: [f32; COLUMNS_PER_STEP],
 }
 
-impl Places {
+impl RayLandings {
     fn new(side_px: usize, [start, step]: [[f32; 3]; 2], across: &[f32]) -> Self {
         let mut places = Self {
             columns: across.len(),
-            left: [0; COLUMNS],
-            above: [0; COLUMNS],
-            right: [0.0; COLUMNS],
-            down: [0.0; COLUMNS],
+            left: [0; COLUMNS_PER_STEP],
+            above: [0; COLUMNS_PER_STEP],
+            right: [0.0; COLUMNS_PER_STEP],
+            down: [0.0; COLUMNS_PER_STEP],
         };
         let (side, last) = (side_px as f32, (side_px - 1) as f32);
         let split = |place: f32| {
@@ -127,7 +127,7 @@ impl Places {
             let at = if at > 0.0 { at } else { 0.0 };
             let at = if at < last { at } else { last };
             // At the far edge the second pixel has all the weight.
-            let first = count(at).min(side_px as u32 - 2);
+            let first = floor_to_count(at).min(side_px as u32 - 2);
             (first, at - first as i32 as f32)
         };
         let spots = places.left.iter_mut().zip(&mut places.above).zip(places.right.iter_mut().zip(&mut places.down));
@@ -140,19 +140,19 @@ impl Places {
         places
     }
 
-    fn draw(&self, side: &Side, row: &mut [u8]) {
+    fn draw_columns(&self, side: &CubeSide, row: &mut [u8]) {
         // Compilers turn these loops over array indices into vector instructions; they fail to with iterators.
-        let columns = self.columns.min(COLUMNS);
-        let mut pixels = [[0; COLUMNS]; 4];
+        let columns = self.columns.min(COLUMNS_PER_STEP);
+        let mut pixels = [[0; COLUMNS_PER_STEP]; 4];
         for at in 0..columns {
-            for (pixels, pixel) in pixels.iter_mut().zip(side.four([self.left[at], self.above[at]])) {
+            for (pixels, pixel) in pixels.iter_mut().zip(side.four_pixels([self.left[at], self.above[at]])) {
                 pixels[at] = pixel;
             }
         }
-        let mut colours = [0; COLUMNS];
+        let mut colours = [0; COLUMNS_PER_STEP];
         let [a, b, c, d] = &pixels;
         for at in 0..columns {
-            colours[at] = between([a[at], b[at], c[at], d[at]], [self.right[at], self.down[at]]);
+            colours[at] = blend_pixels([a[at], b[at], c[at], d[at]], [self.right[at], self.down[at]]);
         }
         for (colour, pixel) in colours.iter().zip(row.chunks_exact_mut(3)) {
             let [red, green, blue, _] = colour.to_le_bytes();
@@ -162,19 +162,19 @@ impl Places {
 }
 
 /// The colour between four pixels, bilinear and rounded, channel by channel.
-fn between(pixels: [u32; 4], [right, down]: [f32; 2]) -> u32 {
+fn blend_pixels(pixels: [u32; 4], [right, down]: [f32; 2]) -> u32 {
     let channel = |shift: u32| {
         let [a, b, c, d] = pixels.map(|pixel| f32::from((pixel >> shift) as u8));
         let (top, bottom) = (a + (b - a) * right, c + (d - c) * right);
-        (count(top + (bottom - top) * down + 0.5) & 0xff) << shift
+        (floor_to_count(top + (bottom - top) * down + 0.5) & 0xff) << shift
     };
     channel(0) | channel(8) | channel(16)
 }
 
-/// Rounds a number in 0..[`WHOLE`] down. (A conversion with `as` also checks whether the number fits into an integer, and
-/// `f32::floor` is a function call on the baseline x86-64.)
-fn count(value: f32) -> u32 {
-    let raised = value + WHOLE;
-    let is_above = raised - WHOLE > value;
-    raised.to_bits() - WHOLE.to_bits() - u32::from(is_above)
+/// Rounds a number in 0..[`WHOLE_NUMBER_OFFSET`] down. (A conversion with `as` also checks whether the number fits into an integer, and
+/// `f32::fast_floor` is a function call on the baseline x86-64.)
+fn floor_to_count(value: f32) -> u32 {
+    let raised = value + WHOLE_NUMBER_OFFSET;
+    let is_above = raised - WHOLE_NUMBER_OFFSET > value;
+    raised.to_bits() - WHOLE_NUMBER_OFFSET.to_bits() - u32::from(is_above)
 }

@@ -1,7 +1,7 @@
 //! A cube map, six pictures around a point, and views that are sampled from it as in the Matterport3D simulator.
 
 use crate::camera::check_fov;
-use crate::cube_row::{Rays, Side};
+use crate::cube_row::{CubeSide, RowRays};
 use crate::picture::{RenderError, check_finite, check_size};
 use glam::DMat3;
 use rayon::prelude::*;
@@ -13,7 +13,7 @@ const MIN_ROWS: usize = 8;
 
 /// One side of the cube, square.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Face {
+pub struct CubeFace {
     /// Pixels per row, and rows.
     pub side_px: u32,
     /// Gamma-encoded sRGB, three bytes per pixel, from the top left.
@@ -23,7 +23,7 @@ pub struct Face {
 /// The six faces in Matterport3D's skybox order: 0 up, 1 to 4 around, 5 down.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CubeMap {
-    sides: [Side; 6],
+    sides: [CubeSide; 6],
 }
 
 /// Why pictures do not make a cube.
@@ -57,8 +57,8 @@ impl CubeMap {
     /// A cube map of six checked faces.
     ///
     /// # Errors
-    /// [`CubeMapError::Face`] names the first face that is no square or has the wrong number of bytes.
-    pub fn new(faces: [Face; 6]) -> Result<Self, CubeMapError> {
+    /// [`CubeMapError::CubeFace`] names the first face that is no square or has the wrong number of bytes.
+    pub fn new(faces: [CubeFace; 6]) -> Result<Self, CubeMapError> {
         for (index, face) in faces.iter().enumerate() {
             let side = face.side_px as usize;
             if face.side_px == 0 || face.side_px > MAX_FACE_PX || face.rgb.len() != 3 * side * side {
@@ -66,7 +66,7 @@ impl CubeMap {
                 return Err(CubeMapError::Face { face: index, side_px: face.side_px, bytes });
             }
         }
-        Ok(Self { sides: faces.map(Side::new) })
+        Ok(Self { sides: faces.map(CubeSide::new) })
     }
 
     /// A cube map from the faces 0 to 5 side by side (Matterport3D's `*_skybox_small.jpg`), RGB.
@@ -82,9 +82,9 @@ impl CubeMap {
         let face = |index: usize| {
             let rows = rgb.chunks_exact(18 * side);
             let part = rows.flat_map(|row| row[3 * side * index..3 * side * (index + 1)].iter().copied());
-            Face { side_px: height, rgb: part.collect() }
+            CubeFace { side_px: height, rgb: part.collect() }
         };
-        Ok(Self { sides: std::array::from_fn(|index| Side::new(face(index))) })
+        Ok(Self { sides: std::array::from_fn(|index| CubeSide::new(face(index))) })
     }
 }
 
@@ -110,8 +110,14 @@ pub fn sample_view(
     check_finite("heading_rad", heading_rad)?;
     check_finite("elevation_rad", elevation_rad)?;
     check_fov(vertical_fov_rad)?;
-    let camera =
-        crate::Camera { position: glam::DVec3::ZERO, heading_rad, elevation_rad, vertical_fov_rad, width, height };
+    let camera = crate::PinholeCamera {
+        position: glam::DVec3::ZERO,
+        heading_rad,
+        elevation_rad,
+        vertical_fov_rad,
+        width,
+        height,
+    };
     let axes = -(world_from_skybox.transpose() * camera.world_from_camera());
     let (right, up, forward) = (axes.x_axis.as_vec3(), axes.y_axis.as_vec3(), -axes.z_axis.as_vec3());
     let pixel = (1.0 / camera.focal_px()) as f32;
@@ -119,7 +125,7 @@ pub fn sample_view(
     let mut rgb = vec![0; 3 * width as usize * height as usize];
     rgb.par_chunks_exact_mut(3 * width as usize).with_min_len(MIN_ROWS).enumerate().for_each(|(y, row)| {
         let start = forward + up * ((0.5 * height as f32 - (y as f32 + 0.5)) * pixel);
-        Rays { start, step: right }.draw(&cube.sides, &across, row);
+        RowRays { start, step: right }.draw_row(&cube.sides, &across, row);
     });
     Ok(rgb)
 }

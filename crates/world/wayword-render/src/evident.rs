@@ -1,6 +1,6 @@
 //! Finds the objects that are visible enough in a picture for a person to name them.
 
-use crate::{Camera, Picture, Visible, visible_objects};
+use crate::{PinholeCamera, RenderedPicture, VisibleObject, visible_objects};
 use glam::DVec3;
 use std::cmp::Reverse;
 
@@ -12,25 +12,25 @@ const LEAST_SHOWN: f64 = 0.22;
 
 /// The ids on enough pixels to be named, the largest first.
 #[must_use]
-pub fn evident_objects(picture: &Picture) -> Vec<Visible> {
+pub fn evident_objects(picture: &RenderedPicture) -> Vec<VisibleObject> {
     let least = f64::from(picture.width) * f64::from(picture.height) * LEAST_SHARE;
-    let mut seen: Vec<Visible> =
+    let mut seen: Vec<VisibleObject> =
         visible_objects(picture).into_iter().filter(|each| f64::from(each.pixels) >= least).collect();
     seen.sort_by_key(|each| (Reverse(each.pixels), each.id));
     seen
 }
 
-impl Visible {
+impl VisibleObject {
     /// Whether only a sliver of an object is visible. `corners` are those of the object's box (metres, world frame). An object
     /// that reaches behind the eye never counts as a sliver, because its box cannot be projected.
     #[must_use]
-    pub fn is_sliver(&self, camera: &Camera, corners: &[DVec3; 8]) -> bool {
-        self.shown(camera, corners).is_some_and(|share| share < LEAST_SHOWN)
+    pub fn is_sliver(&self, camera: &PinholeCamera, corners: &[DVec3; 8]) -> bool {
+        self.shown_share(camera, corners).is_some_and(|share| share < LEAST_SHOWN)
     }
 
     /// Share of a box, as far as it lies in the picture, that the box of the visible pixels covers.
-    fn shown(&self, camera: &Camera, corners: &[DVec3; 8]) -> Option<f64> {
-        let corners = corners.iter().map(|corner| camera.project(*corner)).collect::<Option<Vec<_>>>()?;
+    fn shown_share(&self, camera: &PinholeCamera, corners: &[DVec3; 8]) -> Option<f64> {
+        let corners = corners.iter().map(|corner| camera.project_point(*corner)).collect::<Option<Vec<_>>>()?;
         let side = |value: fn(&(f64, f64, f64)) -> f64, end: u32| {
             let values = corners.iter().map(value);
             let (low, high) =
@@ -56,7 +56,7 @@ mod tests {
 
     /// Checks a box half a metre wide, `ahead_m` metres ahead, with pixels in `columns` of 160 columns.
     fn is_sliver(ahead_m: f64, columns: u32) -> bool {
-        let camera = Camera {
+        let camera = PinholeCamera {
             position: DVec3::ZERO,
             heading_rad: 0.0,
             elevation_rad: 0.0,
@@ -65,7 +65,8 @@ mod tests {
             height: 120,
         };
         let (centre, half) = (DVec3::Y * ahead_m, DVec3::splat(0.25));
-        let seen = Visible { id: 5, pixels: columns * 20, bbox: [70, 50, columns, 20], nearest_m: 1.0, median_m: 1.0 };
+        let seen =
+            VisibleObject { id: 5, pixels: columns * 20, bbox: [70, 50, columns, 20], nearest_m: 1.0, median_m: 1.0 };
         seen.is_sliver(&camera, &box_corners(centre - half, centre + half))
     }
 
@@ -79,7 +80,7 @@ mod tests {
     fn evident_objects_skips_small_patches_and_sorts_by_size() {
         // 0.0015 of 40 x 50 pixels are three.
         let ids: Vec<u32> = (0..2000).map(|n| [7, 7, 0, 8, 8, 8, 0, 9, 9, 9, 9].get(n).copied().unwrap_or(0)).collect();
-        let picture = Picture { width: 40, height: 50, rgb: Vec::new(), depth_m: vec![1.0; 2000], ids };
+        let picture = RenderedPicture { width: 40, height: 50, rgb: Vec::new(), depth_m: vec![1.0; 2000], ids };
         let found: Vec<u32> = evident_objects(&picture).iter().map(|seen| seen.id).collect();
         assert_eq!(found, [9, 8]);
     }

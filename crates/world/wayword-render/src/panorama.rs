@@ -1,6 +1,6 @@
 //! Joins four level views of 90 degrees into one cylinder around the eye.
 
-use crate::bilinear::bilinear;
+use crate::bilinear::sample_bilinear;
 use crate::picture::{MAX_SIDE_PX, RenderError, check_size};
 use glam::Vec3;
 use rayon::prelude::*;
@@ -8,7 +8,7 @@ use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2, FRAC_PI_4, PI, TAU};
 
 /// A level view of 90 degrees with square pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Quarter<'a> {
+pub struct QuarterView<'a> {
     /// Pixels per row.
     pub width: u32,
     /// Rows.
@@ -58,14 +58,14 @@ pub enum PanoramaError {
 ///
 /// # Errors
 /// [`PanoramaError`] where no view is given, a view's bytes do not fill it, or a size is not allowed.
-pub fn panorama(
-    views: [Option<Quarter<'_>>; 4],
+pub fn join_panorama(
+    views: [Option<QuarterView<'_>>; 4],
     width: Option<u32>,
     blank: [u8; 3],
 ) -> Result<Panorama, PanoramaError> {
     for (index, view) in views.iter().enumerate() {
         if let Some(view) = view {
-            check(index, view)?;
+            check_view(index, view)?;
         }
     }
     let there = || views.iter().flatten();
@@ -83,14 +83,14 @@ pub fn panorama(
     rgb.par_chunks_exact_mut(3 * width as usize).enumerate().for_each(|(y, row)| {
         let up = (0.5 * f64::from(height) - (y as f64 + 0.5)) * step_rad;
         for (x, out) in row.chunks_exact_mut(3).enumerate() {
-            let colour = look(&views, (x as f64 + 0.5) * step_rad - PI, up);
+            let colour = colour_along(&views, (x as f64 + 0.5) * step_rad - PI, up);
             out.copy_from_slice(&colour.unwrap_or(blank));
         }
     });
     Ok(Panorama { width, height, rgb })
 }
 
-fn check(index: usize, view: &Quarter<'_>) -> Result<(), PanoramaError> {
+fn check_view(index: usize, view: &QuarterView<'_>) -> Result<(), PanoramaError> {
     check_size(view.width.into(), view.height.into())?;
     if view.rgb.len() == 3 * view.width as usize * view.height as usize {
         return Ok(());
@@ -101,7 +101,7 @@ fn check(index: usize, view: &Quarter<'_>) -> Result<(), PanoramaError> {
 
 /// The colour along a ray: `turn_rad` to the right of the first view's middle, `up` above the horizon on a cylinder of
 /// radius 1.
-fn look(views: &[Option<Quarter<'_>>; 4], turn_rad: f64, up: f64) -> Option<[u8; 3]> {
+fn colour_along(views: &[Option<QuarterView<'_>>; 4], turn_rad: f64, up: f64) -> Option<[u8; 3]> {
     let side = ((turn_rad + FRAC_PI_4) / FRAC_PI_2).floor();
     let view = views[side.rem_euclid(4.0) as usize % 4]?;
     let off_rad = turn_rad - side * FRAC_PI_2;
@@ -109,14 +109,14 @@ fn look(views: &[Option<Quarter<'_>>; 4], turn_rad: f64, up: f64) -> Option<[u8;
     let x_px = focal_px * (1.0 + libm::tan(off_rad));
     let y_px = 0.5 * f64::from(view.height) - focal_px * up / libm::cos(off_rad);
     let size = [view.width as usize, view.height as usize];
-    let colour = bilinear(view.rgb, size, [x_px as f32, y_px as f32]) + Vec3::splat(0.5);
+    let colour = sample_bilinear(view.rgb, size, [x_px as f32, y_px as f32]) + Vec3::splat(0.5);
     Some(colour.to_array().map(|value| value as u8))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Camera;
+    use crate::PinholeCamera;
     use glam::DVec3;
     use proptest::prelude::*;
 
@@ -127,16 +127,16 @@ mod tests {
         [wave(ray.x, ray.z), wave(ray.y, ray.x), wave(ray.z, ray.y)]
     }
 
-    fn camera(heading_rad: f64, width: u32, height: u32) -> Camera {
+    fn camera(heading_rad: f64, width: u32, height: u32) -> PinholeCamera {
         let vertical_fov_rad = 2.0 * libm::atan(f64::from(height) / f64::from(width));
-        Camera { position: DVec3::ZERO, heading_rad, elevation_rad: 0.0, vertical_fov_rad, width, height }
+        PinholeCamera { position: DVec3::ZERO, heading_rad, elevation_rad: 0.0, vertical_fov_rad, width, height }
     }
 
     /// What a camera sees of that scene, rounded to bytes.
-    fn seen(camera: &Camera) -> Vec<u8> {
+    fn seen(camera: &PinholeCamera) -> Vec<u8> {
         let pixels = (0..camera.height).flat_map(|y| (0..camera.width).map(move |x| (x, y)));
         pixels
-            .flat_map(|(x, y)| colour(camera.ray(f64::from(x) + 0.5, f64::from(y) + 0.5)))
+            .flat_map(|(x, y)| colour(camera.ray_through(f64::from(x) + 0.5, f64::from(y) + 0.5)))
             .map(|value| value.round() as u8)
             .collect()
     }
@@ -145,8 +145,8 @@ mod tests {
         std::array::from_fn(|side| seen(&camera(heading_rad + side as f64 * FRAC_PI_2, width, height)))
     }
 
-    fn views(pictures: &[Vec<u8>; 4], width: u32, height: u32) -> [Option<Quarter<'_>>; 4] {
-        std::array::from_fn(|side| Some(Quarter { width, height, rgb: &pictures[side] }))
+    fn views(pictures: &[Vec<u8>; 4], width: u32, height: u32) -> [Option<QuarterView<'_>>; 4] {
+        std::array::from_fn(|side| Some(QuarterView { width, height, rgb: &pictures[side] }))
     }
 
     proptest! {
@@ -157,7 +157,7 @@ mod tests {
             heading in 0.0..TAU, width in 64u32..160, height in 40u32..200, asked in prop::option::of(50u32..700),
         ) {
             let pictures = quarters(heading, width, height);
-            let whole = panorama(views(&pictures, width, height), asked, [0; 3]).unwrap();
+            let whole = join_panorama(views(&pictures, width, height), asked, [0; 3]).unwrap();
             prop_assert_eq!(whole.width, asked.unwrap_or((PI * f64::from(width)).round() as u32));
             // Half a pixel is lost where a view ends; elsewhere bilinear lookup is as exact as the views are fine.
             let pixel_rad = 2.0 / f64::from(width);
@@ -179,8 +179,8 @@ mod tests {
         #[test]
         fn panorama_is_as_high_as_all_views_reach(width in 8u32..900, heights in prop::array::uniform4(8u32..900)) {
             let pictures = heights.map(|height| vec![9; 3 * (width * height) as usize]);
-            let views = std::array::from_fn(|side| Some(Quarter { width, height: heights[side], rgb: &pictures[side] }));
-            let whole = panorama(views, None, [0; 3]).unwrap();
+            let views = std::array::from_fn(|side| Some(QuarterView { width, height: heights[side], rgb: &pictures[side] }));
+            let whole = join_panorama(views, None, [0; 3]).unwrap();
             let lowest = f64::from(*heights.iter().min().unwrap());
             // A row on the cylinder at a seam is farther from the eye than in the middle of a view.
             let reach = |rows: f64| rows * TAU / f64::from(whole.width) * 0.5 * f64::from(width) / FRAC_1_SQRT_2;
@@ -192,7 +192,7 @@ mod tests {
     #[test]
     fn panorama_shows_the_right_side_right_of_the_middle() {
         let pictures = [[10; 3], [20; 3], [30; 3], [40; 3]].map(|colour| colour.repeat(64 * 48));
-        let whole = panorama(views(&pictures, 64, 48), Some(80), [0; 3]).unwrap();
+        let whole = join_panorama(views(&pictures, 64, 48), Some(80), [0; 3]).unwrap();
         let column = |x: usize| whole.rgb[3 * x];
         assert_eq!([column(0), column(15), column(40), column(60), column(79)], [30, 40, 10, 20, 30]);
     }
@@ -202,7 +202,7 @@ mod tests {
         let pictures = [[10; 3], [20; 3], [30; 3], [40; 3]].map(|colour| colour.repeat(64 * 48));
         let mut views = views(&pictures, 64, 48);
         views[1] = None;
-        let whole = panorama(views, Some(80), [1, 2, 3]).unwrap();
+        let whole = join_panorama(views, Some(80), [1, 2, 3]).unwrap();
         let blank = whole.rgb.chunks_exact(3).filter(|pixel| **pixel == [1, 2, 3]).count();
         assert_eq!(blank, 20 * whole.height as usize);
         assert_eq!(whole.rgb[3 * 50..3 * 51], [1, 2, 3]);
@@ -210,14 +210,17 @@ mod tests {
 
     #[test]
     fn panorama_refuses_missing_and_torn_views() {
-        assert_eq!(panorama([None; 4], None, [0; 3]), Err(PanoramaError::Empty));
-        let short = Quarter { width: 4, height: 4, rgb: &[0; 47] };
-        assert!(matches!(panorama([Some(short); 4], None, [0; 3]), Err(PanoramaError::Bytes { view: 0, .. })));
-        let empty = Quarter { width: 0, height: 4, rgb: &[] };
-        assert!(matches!(panorama([Some(empty); 4], None, [0; 3]), Err(PanoramaError::Size(_))));
-        let fine = Quarter { width: 4, height: 4, rgb: &[0; 48] };
+        assert_eq!(join_panorama([None; 4], None, [0; 3]), Err(PanoramaError::Empty));
+        let short = QuarterView { width: 4, height: 4, rgb: &[0; 47] };
+        assert!(matches!(join_panorama([Some(short); 4], None, [0; 3]), Err(PanoramaError::Bytes { view: 0, .. })));
+        let empty = QuarterView { width: 0, height: 4, rgb: &[] };
+        assert!(matches!(join_panorama([Some(empty); 4], None, [0; 3]), Err(PanoramaError::Size(_))));
+        let fine = QuarterView { width: 4, height: 4, rgb: &[0; 48] };
         for width in [0, MAX_SIDE_PX + 1, u32::MAX] {
-            assert!(matches!(panorama([Some(fine); 4], Some(width), [0; 3]), Err(PanoramaError::Size(_))), "{width}");
+            assert!(
+                matches!(join_panorama([Some(fine); 4], Some(width), [0; 3]), Err(PanoramaError::Size(_))),
+                "{width}"
+            );
         }
     }
 }

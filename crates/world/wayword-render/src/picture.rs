@@ -5,7 +5,7 @@ pub const MAX_SIDE_PX: u32 = 8192;
 
 /// A drawn view: colour, depth and ids, all row by row from the top left.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Picture {
+pub struct RenderedPicture {
     /// Pixels per row.
     pub width: u32,
     /// Rows.

@@ -4,38 +4,43 @@
 //! between two triangles is missed or drawn twice. A centre exactly on an edge belongs to the triangle if the edge is a top
 //! or a left one (the top-left rule of GPUs).
 
-use crate::cluster::Triangle;
-use crate::setup::{Batch, ScreenTriangle, centres_between};
-use crate::view::STEPS;
+use crate::cluster::SceneTriangle;
+use crate::setup::{ScreenTriangle, TriangleBatch, centres_between};
+use crate::view::SUBPIXEL_STEPS;
 
 /// A triangle of the batches: the batch and its place there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Seen {
+pub(crate) struct BatchTriangleIndex {
     pub(crate) batch: u32,
     pub(crate) place: u32,
 }
 
-impl Seen {
-    pub(crate) const NOTHING: Self = Self { batch: u32::MAX, place: u32::MAX };
+impl BatchTriangleIndex {
+    pub(crate) const NO_TRIANGLE: Self = Self { batch: u32::MAX, place: u32::MAX };
 }
 
 /// Some whole rows of the picture, with the nearest triangle of each pixel.
-pub(crate) struct Band {
+pub(crate) struct PictureBand {
     pub(crate) width: u32,
     pub(crate) first_row: u32,
     pub(crate) nearness: Vec<f32>,
-    pub(crate) seen: Vec<Seen>,
+    pub(crate) seen: Vec<BatchTriangleIndex>,
 }
 
-impl Band {
+impl PictureBand {
     pub(crate) fn new(width: u32, first_row: u32, rows: usize) -> Self {
         let pixels = width as usize * rows;
-        Self { width, first_row, nearness: vec![f32::NEG_INFINITY; pixels], seen: vec![Seen::NOTHING; pixels] }
+        Self {
+            width,
+            first_row,
+            nearness: vec![f32::NEG_INFINITY; pixels],
+            seen: vec![BatchTriangleIndex::NO_TRIANGLE; pixels],
+        }
     }
 
     /// Draws all batches. The result for a pixel depends on no other pixel, so it is the same for any division into
     /// bands.
-    pub(crate) fn draw(&mut self, batches: &[Batch], triangles: &[Triangle]) {
+    pub(crate) fn draw_batches(&mut self, batches: &[TriangleBatch], triangles: &[SceneTriangle]) {
         let rows = (self.nearness.len() / self.width.max(1) as usize) as u32;
         let (first, end) = (self.first_row, self.first_row + rows);
         let overlaps = |[low, high]: [u16; 2]| u32::from(low) < end && u32::from(high) >= first;
@@ -45,7 +50,7 @@ impl Band {
             }
             for (place, triangle) in batch.triangles.iter().enumerate() {
                 if overlaps(triangle.rows) {
-                    let seen = Seen { batch: index as u32, place: place as u32 };
+                    let seen = BatchTriangleIndex { batch: index as u32, place: place as u32 };
                     self.draw_triangle(triangle, seen, end, |other| {
                         let other = &batches[other.batch as usize].triangles[other.place as usize];
                         let source = |t: &ScreenTriangle| triangles[t.triangle as usize].source;
@@ -58,23 +63,31 @@ impl Band {
 
     /// Draws one triangle. `precedes` decides between two triangles that are equally near: it is true if this triangle comes
     /// before the other.
-    fn draw_triangle(&mut self, triangle: &ScreenTriangle, seen: Seen, end: u32, precedes: impl Fn(Seen) -> bool) {
+    fn draw_triangle(
+        &mut self,
+        triangle: &ScreenTriangle,
+        seen: BatchTriangleIndex,
+        end: u32,
+        precedes: impl Fn(BatchTriangleIndex) -> bool,
+    ) {
         let Some([left, right]) = centres_between(triangle.corners.map(|c| c.x), self.width) else { return };
-        let edges = edges(triangle);
-        let slope = NearnessPlane::of(triangle);
+        let edges = triangle_edges(triangle);
+        let slope = NearnessPlane::for_triangle(triangle);
         let first = u32::from(triangle.rows[0]).max(self.first_row);
         for row in first..end.min(u32::from(triangle.rows[1]) + 1) {
-            let at_left = edges.map(|edge| edge.at(u32::from(left), row));
-            let Some((start, stop)) = span(&edges, at_left, i64::from(right - left) + 1) else { continue };
+            let at_left = edges.map(|edge| edge.value_at(u32::from(left), row));
+            let Some((start, stop)) = inside_span(&edges, at_left, i64::from(right - left) + 1) else { continue };
             let start_column = usize::from(left) + start as usize;
             let offset = (row - self.first_row) as usize * self.width as usize + start_column;
             let count = (stop - start) as usize;
-            let (value, step) = slope.along(start_column as u32, row);
+            let (value, step) = slope.value_and_step(start_column as u32, row);
             let nearness = &mut self.nearness[offset..offset + count];
             let owners = &mut self.seen[offset..offset + count];
             for (i, (nearest, owner)) in nearness.iter_mut().zip(owners).enumerate() {
                 let here = value + step * i as f32;
-                if here > *nearest || (here == *nearest && *owner != Seen::NOTHING && precedes(*owner)) {
+                if here > *nearest
+                    || (here == *nearest && *owner != BatchTriangleIndex::NO_TRIANGLE && precedes(*owner))
+                {
                     *nearest = here;
                     *owner = seen;
                 }
@@ -85,7 +98,7 @@ impl Band {
 
 /// A directed edge, with a value at each pixel: the pixel is inside the edge if the value is not negative.
 #[derive(Clone, Copy, Debug)]
-struct Edge {
+struct TriangleEdge {
     x: i64,
     y: i64,
     dx: i64,
@@ -94,38 +107,38 @@ struct Edge {
     bias: i64,
 }
 
-impl Edge {
-    fn at(&self, column: u32, row: u32) -> i64 {
-        self.dx * (centre(row) - self.y) - self.dy * (centre(column) - self.x) + self.bias
+impl TriangleEdge {
+    fn value_at(&self, column: u32, row: u32) -> i64 {
+        self.dx * (pixel_centre(row) - self.y) - self.dy * (pixel_centre(column) - self.x) + self.bias
     }
 
     /// Change from a pixel to the one right of it.
-    fn step(&self) -> i64 {
-        -self.dy * i64::from(STEPS)
+    fn step_right(&self) -> i64 {
+        -self.dy * i64::from(SUBPIXEL_STEPS)
     }
 }
 
 /// The centre of a pixel on one axis, in sub-pixel steps.
-fn centre(pixel: u32) -> i64 {
-    i64::from(pixel) * i64::from(STEPS) + i64::from(STEPS / 2)
+fn pixel_centre(pixel: u32) -> i64 {
+    i64::from(pixel) * i64::from(SUBPIXEL_STEPS) + i64::from(SUBPIXEL_STEPS / 2)
 }
 
-fn edges(triangle: &ScreenTriangle) -> [Edge; 3] {
+fn triangle_edges(triangle: &ScreenTriangle) -> [TriangleEdge; 3] {
     let corners = &triangle.corners;
     [(0, 1), (1, 2), (2, 0)].map(|(from, to)| {
         let (from, to) = (corners[from], corners[to]);
         let (dx, dy) = (i64::from(to.x) - i64::from(from.x), i64::from(to.y) - i64::from(from.y));
         let top_left = dy < 0 || (dy == 0 && dx > 0);
-        Edge { x: from.x.into(), y: from.y.into(), dx, dy, bias: if top_left { 0 } else { -1 } }
+        TriangleEdge { x: from.x.into(), y: from.y.into(), dx, dy, bias: if top_left { 0 } else { -1 } }
     })
 }
 
 /// The range (from, to) of pixels inside all edges, in a row of `count` pixels. `at` are the edges' values at the first
 /// pixel. An edge's value is linear along the row, so the range follows by division, without a test of each pixel.
-fn span(edges: &[Edge; 3], at: [i64; 3], count: i64) -> Option<(i64, i64)> {
+fn inside_span(edges: &[TriangleEdge; 3], at: [i64; 3], count: i64) -> Option<(i64, i64)> {
     let (mut start, mut stop) = (0, count);
     for (edge, value) in edges.iter().zip(at) {
-        let step = edge.step();
+        let step = edge.step_right();
         let last = value + step * (count - 1);
         if value < 0 && last < 0 {
             return None;
@@ -156,21 +169,21 @@ struct NearnessPlane {
 }
 
 impl NearnessPlane {
-    fn of(triangle: &ScreenTriangle) -> Self {
+    fn for_triangle(triangle: &ScreenTriangle) -> Self {
         let [a, b, c] = triangle.corners;
         let [ab, ac] = [b, c].map(|to| [f64::from(to.x - a.x), f64::from(to.y - a.y)]);
         let base = f64::from(a.nearness);
         let [to_b, to_c] = [b, c].map(|to| f64::from(to.nearness) - base);
-        let scale = 1.0 / triangle.area() as f64;
+        let scale = 1.0 / triangle.twice_area() as f64;
         let gradient = [(to_b * ac[1] - to_c * ab[1]) * scale, (to_c * ab[0] - to_b * ac[0]) * scale];
         Self { x: a.x.into(), y: a.y.into(), base, gradient }
     }
 
     /// The value at a pixel's centre, and its change to the next pixel on the right.
-    fn along(&self, column: u32, row: u32) -> (f32, f32) {
-        let (x, y) = ((centre(column) - self.x) as f64, (centre(row) - self.y) as f64);
+    fn value_and_step(&self, column: u32, row: u32) -> (f32, f32) {
+        let (x, y) = ((pixel_centre(column) - self.x) as f64, (pixel_centre(row) - self.y) as f64);
         let value = self.base + self.gradient[0] * x + self.gradient[1] * y;
-        (value as f32, (self.gradient[0] * f64::from(STEPS)) as f32)
+        (value as f32, (self.gradient[0] * f64::from(SUBPIXEL_STEPS)) as f32)
     }
 }
 
@@ -194,11 +207,11 @@ mod tests {
             let [ax, ay, bx, by, cx, cy] = corners;
             let edge = |x: i64, y: i64, to_x: i64, to_y: i64| {
                 let (dx, dy) = (to_x - x, to_y - y);
-                Edge { x, y, dx, dy, bias: if dy < 0 || (dy == 0 && dx > 0) { 0 } else { -1 } }
+                TriangleEdge { x, y, dx, dy, bias: if dy < 0 || (dy == 0 && dx > 0) { 0 } else { -1 } }
             };
             let edges = [edge(ax, ay, bx, by), edge(bx, by, cx, cy), edge(cx, cy, ax, ay)];
-            let inside: Vec<u32> = (0..60).filter(|&x| edges.iter().all(|e| e.at(x, row) >= 0)).collect();
-            let found = span(&edges, edges.map(|e| e.at(0, row)), 60);
+            let inside: Vec<u32> = (0..60).filter(|&x| edges.iter().all(|e| e.value_at(x, row) >= 0)).collect();
+            let found = inside_span(&edges, edges.map(|e| e.value_at(0, row)), 60);
             let listed: Vec<u32> = found.map_or(vec![], |(start, stop)| (start as u32..stop as u32).collect());
             prop_assert_eq!(inside, listed);
         }

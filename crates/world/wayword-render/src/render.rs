@@ -1,53 +1,57 @@
 //! Draws a scene: turns its clusters into screen triangles, then draws bands of rows, each on any free thread.
 
-use crate::background::Background;
-use crate::camera::Camera;
-use crate::picture::{Picture, RenderError};
-use crate::raster::{Band, Seen};
-use crate::scene::Scene;
-use crate::setup::{Batch, batches};
-use crate::shade::Shader;
-use crate::view::View;
+use crate::background::PictureBackground;
+use crate::camera::PinholeCamera;
+use crate::picture::{RenderError, RenderedPicture};
+use crate::raster::{BatchTriangleIndex, PictureBand};
+use crate::scene::RenderScene;
+use crate::setup::{TriangleBatch, visible_batches};
+use crate::shade::TriangleShader;
+use crate::view::ViewProjection;
 use rayon::prelude::*;
 
 /// Bands per picture: several per core, so that a crowded band does not delay the rest.
-const BANDS: usize = 16;
+const BANDS_PER_PICTURE: usize = 16;
 
 /// Draws what a camera sees. The picture is the same to the bit for any number of threads and on any machine.
 ///
 /// # Errors
 /// [`RenderError`] where the camera's numbers cannot give a picture.
-pub fn render(scene: &Scene, camera: &Camera) -> Result<Picture, RenderError> {
-    camera.check()?;
-    Ok(draw(scene, &View::of_camera(camera), Some(scene.background)))
+pub fn render_scene(scene: &RenderScene, camera: &PinholeCamera) -> Result<RenderedPicture, RenderError> {
+    camera.check_numbers()?;
+    Ok(draw_view(scene, &ViewProjection::of_camera(camera), Some(scene.background)))
 }
 
-/// The same depths and ids without colours, in about a third of the time: [`Picture::rgb`] is empty.
+/// The same depths and ids without colours, in about a third of the time: [`RenderedPicture::rgb`] is empty.
 ///
 /// # Errors
 /// [`RenderError`] where the camera's numbers cannot give a picture.
-pub fn render_ids(scene: &Scene, camera: &Camera) -> Result<Picture, RenderError> {
-    camera.check()?;
-    Ok(draw(scene, &View::of_camera(camera), None))
+pub fn render_ids(scene: &RenderScene, camera: &PinholeCamera) -> Result<RenderedPicture, RenderError> {
+    camera.check_numbers()?;
+    Ok(draw_view(scene, &ViewProjection::of_camera(camera), None))
 }
 
 /// Draws a view, with colours if a background is given, or else with depths and ids alone.
-pub(crate) fn draw(scene: &Scene, view: &View, background: Option<Background>) -> Picture {
+pub(crate) fn draw_view(
+    scene: &RenderScene,
+    view: &ViewProjection,
+    background: Option<PictureBackground>,
+) -> RenderedPicture {
     let (width, height) = (view.width as usize, view.height as usize);
-    let mut picture = Picture {
+    let mut picture = RenderedPicture {
         width: view.width,
         height: view.height,
         rgb: vec![0; background.map_or(0, |_| 3 * width * height)],
         depth_m: vec![f32::INFINITY; width * height],
         ids: vec![0; width * height],
     };
-    let batches = batches(scene, view);
-    let rows = height.div_ceil(BANDS);
+    let batches = visible_batches(scene, view);
+    let rows = height.div_ceil(BANDS_PER_PICTURE);
     let bands = picture.depth_m.par_chunks_mut(rows * width).zip(picture.ids.par_chunks_mut(rows * width));
     let drawn = |index: usize, depth_m: &mut [f32], ids: &mut [u32]| {
-        let mut band = Band::new(view.width, (index * rows) as u32, ids.len() / width);
-        band.draw(&batches, &scene.soup.triangles);
-        measure(view, &band, depth_m);
+        let mut band = PictureBand::new(view.width, (index * rows) as u32, ids.len() / width);
+        band.draw_batches(&batches, &scene.soup.triangles);
+        write_depths(view, &band, depth_m);
         for (id, seen) in ids.iter_mut().zip(&band.seen) {
             *id = id_of(scene, &batches, *seen);
         }
@@ -61,7 +65,7 @@ pub(crate) fn draw(scene: &Scene, view: &View, background: Option<Background>) -
             let colours = picture.rgb.par_chunks_mut(3 * rows * width);
             colours.zip(bands).enumerate().for_each(|(index, (rgb, (depth_m, ids)))| {
                 let band = drawn(index, depth_m, ids);
-                Painter { scene, view, background, batches: &batches, band: &band }.paint(rgb);
+                BandPainter { scene, view, background, batches: &batches, band: &band }.paint_band(rgb);
             });
         }
     }
@@ -69,30 +73,34 @@ pub(crate) fn draw(scene: &Scene, view: &View, background: Option<Background>) -
 }
 
 /// The depth of each pixel of a band.
-fn measure(view: &View, band: &Band, depth_m: &mut [f32]) {
+fn write_depths(view: &ViewProjection, band: &PictureBand, depth_m: &mut [f32]) {
     for ((depth_m, seen), &nearness) in depth_m.iter_mut().zip(&band.seen).zip(&band.nearness) {
-        if *seen != Seen::NOTHING {
+        if *seen != BatchTriangleIndex::NO_TRIANGLE {
             *depth_m = view.depth_m(nearness);
         }
     }
 }
 
 /// The id of what a pixel shows.
-fn id_of(scene: &Scene, batches: &[Batch], seen: Seen) -> u32 {
-    if seen == Seen::NOTHING { 0 } else { scene.surfaces[batches[seen.batch as usize].surface as usize].id }
+fn id_of(scene: &RenderScene, batches: &[TriangleBatch], seen: BatchTriangleIndex) -> u32 {
+    if seen == BatchTriangleIndex::NO_TRIANGLE {
+        0
+    } else {
+        scene.surfaces[batches[seen.batch as usize].surface as usize].id
+    }
 }
 
 /// Gives the pixels of a band their colours, after their triangles are known.
-struct Painter<'a> {
-    scene: &'a Scene,
-    view: &'a View,
-    background: Background,
-    batches: &'a [Batch],
-    band: &'a Band,
+struct BandPainter<'a> {
+    scene: &'a RenderScene,
+    view: &'a ViewProjection,
+    background: PictureBackground,
+    batches: &'a [TriangleBatch],
+    band: &'a PictureBand,
 }
 
-impl Painter<'_> {
-    fn paint(&self, rgb: &mut [u8]) {
+impl BandPainter<'_> {
+    fn paint_band(&self, rgb: &mut [u8]) {
         let width = self.band.width as usize;
         for (row, seen) in self.band.seen.chunks_exact(width).enumerate() {
             let mut start = row * width;
@@ -100,12 +108,12 @@ impl Painter<'_> {
                 let end = start + run.len();
                 let place = [start - row * width, row + self.band.first_row as usize];
                 let colours = rgb[3 * start..3 * end].chunks_exact_mut(3);
-                if run[0] == Seen::NOTHING {
+                if run[0] == BatchTriangleIndex::NO_TRIANGLE {
                     self.paint_background(colours, place);
                 } else {
-                    let shader = Shader::new(self.scene, self.view, self.batches, run[0]);
+                    let shader = TriangleShader::new(self.scene, self.view, self.batches, run[0]);
                     for (column, colour) in (place[0]..).zip(colours) {
-                        colour.copy_from_slice(&shader.colour(column, place[1]));
+                        colour.copy_from_slice(&shader.shade_pixel(column, place[1]));
                     }
                 }
                 start += run.len();
@@ -115,7 +123,7 @@ impl Painter<'_> {
 
     fn paint_background<'b>(&self, colours: impl Iterator<Item = &'b mut [u8]>, [first, row]: [usize; 2]) {
         for (column, colour) in (first..).zip(colours) {
-            colour.copy_from_slice(&self.background.colour(self.view.sin_elevation(column, row)));
+            colour.copy_from_slice(&self.background.colour_along(self.view.sin_elevation(column, row)));
         }
     }
 }

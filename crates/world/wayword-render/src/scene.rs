@@ -1,8 +1,8 @@
 //! A scene: its meshes, materials and textures are checked once, and can then be drawn from anywhere.
 
-use crate::background::Background;
-use crate::cluster::Soup;
-use crate::mesh::{Material, Mesh};
+use crate::background::PictureBackground;
+use crate::cluster::TriangleSoup;
+use crate::mesh::{Mesh, MeshMaterial};
 use crate::mipmap::MipMap;
 use crate::texture::{Texture, TextureError};
 
@@ -14,7 +14,7 @@ pub const MAX_COORDINATE_M: f32 = 1e6;
 
 /// How a texture is looked up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Filter {
+pub enum TextureFilter {
     /// Bilinear on the full picture, as Habitat does: exact, but fine patterns shimmer in the distance.
     #[default]
     Bilinear,
@@ -26,17 +26,17 @@ pub enum Filter {
 
 /// Meshes, materials and textures, checked and prepared for drawing.
 #[derive(Debug)]
-pub struct Scene {
-    pub(crate) soup: Soup,
-    pub(crate) surfaces: Vec<Surface>,
-    pub(crate) materials: Vec<Material>,
+pub struct RenderScene {
+    pub(crate) soup: TriangleSoup,
+    pub(crate) surfaces: Vec<MeshSurface>,
+    pub(crate) materials: Vec<MeshMaterial>,
     pub(crate) textures: Vec<MipMap>,
-    pub(crate) background: Background,
+    pub(crate) background: PictureBackground,
 }
 
 /// What the triangles of one mesh share.
 #[derive(Clone, Debug)]
-pub(crate) struct Surface {
+pub(crate) struct MeshSurface {
     pub(crate) id: u32,
     /// Index into the scene's materials.
     pub(crate) material: usize,
@@ -129,57 +129,57 @@ pub enum SceneError {
     },
 }
 
-impl Scene {
+impl RenderScene {
     /// Checks everything and prepares it for drawing: triangles are sorted into clusters that lie together.
     ///
     /// # Errors
     /// [`SceneError`] names the first mesh, material or texture that cannot be drawn.
-    pub fn new(meshes: Vec<Mesh>, materials: Vec<Material>, textures: Vec<Texture>) -> Result<Self, SceneError> {
+    pub fn new(meshes: Vec<Mesh>, materials: Vec<MeshMaterial>, textures: Vec<Texture>) -> Result<Self, SceneError> {
         let triangles = meshes.iter().map(|mesh| mesh.triangles.len()).sum();
         if triangles > MAX_TRIANGLES {
             return Err(SceneError::TooManyTriangles { triangles });
         }
         for (index, texture) in textures.iter().enumerate() {
-            texture.check().map_err(|source| SceneError::Texture { texture: index, source })?;
+            texture.check_texels().map_err(|source| SceneError::Texture { texture: index, source })?;
         }
         for (index, material) in materials.iter().enumerate() {
             check_material(index, material, textures.len())?;
         }
-        let mut soup = Soup::default();
+        let mut soup = TriangleSoup::default();
         let mut surfaces = Vec::with_capacity(meshes.len());
         for (index, mesh) in meshes.into_iter().enumerate() {
             let none = SceneError::NoMaterial { mesh: index, material: mesh.material, materials: materials.len() };
             let material = materials.get(mesh.material).ok_or(none)?;
             check_mesh(index, &mesh, material.texture.is_some())?;
-            soup.add(&mesh, surfaces.len() as u32);
-            surfaces.push(Surface { id: mesh.id, material: mesh.material });
+            soup.add_mesh(&mesh, surfaces.len() as u32);
+            surfaces.push(MeshSurface { id: mesh.id, material: mesh.material });
         }
-        let textures = textures.into_iter().map(|texture| MipMap::plain(&texture)).collect();
-        Ok(Self { soup, surfaces, materials, textures, background: Background::default() })
+        let textures = textures.into_iter().map(|texture| MipMap::without_chain(&texture)).collect();
+        Ok(Self { soup, surfaces, materials, textures, background: PictureBackground::default() })
     }
 
     /// The same scene with another background (the default is black).
     #[must_use]
-    pub fn with_background(mut self, background: Background) -> Self {
+    pub fn with_background(mut self, background: PictureBackground) -> Self {
         self.background = background;
         self
     }
 
-    /// The same scene with another texture lookup (the default is [`Filter::Bilinear`]).
+    /// The same scene with another texture lookup (the default is [`TextureFilter::Bilinear`]).
     #[must_use]
-    pub fn with_filter(mut self, filter: Filter) -> Self {
+    pub fn with_filter(mut self, filter: TextureFilter) -> Self {
         for texture in &mut self.textures {
-            texture.blend(filter != Filter::Nearest);
+            texture.set_blending(filter != TextureFilter::Nearest);
             match filter {
-                Filter::Bilinear | Filter::Nearest => texture.drop_chain(),
-                Filter::Trilinear => texture.build_chain(),
+                TextureFilter::Bilinear | TextureFilter::Nearest => texture.drop_chain(),
+                TextureFilter::Trilinear => texture.build_chain(),
             }
         }
         self
     }
 }
 
-fn check_material(material: usize, given: &Material, textures: usize) -> Result<(), SceneError> {
+fn check_material(material: usize, given: &MeshMaterial, textures: usize) -> Result<(), SceneError> {
     if !given.base_colour.iter().all(|c| c.is_finite() && *c >= 0.0) {
         return Err(SceneError::Colour { material });
     }
@@ -227,7 +227,7 @@ mod tests {
     }
 
     fn refusal(mesh: Mesh) -> String {
-        Scene::new(vec![mesh], vec![Material::default()], vec![]).unwrap_err().to_string()
+        RenderScene::new(vec![mesh], vec![MeshMaterial::default()], vec![]).unwrap_err().to_string()
     }
 
     #[test]
@@ -248,21 +248,21 @@ mod tests {
 
     #[test]
     fn a_textured_material_needs_its_texture_and_uvs() {
-        let material = Material { texture: Some(0), ..Material::default() };
+        let material = MeshMaterial { texture: Some(0), ..MeshMaterial::default() };
         let texture = Texture { width: 1, height: 1, texels: vec![[9; 4]] };
-        let none = Scene::new(vec![mesh()], vec![material.clone()], vec![]).unwrap_err();
+        let none = RenderScene::new(vec![mesh()], vec![material.clone()], vec![]).unwrap_err();
         assert_eq!(none, SceneError::NoTexture { material: 0, texture: 0, textures: 0 });
-        let bare = Scene::new(vec![mesh()], vec![material.clone()], vec![texture.clone()]).unwrap_err();
+        let bare = RenderScene::new(vec![mesh()], vec![material.clone()], vec![texture.clone()]).unwrap_err();
         assert_eq!(bare.to_string(), "mesh 0: uvs has length 0, but positions has length 3: give one per position");
         let torn = Texture { width: 1, height: 1, texels: vec![] };
-        assert!(matches!(Scene::new(vec![], vec![], vec![torn]), Err(SceneError::Texture { texture: 0, .. })));
+        assert!(matches!(RenderScene::new(vec![], vec![], vec![torn]), Err(SceneError::Texture { texture: 0, .. })));
         let dressed = Mesh { uvs: vec![Vec2::ZERO; 3], ..mesh() };
-        assert!(Scene::new(vec![dressed], vec![material], vec![texture]).is_ok());
+        assert!(RenderScene::new(vec![dressed], vec![material], vec![texture]).is_ok());
     }
 
     #[test]
     fn empty_scenes_are_fine() {
-        assert!(Scene::new(vec![], vec![], vec![]).is_ok());
-        assert!(Scene::new(vec![Mesh::default()], vec![Material::default()], vec![]).is_ok());
+        assert!(RenderScene::new(vec![], vec![], vec![]).is_ok());
+        assert!(RenderScene::new(vec![Mesh::default()], vec![MeshMaterial::default()], vec![]).is_ok());
     }
 }

@@ -3,22 +3,22 @@
 //! Clusters outside the view are skipped. A triangle that reaches behind the eye or far beyond the picture is clipped; one
 //! that faces away or covers no pixel's centre is dropped.
 
-use crate::clip::{ClipVertex, clip};
-use crate::cluster::{Cluster, Triangle};
-use crate::scene::Scene;
-use crate::view::{Corner, Plane, STEPS, View};
+use crate::clip::{ClipVertex, clip_triangle};
+use crate::cluster::{SceneTriangle, TriangleCluster};
+use crate::scene::RenderScene;
+use crate::view::{ClipPlane, SUBPIXEL_STEPS, ScreenCorner, ViewProjection};
 use glam::Vec3;
 use rayon::prelude::*;
 use std::ops::{Add, Mul};
 
-/// Marks a triangle without an entry in [`Batch::cuts`], because it was not clipped.
-const WHOLE: u32 = u32::MAX;
+/// Marks a triangle without an entry in [`TriangleBatch::cuts`], because it was not clipped.
+const NO_CUT: u32 = u32::MAX;
 
 /// A triangle that covers, or may cover, pixels of the picture.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ScreenTriangle {
-    /// Wound so that the doubled area of [`ScreenTriangle::area`] is positive.
-    pub(crate) corners: [Corner; 3],
+    /// Wound so that the doubled area of [`ScreenTriangle::twice_area`] is positive.
+    pub(crate) corners: [ScreenCorner; 3],
     /// Index into the scene's triangles.
     pub(crate) triangle: u32,
     /// Index into its batch's cuts.
@@ -31,7 +31,7 @@ pub(crate) struct ScreenTriangle {
 
 /// The triangles that one cluster puts on the screen.
 #[derive(Debug)]
-pub(crate) struct Batch {
+pub(crate) struct TriangleBatch {
     pub(crate) triangles: Vec<ScreenTriangle>,
     /// For parts of clipped triangles: for each of their corners, the weights of the whole triangle's corners.
     cuts: Vec<[Vec3; 3]>,
@@ -43,12 +43,12 @@ pub(crate) struct Batch {
 
 impl ScreenTriangle {
     /// Twice the area, in square steps.
-    pub(crate) fn area(&self) -> i64 {
+    pub(crate) fn twice_area(&self) -> i64 {
         doubled_area(&self.corners)
     }
 
     /// The values of the corners, given those of the corners of the scene's triangle.
-    pub(crate) fn at_corners<T>(&self, batch: &Batch, whole: [T; 3]) -> [T; 3]
+    pub(crate) fn at_corners<T>(&self, batch: &TriangleBatch, whole: [T; 3]) -> [T; 3]
     where
         T: Copy + Add<Output = T> + Mul<f32, Output = T>,
     {
@@ -61,20 +61,25 @@ impl ScreenTriangle {
 }
 
 /// The triangles of a scene that a view can show, in the order of the clusters.
-pub(crate) fn batches(scene: &Scene, view: &View) -> Vec<Batch> {
-    let (frustum, clip_planes) = (view.frustum(), view.clip_planes());
-    let visible = |cluster: &&Cluster| !view.misses(&frustum, cluster.centre, cluster.half_extent);
+pub(crate) fn visible_batches(scene: &RenderScene, view: &ViewProjection) -> Vec<TriangleBatch> {
+    let (frustum, clip_planes) = (view.frustum_planes(), view.clip_planes());
+    let visible = |cluster: &&TriangleCluster| !view.misses_box(&frustum, cluster.centre, cluster.half_extent);
     let clusters = scene.soup.clusters.par_iter().filter(visible);
-    clusters.filter_map(|cluster| batch(scene, view, &clip_planes, cluster)).collect()
+    clusters.filter_map(|cluster| batch_for_cluster(scene, view, &clip_planes, cluster)).collect()
 }
 
-fn batch(scene: &Scene, view: &View, clip_planes: &[Plane], cluster: &Cluster) -> Option<Batch> {
+fn batch_for_cluster(
+    scene: &RenderScene,
+    view: &ViewProjection,
+    clip_planes: &[ClipPlane],
+    cluster: &TriangleCluster,
+) -> Option<TriangleBatch> {
     let surface = &scene.surfaces[cluster.surface as usize];
     let double_sided = scene.materials[surface.material].double_sided;
-    let mut builder = Builder {
+    let mut builder = TriangleBatchBuilder {
         size: [view.width, view.height],
         double_sided,
-        batch: Batch {
+        batch: TriangleBatch {
             triangles: Vec::with_capacity(cluster.triangles as usize),
             cuts: Vec::new(),
             surface: cluster.surface,
@@ -86,7 +91,7 @@ fn batch(scene: &Scene, view: &View, clip_planes: &[Plane], cluster: &Cluster) -
     for (index, triangle) in (first..).zip(&scene.soup.triangles[first..first + cluster.triangles as usize]) {
         let [a, b, c] = triangle.corners.map(|v| corners[(v - cluster.first_vertex) as usize]);
         if let (Some(a), Some(b), Some(c)) = (a, b, c) {
-            builder.push([a, b, c], index as u32, None);
+            builder.push_triangle([a, b, c], index as u32, None);
         } else {
             push_clipped(&mut builder, scene, view, clip_planes, triangle, index as u32);
         }
@@ -95,45 +100,45 @@ fn batch(scene: &Scene, view: &View, clip_planes: &[Plane], cluster: &Cluster) -
 }
 
 /// The corner of each vertex of a cluster; `None` where the vertex needs clipping.
-fn usable_corners(scene: &Scene, view: &View, cluster: &Cluster) -> Vec<Option<Corner>> {
+fn usable_corners(scene: &RenderScene, view: &ViewProjection, cluster: &TriangleCluster) -> Vec<Option<ScreenCorner>> {
     let first = cluster.first_vertex as usize;
     let positions = &scene.soup.positions[first..first + cluster.vertices as usize];
     let corner = |&position: &Vec3| {
         let point = view.to_view(position);
-        view.within_guard(point).then(|| view.corner(point))
+        view.within_guard(point).then(|| view.to_corner(point))
     };
     positions.iter().map(corner).collect()
 }
 
 fn push_clipped(
-    builder: &mut Builder,
-    scene: &Scene,
-    view: &View,
-    clip_planes: &[Plane],
-    triangle: &Triangle,
+    builder: &mut TriangleBatchBuilder,
+    scene: &RenderScene,
+    view: &ViewProjection,
+    clip_planes: &[ClipPlane],
+    triangle: &SceneTriangle,
     index: u32,
 ) {
     let points = triangle.corners.map(|v| view.to_view(scene.soup.positions[v as usize]));
-    if clip_planes.iter().any(|plane| points.iter().all(|&p| plane.distance(p) < 0.0)) {
+    if clip_planes.iter().any(|plane| points.iter().all(|&p| plane.signed_distance(p) < 0.0)) {
         return;
     }
-    let polygon = clip(points, clip_planes);
-    let corner = |vertex: &ClipVertex| view.corner(vertex.point);
+    let polygon = clip_triangle(points, clip_planes);
+    let corner = |vertex: &ClipVertex| view.to_corner(vertex.point);
     for i in 2..polygon.len() {
         let fan = [&polygon[0], &polygon[i - 1], &polygon[i]];
-        builder.push(fan.map(corner), index, Some(fan.map(|vertex| vertex.weights)));
+        builder.push_triangle(fan.map(corner), index, Some(fan.map(|vertex| vertex.weights)));
     }
 }
 
 /// Collects the triangles of a batch that can be seen.
-struct Builder {
+struct TriangleBatchBuilder {
     size: [u32; 2],
     double_sided: bool,
-    batch: Batch,
+    batch: TriangleBatch,
 }
 
-impl Builder {
-    fn push(&mut self, mut corners: [Corner; 3], triangle: u32, cut: Option<[Vec3; 3]>) {
+impl TriangleBatchBuilder {
+    fn push_triangle(&mut self, mut corners: [ScreenCorner; 3], triangle: u32, cut: Option<[Vec3; 3]>) {
         // Counter-clockwise in the world is a negative area here, where y runs down.
         let area = doubled_area(&corners);
         if area == 0 || (area > 0 && !self.double_sided) {
@@ -149,7 +154,7 @@ impl Builder {
         let (Some(_), Some(rows)) = (columns, rows) else { return };
         let batch = &mut self.batch;
         batch.rows = [batch.rows[0].min(rows[0]), batch.rows[1].max(rows[1])];
-        let cut = cut.map_or(WHOLE, |weights| {
+        let cut = cut.map_or(NO_CUT, |weights| {
             batch.cuts.push(weights);
             batch.cuts.len() as u32 - 1
         });
@@ -157,7 +162,7 @@ impl Builder {
     }
 }
 
-fn doubled_area([a, b, c]: &[Corner; 3]) -> i64 {
+fn doubled_area([a, b, c]: &[ScreenCorner; 3]) -> i64 {
     let (ab, ac) = ([b.x - a.x, b.y - a.y].map(i64::from), [c.x - a.x, c.y - a.y].map(i64::from));
     ab[0] * ac[1] - ab[1] * ac[0]
 }
@@ -167,8 +172,8 @@ fn doubled_area([a, b, c]: &[Corner; 3]) -> i64 {
 pub(crate) fn centres_between(steps: [i32; 3], count: u32) -> Option<[u16; 2]> {
     let [a, b, c] = steps;
     let (low, high) = (a.min(b).min(c), a.max(b).max(c));
-    let first = (low + STEPS / 2 - 1).div_euclid(STEPS).max(0);
-    let last = (high - STEPS / 2).div_euclid(STEPS).min(count as i32 - 1);
+    let first = (low + SUBPIXEL_STEPS / 2 - 1).div_euclid(SUBPIXEL_STEPS).max(0);
+    let last = (high - SUBPIXEL_STEPS / 2).div_euclid(SUBPIXEL_STEPS).min(count as i32 - 1);
     (first <= last).then_some([first as u16, last as u16])
 }
 

@@ -44,11 +44,11 @@ impl Texture {
     /// [`TextureError`] where they are not.
     pub fn new(width: u32, height: u32, texels: Vec<[u8; 4]>) -> Result<Self, TextureError> {
         let texture = Self { width, height, texels };
-        texture.check()?;
+        texture.check_texels()?;
         Ok(texture)
     }
 
-    pub(crate) fn check(&self) -> Result<(), TextureError> {
+    pub(crate) fn check_texels(&self) -> Result<(), TextureError> {
         let (width, height) = (self.width, self.height);
         let sides = 1..=MAX_TEXTURE_SIDE;
         if !sides.contains(&width) || !sides.contains(&height) {

@@ -1,14 +1,14 @@
 //! Draws maps: a scene seen straight from above, cut open at a height.
 
-use crate::background::Background;
-use crate::picture::{Picture, RenderError, check_finite, check_size};
-use crate::render::draw;
-use crate::scene::Scene;
-use crate::view::View;
+use crate::background::PictureBackground;
+use crate::picture::{RenderError, RenderedPicture, check_finite, check_size};
+use crate::render::draw_view;
+use crate::scene::RenderScene;
+use crate::view::ViewProjection;
 use glam::{DVec2, DVec3};
 
 /// The background of a map.
-const PAPER: Background = Background::Plain([255; 3]);
+const PAPER_BACKGROUND: PictureBackground = PictureBackground::Plain([255; 3]);
 
 /// Draws the scene from straight above, without perspective: +x to the right, +y up. Everything higher than
 /// `cut_height_m` is cut away. The top left corner of the picture is (`bounds_min.x`, `bounds_max.y`); the sides are
@@ -18,12 +18,12 @@ const PAPER: Background = Background::Plain([255; 3]);
 /// # Errors
 /// [`RenderError`] where the bounds are empty or not finite, or give a picture of too many pixels.
 pub fn top_down(
-    scene: &Scene,
+    scene: &RenderScene,
     bounds_min: DVec2,
     bounds_max: DVec2,
     cut_height_m: f64,
     metres_per_pixel: f64,
-) -> Result<Picture, RenderError> {
+) -> Result<RenderedPicture, RenderError> {
     check_finite("cut_height_m", cut_height_m)?;
     check_finite("bounds_min.x", bounds_min.x)?;
     check_finite("bounds_min.y", bounds_min.y)?;
@@ -38,6 +38,6 @@ pub fn top_down(
     let half = DVec2::new(width as f64, -(height as f64)) * (0.5 * metres_per_pixel);
     let centre = DVec2::new(bounds_min.x, bounds_max.y) + half;
     let origin = DVec3::new(centre.x, centre.y, cut_height_m);
-    let view = View::of_map(origin, 1.0 / metres_per_pixel, [width as u32, height as u32]);
-    Ok(draw(scene, &view, Some(PAPER)))
+    let view = ViewProjection::of_map(origin, 1.0 / metres_per_pixel, [width as u32, height as u32]);
+    Ok(draw_view(scene, &view, Some(PAPER_BACKGROUND)))
 }

@@ -1,6 +1,6 @@
 //! Projects points of the world onto the pixel grid, for a camera with perspective or for a map without.
 
-use crate::camera::Camera;
+use crate::camera::PinholeCamera;
 use glam::{DMat3, DVec3, Vec3};
 
 /// Surfaces nearer than this to a camera are cut away (Habitat's near plane).
@@ -8,31 +8,31 @@ pub(crate) const NEAR_M: f32 = 0.01;
 
 /// Sub-pixel steps per pixel: corners snap to this grid, so that coverage is decided in integers and shared edges
 /// leave neither gaps nor double hits.
-pub(crate) const STEPS: i32 = 256;
+pub(crate) const SUBPIXEL_STEPS: i32 = 256;
 
 /// Corners further than this from the picture's centre are clipped, to keep the integers of coverage small.
 const GUARD_PX: f32 = 16_384.0;
 
 /// No corner lies further out than this, in steps. After clipping, only rounding can put one there, and only for a
 /// triangle that is a thousand kilometres long.
-const LIMIT_STEPS: f32 = 2.0 * GUARD_PX * STEPS as f32;
+const LIMIT_STEPS: f32 = 2.0 * GUARD_PX * SUBPIXEL_STEPS as f32;
 
 /// The half-space of view points `p` with `normal . p + offset >= 0`.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Plane {
+pub(crate) struct ClipPlane {
     pub(crate) normal: Vec3,
     pub(crate) offset: f32,
 }
 
-impl Plane {
-    pub(crate) fn distance(&self, point: Vec3) -> f32 {
+impl ClipPlane {
+    pub(crate) fn signed_distance(&self, point: Vec3) -> f32 {
         self.normal.dot(point) + self.offset
     }
 }
 
 /// A corner on the sub-pixel grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Corner {
+pub(crate) struct ScreenCorner {
     /// Steps from the left edge of the picture.
     pub(crate) x: i32,
     /// Steps from the top edge.
@@ -44,7 +44,7 @@ pub(crate) struct Corner {
 /// A view frame (x right, y down, z forward) with its projection. All single precision, in a fixed order of
 /// operations, so a point gives the same corner in every triangle.
 #[derive(Clone, Debug)]
-pub(crate) struct View {
+pub(crate) struct ViewProjection {
     pub(crate) width: u32,
     pub(crate) height: u32,
     origin: Vec3,
@@ -57,8 +57,8 @@ pub(crate) struct View {
     centre_px: [f32; 2],
 }
 
-impl View {
-    pub(crate) fn of_camera(camera: &Camera) -> Self {
+impl ViewProjection {
+    pub(crate) fn of_camera(camera: &PinholeCamera) -> Self {
         let axes = camera.world_from_camera();
         Self::new(camera.position, axes, true, camera.focal_px(), [camera.width, camera.height])
     }
@@ -90,24 +90,24 @@ impl View {
     }
 
     /// The planes that a triangle must lie within for its corners to be usable, near plane first.
-    pub(crate) fn clip_planes(&self) -> [Plane; 5] {
-        self.planes([GUARD_PX; 2])
+    pub(crate) fn clip_planes(&self) -> [ClipPlane; 5] {
+        self.planes_at([GUARD_PX; 2])
     }
 
     /// The planes around what the picture shows, near plane first.
-    pub(crate) fn frustum(&self) -> [Plane; 5] {
+    pub(crate) fn frustum_planes(&self) -> [ClipPlane; 5] {
         // One more pixel on each side, because of rounding.
-        self.planes(self.centre_px.map(|half| half + 1.0))
+        self.planes_at(self.centre_px.map(|half| half + 1.0))
     }
 
-    fn planes(&self, half_px: [f32; 2]) -> [Plane; 5] {
-        let near = Plane { normal: Vec3::Z, offset: if self.perspective { -NEAR_M } else { 0.0 } };
+    fn planes_at(&self, half_px: [f32; 2]) -> [ClipPlane; 5] {
+        let near = ClipPlane { normal: Vec3::Z, offset: if self.perspective { -NEAR_M } else { 0.0 } };
         let side = |axis: Vec3, half_px: f32| {
             let reach = half_px / self.scale_px;
             if self.perspective {
-                Plane { normal: axis + Vec3::Z * reach, offset: 0.0 }
+                ClipPlane { normal: axis + Vec3::Z * reach, offset: 0.0 }
             } else {
-                Plane { normal: axis, offset: reach }
+                ClipPlane { normal: axis, offset: reach }
             }
         };
         let [x, y] = half_px;
@@ -115,7 +115,7 @@ impl View {
     }
 
     /// Whether a world-space box surely lies outside one of `planes`.
-    pub(crate) fn misses(&self, planes: &[Plane], centre: Vec3, half_extent: Vec3) -> bool {
+    pub(crate) fn misses_box(&self, planes: &[ClipPlane], centre: Vec3, half_extent: Vec3) -> bool {
         let view_centre = self.to_view(centre);
         planes.iter().any(|plane| {
             let normal = plane.normal;
@@ -123,7 +123,7 @@ impl View {
             let reach = world_normal.abs().dot(half_extent);
             // Rounding of both terms grows with their size.
             let slack = 1e-5 * (reach + view_centre.abs().dot(normal.abs()) + 1e-3);
-            plane.distance(view_centre) + reach + slack < 0.0
+            plane.signed_distance(view_centre) + reach + slack < 0.0
         })
     }
 
@@ -135,7 +135,7 @@ impl View {
     }
 
     /// The corner of a view point within the clip planes.
-    pub(crate) fn corner(&self, point: Vec3) -> Corner {
+    pub(crate) fn to_corner(&self, point: Vec3) -> ScreenCorner {
         let (scale, nearness) = if self.perspective {
             let inverse = 1.0 / point.z.max(NEAR_M);
             (self.scale_px * inverse, inverse)
@@ -143,7 +143,11 @@ impl View {
             (self.scale_px, -point.z)
         };
         let [centre_x, centre_y] = self.centre_px;
-        Corner { x: snap(centre_x + scale * point.x), y: snap(centre_y + scale * point.y), nearness }
+        ScreenCorner {
+            x: snap_to_step(centre_x + scale * point.x),
+            y: snap_to_step(centre_y + scale * point.y),
+            nearness,
+        }
     }
 
     /// The factor that makes a corner's attributes linear on the screen.
@@ -169,7 +173,7 @@ impl View {
 }
 
 /// The nearest step of the sub-pixel grid. (`f32::round` is a function call on the baseline x86-64.)
-fn snap(px: f32) -> i32 {
-    let steps = (px * STEPS as f32).clamp(-LIMIT_STEPS, LIMIT_STEPS);
+fn snap_to_step(px: f32) -> i32 {
+    let steps = (px * SUBPIXEL_STEPS as f32).clamp(-LIMIT_STEPS, LIMIT_STEPS);
     (if steps >= 0.0 { steps + 0.5 } else { steps - 0.5 }) as i32
 }

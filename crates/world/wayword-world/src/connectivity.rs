@@ -4,7 +4,7 @@
 //! unobstructed[], height}`, the pose row-major and in metres, z up. `visible` is not read, so a file may leave it out.
 
 use crate::{
-    files::{json_if_there, wrong},
+    files::{file_error, json_if_there},
     levels, values,
 };
 use serde_json::Value;
@@ -12,7 +12,7 @@ use std::path::Path;
 use wayword_core::{DMat3, DVec3, PlatformError, ViewpointGraph, ViewpointId, graph::GraphError};
 
 /// The end of such a file's name, after the name of the scene.
-pub const ENDING: &str = "_connectivity.json";
+pub const CONNECTIVITY_FILE_SUFFIX: &str = "_connectivity.json";
 
 /// Most viewpoints of a building (the largest real one has 345); the table of edges grows with the square of this
 /// number.
@@ -23,16 +23,16 @@ const MAX_BYTES: u64 = 4 << 20;
 
 /// A building's viewpoints.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Connectivity {
+pub struct ConnectivityGraph {
     /// The included viewpoints, in the file's order.
-    pub viewpoints: Vec<Viewpoint>,
+    pub viewpoints: Vec<PanoramaViewpoint>,
     /// Pairs of indices into `viewpoints`.
     pub edges: Vec<(usize, usize)>,
 }
 
 /// A place from which a panorama was taken.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Viewpoint {
+pub struct PanoramaViewpoint {
     /// Its name.
     pub id: ViewpointId,
     /// Position of the camera, metres, world frame.
@@ -43,7 +43,7 @@ pub struct Viewpoint {
     pub world_from_skybox: DMat3,
 }
 
-impl Viewpoint {
+impl PanoramaViewpoint {
     /// Height of the floor below the camera, metres, world frame.
     #[must_use]
     pub fn floor_m(&self) -> f64 {
@@ -51,23 +51,26 @@ impl Viewpoint {
     }
 }
 
-impl Connectivity {
+impl ConnectivityGraph {
     /// The viewpoint graph. `level` gives the storey of a viewpoint; if it gives `None`, the storey is found from the heights
     /// of all floors.
     ///
     /// # Errors
     /// When two viewpoints have one name.
-    pub fn graph(&self, level: impl Fn(&ViewpointId) -> Option<u32>) -> Result<ViewpointGraph, GraphError> {
-        let floors_m: Vec<f64> = self.viewpoints.iter().map(Viewpoint::floor_m).collect();
+    pub fn to_viewpoint_graph(
+        &self,
+        level: impl Fn(&ViewpointId) -> Option<u32>,
+    ) -> Result<ViewpointGraph, GraphError> {
+        let floors_m: Vec<f64> = self.viewpoints.iter().map(PanoramaViewpoint::floor_m).collect();
         let by_height = levels::from_floor_heights(&floors_m);
         let mut graph = ViewpointGraph::default();
         for (viewpoint, by_height) in self.viewpoints.iter().zip(by_height) {
             let level = level(&viewpoint.id).unwrap_or(by_height);
-            graph.add(viewpoint.id.clone(), viewpoint.position, Some(level))?;
+            graph.add_viewpoint(viewpoint.id.clone(), viewpoint.position, Some(level))?;
             graph.set_floor(&viewpoint.id, viewpoint.floor_m())?;
         }
         for (from, to) in &self.edges {
-            graph.join(&self.viewpoints[*from].id, &self.viewpoints[*to].id)?;
+            graph.join_viewpoints(&self.viewpoints[*from].id, &self.viewpoints[*to].id)?;
         }
         Ok(graph)
     }
@@ -77,14 +80,14 @@ impl Connectivity {
 ///
 /// # Errors
 /// If the file does not have this format; the message names the viewpoint and the field.
-pub fn read(file: &Path, hint: &'static str) -> Result<Option<Connectivity>, PlatformError> {
+pub fn read_connectivity_file(file: &Path, hint: &'static str) -> Result<Option<ConnectivityGraph>, PlatformError> {
     let Some(bytes) = json_if_there(file, MAX_BYTES, hint)? else {
         return Ok(None);
     };
-    parse(&bytes).map(Some).map_err(|reason| wrong(file, reason, hint))
+    parse_connectivity(&bytes).map(Some).map_err(|reason| file_error(file, reason, hint))
 }
 
-fn parse(bytes: &[u8]) -> Result<Connectivity, String> {
+fn parse_connectivity(bytes: &[u8]) -> Result<ConnectivityGraph, String> {
     let items: Vec<Value> =
         serde_json::from_slice(bytes).map_err(|error| format!("is not a JSON list of viewpoints: {error}"))?;
     if items.len() > MAX_VIEWPOINTS {
@@ -94,31 +97,33 @@ fn parse(bytes: &[u8]) -> Result<Connectivity, String> {
     let mut included = Vec::with_capacity(items.len());
     let mut viewpoints = Vec::new();
     for (number, item) in items.iter().enumerate() {
-        let found = viewpoint(item).map_err(|reason| format!("viewpoint {number}: {reason}"))?;
+        let found = parse_viewpoint(item).map_err(|reason| format!("viewpoint {number}: {reason}"))?;
         included.push(found.as_ref().map(|_| viewpoints.len()));
         viewpoints.extend(found);
     }
     let mut edges = Vec::new();
     for (number, item) in items.iter().enumerate() {
-        let open = neighbours(item, items.len()).map_err(|reason| format!("viewpoint {number}: {reason}"))?;
+        let open = parse_neighbours(item, items.len()).map_err(|reason| format!("viewpoint {number}: {reason}"))?;
         let Some(from) = included[number] else { continue };
         edges
             .extend(open.into_iter().filter_map(|other| included[other]).filter(|to| *to != from).map(|to| (from, to)));
     }
-    Ok(Connectivity { viewpoints, edges })
+    Ok(ConnectivityGraph { viewpoints, edges })
 }
 
 /// One item of the list; `None` if it is not included in the graph.
-fn viewpoint(item: &Value) -> Result<Option<Viewpoint>, String> {
-    let id = ViewpointId::new(values::text(item, "image_id")?).map_err(|error| format!("field `image_id`: {error}"))?;
+fn parse_viewpoint(item: &Value) -> Result<Option<PanoramaViewpoint>, String> {
+    let id = ViewpointId::new(values::text_field(item, "image_id")?)
+        .map_err(|error| format!("field `image_id`: {error}"))?;
     let named = |reason| format!("{id}: {reason}");
-    if !values::flag(values::field(item, "included").map_err(named)?, "included").map_err(named)? {
+    if !values::read_flag(values::required_field(item, "included").map_err(named)?, "included").map_err(named)? {
         // The pose of a viewpoint that is not included is not used, and it may not consist of numbers.
         return Ok(None);
     }
-    let pose = pose(item).map_err(named)?;
-    let height_m = values::number(values::field(item, "height").map_err(named)?, "height").map_err(named)?;
-    Ok(Some(Viewpoint {
+    let pose = parse_pose(item).map_err(named)?;
+    let height_m =
+        values::read_coordinate(values::required_field(item, "height").map_err(named)?, "height").map_err(named)?;
+    Ok(Some(PanoramaViewpoint {
         position: DVec3::new(pose[3], pose[7], pose[11]),
         height_m,
         world_from_skybox: DMat3::from_cols_array(&[
@@ -128,27 +133,27 @@ fn viewpoint(item: &Value) -> Result<Option<Viewpoint>, String> {
     }))
 }
 
-fn pose(item: &Value) -> Result<[f64; 16], String> {
-    let numbers = values::list(item, "pose")?;
+fn parse_pose(item: &Value) -> Result<[f64; 16], String> {
+    let numbers = values::list_field(item, "pose")?;
     if numbers.len() != 16 {
         return Err(format!("field `pose` has {} numbers, expected 16", numbers.len()));
     }
     let mut pose = [0.0; 16];
     for (place, value) in pose.iter_mut().zip(numbers) {
-        *place = values::number(value, "pose")?;
+        *place = values::read_coordinate(value, "pose")?;
     }
     Ok(pose)
 }
 
 /// The indices of the viewpoints to which one can walk straight from this item, among all `count` items of the file.
-fn neighbours(item: &Value, count: usize) -> Result<Vec<usize>, String> {
-    let flags = values::list(item, "unobstructed")?;
+fn parse_neighbours(item: &Value, count: usize) -> Result<Vec<usize>, String> {
+    let flags = values::list_field(item, "unobstructed")?;
     if flags.len() != count {
         return Err(format!("field `unobstructed` has length {}, but the list of viewpoints has {count}", flags.len()));
     }
     let mut open = Vec::new();
     for (other, value) in flags.iter().enumerate() {
-        if values::flag(value, "unobstructed")? {
+        if values::read_flag(value, "unobstructed")? {
             open.push(other);
         }
     }
@@ -168,8 +173,8 @@ mod tests {
         })
     }
 
-    fn parsed(value: &Value) -> Result<Connectivity, String> {
-        parse(value.to_string().as_bytes())
+    fn parsed(value: &Value) -> Result<ConnectivityGraph, String> {
+        parse_connectivity(value.to_string().as_bytes())
     }
 
     #[test]
@@ -201,7 +206,7 @@ mod tests {
         let short = parsed(&json!([item("a", true, 0.0, &[])])).unwrap_err();
         assert_eq!(short, "viewpoint 0: field `unobstructed` has length 0, but the list of viewpoints has 1");
         assert!(parsed(&json!([item("../a", true, 0.0, &[false])])).unwrap_err().contains("path separators"));
-        assert!(parse(b"[{\"pose\": [NaN]}]").unwrap_err().contains("is not a JSON list"));
+        assert!(parse_connectivity(b"[{\"pose\": [NaN]}]").unwrap_err().contains("is not a JSON list"));
     }
 
     /// A file of `count` viewpoints in a row, each joined with the next.
@@ -243,7 +248,7 @@ mod tests {
             let read = parsed(&file).unwrap();
             let ends = usize::from(gone > 0) + usize::from(gone + 1 < count);
             prop_assert_eq!(read.edges.len(), 2 * (count - 1 - ends));
-            prop_assert_eq!(read.graph(|_| None).unwrap().len(), count - 1);
+            prop_assert_eq!(read.to_viewpoint_graph(|_| None).unwrap().len(), count - 1);
         }
     }
 }

@@ -1,7 +1,8 @@
 //! Turns an episode of a dataset, a list of viewpoints and perhaps a target object, into a [`Path`] through a scene.
 
 use wayword_core::{
-    Frame, Gaze, Heading, Label, Motion, ObjectId, Path, Platform, PlatformError, SceneId, Target, ViewpointId,
+    Frame, Heading, ObjectId, ObjectLabel, Path, PathMotion, PathTarget, Platform, PlatformError, SceneId, ViewGaze,
+    ViewpointId,
 };
 
 /// The path of an episode: a frame at each of `viewpoints`, the first one looking along `heading`, with `object` as its
@@ -19,23 +20,28 @@ pub fn path_of(
     heading: Option<Heading>,
     object: Option<&ObjectId>,
 ) -> Result<Path, PlatformError> {
-    let graph = platform.graph(scene)?;
-    let frames =
-        graph.walk(viewpoints, heading).map_err(|source| PlatformError::Graph { scene: scene.clone(), source })?;
+    let graph = platform.graph_for_scene(scene)?;
+    let frames = graph
+        .path_frames(viewpoints, heading)
+        .map_err(|source| PlatformError::Graph { scene: scene.clone(), source })?;
     let target = match (object, frames.last()) {
-        (Some(object), Some(last)) => target(platform, scene, last, object)?,
+        (Some(object), Some(last)) => target_for_object(platform, scene, last, object)?,
         _ => None,
     };
-    Ok(Path { id: id.into(), scene: scene.clone(), frames, motion: Motion::Known, target })
+    Ok(Path { id: id.into(), scene: scene.clone(), frames, motion: PathMotion::Known, target })
 }
 
 /// The labels of all four views around a frame, in the order ahead, right, behind, left.
 ///
 /// # Errors
 /// When the platform cannot give a view from the frame.
-pub fn labels_around(platform: &dyn Platform, scene: &SceneId, frame: &Frame) -> Result<Vec<Label>, PlatformError> {
+pub fn labels_around(
+    platform: &dyn Platform,
+    scene: &SceneId,
+    frame: &Frame,
+) -> Result<Vec<ObjectLabel>, PlatformError> {
     let mut labels = Vec::new();
-    for gaze in Gaze::around(frame.pose.heading) {
+    for gaze in ViewGaze::around_heading(frame.pose.heading) {
         let view = platform.look_without_picture(scene, frame, gaze)?;
         labels.extend(view.ground_truth().into_iter().flat_map(|truth| truth.labels.iter().cloned()));
     }
@@ -47,18 +53,18 @@ pub fn labels_around(platform: &dyn Platform, scene: &SceneId, frame: &Frame) ->
 ///
 /// # Errors
 /// When the platform cannot give the name, or a view from the frame.
-pub fn target(
+pub fn target_for_object(
     platform: &dyn Platform,
     scene: &SceneId,
     last: &Frame,
     object: &ObjectId,
-) -> Result<Option<Target>, PlatformError> {
+) -> Result<Option<PathTarget>, PlatformError> {
     let Some(name) = platform.object_name(scene, last, object)? else {
         return Ok(None);
     };
     let around = labels_around(platform, scene, last)?;
     let has_namesake = around.iter().any(|label| label.object != *object && label.name == name);
-    Ok(Some(Target {
+    Ok(Some(PathTarget {
         object: object.clone(),
         name,
         told_by: Vec::new(),

@@ -15,14 +15,14 @@ const MAX_DECODED_BYTES: u64 = 256 << 20;
 
 /// The error for a file that cannot be used.
 #[must_use]
-pub fn wrong(file: &Path, reason: impl Into<String>, hint: &'static str) -> PlatformError {
+pub fn file_error(file: &Path, reason: impl Into<String>, hint: &'static str) -> PlatformError {
     PlatformError::File { file: file.to_owned(), reason: reason.into(), hint }
 }
 
 /// For a path that is not a plain file, a phrase that describes it, such as "is a folder, not a file"; `None` for a plain
 /// file. Pipes are refused because opening one waits until another program writes to it.
 #[must_use]
-pub fn irregular(about: &Metadata) -> Option<&'static str> {
+pub fn describe_irregular(about: &Metadata) -> Option<&'static str> {
     if about.is_dir() {
         return Some("is a folder, not a file");
     }
@@ -34,15 +34,16 @@ pub fn irregular(about: &Metadata) -> Option<&'static str> {
 /// # Errors
 /// When it cannot be read, or is larger.
 pub fn bytes_if_there(file: &Path, max_bytes: u64, hint: &'static str) -> Result<Option<Vec<u8>>, PlatformError> {
-    let failed = |error: std::io::Error| PlatformError::unread(file, &error, hint);
-    let too_large = || wrong(file, format!("has more than {max_bytes} bytes, the limit for a file of this kind"), hint);
+    let failed = |error: std::io::Error| PlatformError::for_unread_file(file, &error, hint);
+    let too_large =
+        || file_error(file, format!("has more than {max_bytes} bytes, the limit for a file of this kind"), hint);
     let about = match fs::metadata(file) {
         Ok(about) => about,
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
         Err(error) => return Err(failed(error)),
     };
-    if let Some(reason) = irregular(&about) {
-        return Err(wrong(file, reason, hint));
+    if let Some(reason) = describe_irregular(&about) {
+        return Err(file_error(file, reason, hint));
     }
     if about.len() > max_bytes {
         return Err(too_large());
@@ -57,10 +58,10 @@ pub fn bytes_if_there(file: &Path, max_bytes: u64, hint: &'static str) -> Result
 ///
 /// # Errors
 /// When it cannot be opened, or is not a plain file.
-pub fn open(file: &Path, hint: &'static str) -> Result<File, PlatformError> {
-    let failed = |error: std::io::Error| PlatformError::unread(file, &error, hint);
-    match irregular(&fs::metadata(file).map_err(failed)?) {
-        Some(reason) => Err(wrong(file, reason, hint)),
+pub fn open_plain_file(file: &Path, hint: &'static str) -> Result<File, PlatformError> {
+    let failed = |error: std::io::Error| PlatformError::for_unread_file(file, &error, hint);
+    match describe_irregular(&fs::metadata(file).map_err(failed)?) {
+        Some(reason) => Err(file_error(file, reason, hint)),
         None => File::open(file).map_err(failed),
     }
 }
@@ -75,11 +76,11 @@ pub fn json_if_there(file: &Path, max_bytes: u64, hint: &'static str) -> Result<
 }
 
 /// The byte order mark of UTF-8.
-const MARK: [u8; 3] = [0xef, 0xbb, 0xbf];
+const UTF8_BYTE_ORDER_MARK: [u8; 3] = [0xef, 0xbb, 0xbf];
 
 fn without_mark(mut bytes: Vec<u8>) -> Vec<u8> {
-    if bytes.starts_with(&MARK) {
-        bytes.drain(..MARK.len());
+    if bytes.starts_with(&UTF8_BYTE_ORDER_MARK) {
+        bytes.drain(..UTF8_BYTE_ORDER_MARK.len());
     }
     bytes
 }
@@ -88,7 +89,7 @@ fn without_mark(mut bytes: Vec<u8>) -> Vec<u8> {
 ///
 /// # Errors
 /// A phrase that names the encoding, if it is not UTF-8.
-pub fn text(bytes: Vec<u8>) -> Result<String, &'static str> {
+pub fn decode_utf8(bytes: Vec<u8>) -> Result<String, &'static str> {
     if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
         return Err("is text in UTF-16; save it as UTF-8");
     }
@@ -103,14 +104,14 @@ pub fn text_if_there(file: &Path, max_bytes: u64, hint: &'static str) -> Result<
     let Some(bytes) = bytes_if_there(file, max_bytes, hint)? else {
         return Ok(None);
     };
-    text(bytes).map(Some).map_err(|reason| wrong(file, reason, hint))
+    decode_utf8(bytes).map(Some).map_err(|reason| file_error(file, reason, hint))
 }
 
 /// Decodes a JPEG or PNG file, within limits of size and memory.
 ///
 /// # Errors
 /// A phrase about the problem: the picture is too large, or it is no JPEG or PNG picture.
-pub fn picture(bytes: &[u8]) -> Result<Image, String> {
+pub fn decode_picture(bytes: &[u8]) -> Result<Image, String> {
     // Decoders for other formats may be compiled in for other purposes.
     let format =
         image::guess_format(bytes).ok().filter(|format| matches!(format, ImageFormat::Png | ImageFormat::Jpeg));
@@ -155,9 +156,9 @@ mod tests {
             let mut encoder = JpegEncoder::new_with_quality(&mut bytes, 95);
             encoder.set_exif_metadata(exif(orientation)).unwrap();
             encoder.write_image(lying.as_raw(), 32, 16, image::ExtendedColorType::Rgb8).unwrap();
-            let read = picture(&bytes).unwrap();
+            let read = decode_picture(&bytes).unwrap();
             assert_eq!((read.width_px(), read.height_px()), size, "{orientation}");
-            assert!(read.rgb()[0].abs_diff(top_left) < 10, "{orientation}: {}", read.rgb()[0]);
+            assert!(read.rgb_bytes()[0].abs_diff(top_left) < 10, "{orientation}: {}", read.rgb_bytes()[0]);
         }
     }
 
@@ -186,14 +187,14 @@ mod tests {
         assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
         for (file, told) in [(pipe.as_path(), "is a pipe or a device"), (folder.path(), "is a folder")] {
             assert!(bytes_if_there(file, 100, "?").unwrap_err().to_string().contains(told));
-            assert!(open(file, "?").unwrap_err().to_string().contains(told));
+            assert!(open_plain_file(file, "?").unwrap_err().to_string().contains(told));
         }
         assert!(bytes_if_there(&folder.path().join("none"), 100, "?").unwrap().is_none());
     }
 
     #[test]
     fn decode_picture_refuses_other_files() {
-        assert!(picture(b"GIF89a").unwrap_err().contains("neither PNG nor JPEG"));
-        assert!(picture(b"\x89PNG\r\n\x1a\n").unwrap_err().contains("cannot be decoded as a picture"));
+        assert!(decode_picture(b"GIF89a").unwrap_err().contains("neither PNG nor JPEG"));
+        assert!(decode_picture(b"\x89PNG\r\n\x1a\n").unwrap_err().contains("cannot be decoded as a picture"));
     }
 }

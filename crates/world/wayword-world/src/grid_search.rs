@@ -7,22 +7,23 @@
 use std::{cmp::Reverse, collections::BinaryHeap};
 
 /// Offsets, in columns and rows, from a cell to the eight around it: straight steps first, then diagonal ones.
-pub const STEPS: [(i32, i32); 8] = [(1, 0), (0, 1), (-1, 0), (0, -1), (1, 1), (-1, 1), (-1, -1), (1, -1)];
+pub const EIGHT_NEIGHBOUR_STEPS: [(i32, i32); 8] =
+    [(1, 0), (0, 1), (-1, 0), (0, -1), (1, 1), (-1, 1), (-1, -1), (1, -1)];
 
 /// Lengths of steps in thousandths of a cell, as whole numbers, so that sums are exact.
-const STRAIGHT: u64 = 1000;
-const DIAGONAL: u64 = 1414;
+const STRAIGHT_STEP_MILLICELLS: u64 = 1000;
+const DIAGONAL_STEP_MILLICELLS: u64 = 1414;
 
 /// The free cells around a cell, with the length of the step to each. `free` turns an offset in columns and rows into
 /// the cell at that offset, or into `None` if a walker cannot stand there. A diagonal step cuts no corner: the two cells
 /// that it passes must be free too.
-pub fn around<C>(free: impl Fn((i32, i32)) -> Option<C>) -> impl Iterator<Item = (C, u64)> {
-    STEPS.into_iter().filter_map(move |(dx, dy)| {
+pub fn free_steps_around<C>(free: impl Fn((i32, i32)) -> Option<C>) -> impl Iterator<Item = (C, u64)> {
+    EIGHT_NEIGHBOUR_STEPS.into_iter().filter_map(move |(dx, dy)| {
         if dx == 0 || dy == 0 {
-            return Some((free((dx, dy))?, STRAIGHT));
+            return Some((free((dx, dy))?, STRAIGHT_STEP_MILLICELLS));
         }
         free((dx, 0)).and(free((0, dy)))?;
-        Some((free((dx, dy))?, DIAGONAL))
+        Some((free((dx, dy))?, DIAGONAL_STEP_MILLICELLS))
     })
 }
 
@@ -30,13 +31,14 @@ pub fn around<C>(free: impl Fn((i32, i32)) -> Option<C>) -> impl Iterator<Item =
 /// `rows` are their distances.
 #[must_use]
 pub fn at_least(columns: u64, rows: u64) -> u64 {
-    STRAIGHT * columns.max(rows) + (DIAGONAL - STRAIGHT) * columns.min(rows)
+    STRAIGHT_STEP_MILLICELLS * columns.max(rows)
+        + (DIAGONAL_STEP_MILLICELLS - STRAIGHT_STEP_MILLICELLS) * columns.min(rows)
 }
 
 /// A shortest way between two of `count` cells, both ends included; `None` if there is none. `left` gives a lower bound
 /// of the length from a cell to the goal (the heuristic of A*). `steps` gives the cells that can be reached from a cell,
 /// with the length of each step. If several ways have the same length, the result is always the same one.
-pub fn shortest<S: IntoIterator<Item = (usize, u64)>>(
+pub fn find_shortest_way<S: IntoIterator<Item = (usize, u64)>>(
     count: usize,
     start: usize,
     goal: usize,
@@ -71,7 +73,7 @@ pub fn shortest<S: IntoIterator<Item = (usize, u64)>>(
 
 /// Removes the places of a way that a straight walk can skip: from each place, the way goes on to the last one that
 /// `is_straight` allows.
-pub fn taut<P: Copy>(places: &[P], is_straight: impl Fn(P, P) -> bool) -> Vec<P> {
+pub fn pull_taut<P: Copy>(places: &[P], is_straight: impl Fn(P, P) -> bool) -> Vec<P> {
     let mut kept = Vec::from_iter(places.first().copied());
     let mut at = 0;
     while at + 1 < places.len() {
@@ -100,13 +102,13 @@ mod tests {
                 let next = row * columns + column;
                 (column < columns && *cells.get(next)? != b'#').then_some(next)
             };
-            around(free).collect::<Vec<_>>()
+            free_steps_around(free).collect::<Vec<_>>()
         };
         let left = |cell: usize| {
             let ((x, y), (gx, gy)) = (place(cell), place(goal));
             at_least(x.abs_diff(gx) as u64, y.abs_diff(gy) as u64)
         };
-        let found = shortest(cells.len(), start, goal, left, steps)?;
+        let found = find_shortest_way(cells.len(), start, goal, left, steps)?;
         let length =
             found.windows(2).map(|pair| steps(pair[0]).iter().find(|(next, _)| *next == pair[1]).unwrap().1).sum();
         Some((found, length))
@@ -123,14 +125,14 @@ mod tests {
 
     #[test]
     fn a_way_from_a_place_to_itself_is_that_place() {
-        assert_eq!(shortest(3, 1, 1, |_| 0, |_| []), Some(vec![1]));
+        assert_eq!(find_shortest_way(3, 1, 1, |_| 0, |_| []), Some(vec![1]));
     }
 
     #[test]
     fn pull_taut_leaves_out_places_that_a_straight_walk_skips() {
         let straight = |a: i32, b: i32| a / 10 == b / 10;
-        assert_eq!(taut(&[1, 3, 5, 11, 14, 21], straight), [1, 5, 11, 14, 21]);
-        assert_eq!(taut(&[7], straight), [7]);
-        assert!(taut(&[], straight).is_empty());
+        assert_eq!(pull_taut(&[1, 3, 5, 11, 14, 21], straight), [1, 5, 11, 14, 21]);
+        assert_eq!(pull_taut(&[7], straight), [7]);
+        assert!(pull_taut(&[], straight).is_empty());
     }
 }

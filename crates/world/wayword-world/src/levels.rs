@@ -23,14 +23,15 @@ const MIN_SUPPORT: f64 = 2.0;
 #[must_use]
 pub fn from_floor_heights(floors_m: &[f64]) -> Vec<u32> {
     let storeys = storey_heights(floors_m);
-    floors_m.iter().map(|floor_m| nearest(&storeys, *floor_m)).collect()
+    floors_m.iter().map(|floor_m| nearest_storey(&storeys, *floor_m)).collect()
 }
 
 /// The height of each storey, from the lowest.
 fn storey_heights(floors_m: &[f64]) -> Vec<f64> {
     let mut sorted = floors_m.to_vec();
     sorted.sort_by(f64::total_cmp);
-    let mut supported: Vec<(f64, f64)> = sorted.iter().map(|floor_m| (support(&sorted, *floor_m), *floor_m)).collect();
+    let mut supported: Vec<(f64, f64)> =
+        sorted.iter().map(|floor_m| (support_at(&sorted, *floor_m), *floor_m)).collect();
     // The best supported first; of two with equal support, the lower.
     supported.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.total_cmp(&b.1)));
     let best = supported.first().map_or(0.0, |(support, _)| *support);
@@ -46,14 +47,14 @@ fn storey_heights(floors_m: &[f64]) -> Vec<f64> {
 }
 
 /// The support of a height: how many of the (sorted) heights are near it. Each counts the less, the farther away it is.
-fn support(sorted: &[f64], floor_m: f64) -> f64 {
+fn support_at(sorted: &[f64], floor_m: f64) -> f64 {
     let first = sorted.partition_point(|other| *other < floor_m - REACH_M);
     let near = sorted[first..].iter().take_while(|other| **other <= floor_m + REACH_M);
     near.map(|other| 1.0 - (other - floor_m).abs() / REACH_M).sum()
 }
 
 /// The number of the storey that is nearest to a height, counted from 1; the lower of two equally near ones.
-fn nearest(storeys: &[f64], floor_m: f64) -> u32 {
+fn nearest_storey(storeys: &[f64], floor_m: f64) -> u32 {
     let mut best = (0, f64::INFINITY);
     for (index, storey_m) in storeys.iter().enumerate() {
         let off = (storey_m - floor_m).abs();

@@ -4,10 +4,10 @@
 //! socket in the same way. [`connectivity`] reads viewpoint graphs in Matterport's format, and [`values`] takes values
 //! out of JSON.
 //!
-//! Paths: [`wander`] draws random paths over open ground, and [`graph_walk`] along a viewpoint graph. [`grid_search`]
+//! Paths: [`sample_open_path`] draws random paths over open ground, and [`graph_walk`] along a viewpoint graph. [`grid_search`]
 //! finds shortest ways over a grid. [`episode_path`] turns an episode of a dataset into a path.
 //!
-//! Scenes: [`survey`](mod@survey) collects the rooms and objects at all viewpoints, and [`seen_from`](mod@seen_from)
+//! Scenes: [`survey_scene`](mod@survey) collects the rooms and objects at all viewpoints, and [`seen_from`](mod@seen_from)
 //! finds the viewpoints that show an object. [`levels`] finds the storeys of viewpoints. [`object_names`] and [`region`]
 //! turn the names and letters of Matterport3D's annotators, which other scenes use too, into everyday words.
 //!
@@ -29,4 +29,4 @@ pub mod wander;
 
 pub use episode_path::{labels_around, path_of};
 pub use seen_from::seen_from;
-pub use survey::survey;
+pub use survey::survey_scene;

@@ -1,7 +1,7 @@
 //! Turns annotators' names of objects into everyday words.
 
 /// Spelling mistakes of the annotators, each with the intended word. Only mistakes that leave no doubt are listed.
-const SLIPS: &[(&str, &str)] = &[
+const SPELLING_MISTAKES: &[(&str, &str)] = &[
     ("baracade", "barricade"),
     ("bathtab", "bathtub"),
     ("beside", "bedside"),
@@ -96,12 +96,12 @@ const MAX_CHARS: usize = 60;
 ///
 /// Of two names joined by a slash with spaces around it, the first is used; without spaces ("stand/table"), the second.
 #[must_use]
-pub fn plain(raw: &str) -> Option<String> {
+pub fn plain_name(raw: &str) -> Option<String> {
     let spaced: String = raw.chars().take(4 * MAX_CHARS).map(|c| if c == '#' || c == '_' { ' ' } else { c }).collect();
     let lower = one_of_two(&spaced).to_lowercase();
     let kept: String = lower.chars().filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-' | '\'')).collect();
     let bare = kept.split_whitespace().map(|word| word.trim_matches(['-', '\'']));
-    let words: Vec<&str> = bare.filter(|word| !word.is_empty()).map(mended).collect();
+    let words: Vec<&str> = bare.filter(|word| !word.is_empty()).map(correct_spelling).collect();
     let mut words: &[&str] = &words;
     while let [rest @ .., "etc"] = words {
         words = rest;
@@ -125,8 +125,8 @@ fn one_of_two(name: &str) -> &str {
 }
 
 /// The intended word for one of the listed spelling mistakes; any other word as it is.
-fn mended(word: &str) -> &str {
-    SLIPS.iter().find(|(slip, _)| *slip == word).map_or(word, |(_, meant)| meant)
+fn correct_spelling(word: &str) -> &str {
+    SPELLING_MISTAKES.iter().find(|(slip, _)| *slip == word).map_or(word, |(_, meant)| meant)
 }
 
 /// Whether the object of this plain name is a furnishing, about which a person can be given a task, and not a part of the
@@ -164,10 +164,10 @@ mod tests {
             ("lightswitch", "light switch"),
             ("lamp#'#shade", "lamp shade"),
         ] {
-            assert_eq!(plain(raw).as_deref(), Some(expected), "{raw}");
+            assert_eq!(plain_name(raw).as_deref(), Some(expected), "{raw}");
         }
-        assert_eq!(plain("##"), None);
-        assert_eq!(plain("/"), None);
+        assert_eq!(plain_name("##"), None);
+        assert_eq!(plain_name("/"), None);
     }
 
     #[test]
@@ -180,7 +180,7 @@ mod tests {
     proptest! {
         #[test]
         fn plain_name_leaves_no_odd_characters(raw in "\\PC{0,300}") {
-            if let Some(name) = plain(&raw) {
+            if let Some(name) = plain_name(&raw) {
                 prop_assert!(!name.contains(['#', '/', '\\', ';', '\n']) && !name.contains("  "));
                 prop_assert!(name.chars().count() <= MAX_CHARS);
                 prop_assert_eq!(name.trim(), &name);

@@ -3,7 +3,7 @@
 
 /// The everyday word for a region's letter; `None` if the letter does not stand for a room that a person would name.
 #[must_use]
-pub fn room(letter: char) -> Option<&'static str> {
+pub fn room_for_letter(letter: char) -> Option<&'static str> {
     Some(match letter {
         'a' => "bathroom",
         'b' => "bedroom",

@@ -7,11 +7,11 @@ use std::{
 
 /// Receives each line that a platform prints in addition to its answers, for example the error output of a world program.
 /// The lines have no control characters.
-pub type Hear = Arc<dyn Fn(&str) + Send + Sync>;
+pub type OutputListener = Arc<dyn Fn(&str) + Send + Sync>;
 
 /// The outcome of reading one line from a pipe.
 #[derive(Debug, PartialEq, Eq)]
-pub enum Line {
+pub enum OutputLine {
     /// A line without its end.
     Whole(Vec<u8>),
     /// Bytes without the end of a line, because the pipe ended.
@@ -24,19 +24,19 @@ pub enum Line {
 
 /// Reads the next line, up to `max_bytes` of it.
 #[must_use]
-pub fn read_line(from: &mut impl BufRead, max_bytes: usize) -> Line {
+pub fn read_line(from: &mut impl BufRead, max_bytes: usize) -> OutputLine {
     let mut line = Vec::new();
     // A pipe that cannot be read any more has ended, whatever the reason is.
     let read = from.take(max_bytes as u64 + 1).read_until(b'\n', &mut line);
     match line.last() {
-        _ if read.is_err() => Line::End,
-        None => Line::End,
+        _ if read.is_err() => OutputLine::End,
+        None => OutputLine::End,
         Some(b'\n') => {
             line.pop();
-            Line::Whole(line)
+            OutputLine::Whole(line)
         }
-        Some(_) if line.len() > max_bytes => Line::TooLong,
-        Some(_) => Line::Half(line),
+        Some(_) if line.len() > max_bytes => OutputLine::TooLong,
+        Some(_) => OutputLine::Half(line),
     }
 }
 
@@ -56,7 +56,7 @@ pub fn is_unseen(c: char) -> bool {
 
 /// A text without characters that could move a cursor, break a line or reverse it, cut to `max_chars` characters.
 #[must_use]
-pub fn plain(text: &str, max_chars: usize) -> String {
+pub fn to_safe_text(text: &str, max_chars: usize) -> String {
     text.chars().filter(|c| !is_unseen(*c)).take(max_chars).collect()
 }
 
@@ -67,28 +67,32 @@ mod tests {
 
     #[test]
     fn to_safe_text_removes_characters_that_reverse_or_hide_text() {
-        assert_eq!(plain("a\u{202e}b\u{200b}c\u{1b}[31m\u{2066}d\u{feff}", 100), "abc[31md");
-        assert_eq!(plain("Stra\u{df}e \u{4e2d} \u{627}", 100), "Stra\u{df}e \u{4e2d} \u{627}");
+        assert_eq!(to_safe_text("a\u{202e}b\u{200b}c\u{1b}[31m\u{2066}d\u{feff}", 100), "abc[31md");
+        assert_eq!(to_safe_text("Stra\u{df}e \u{4e2d} \u{627}", 100), "Stra\u{df}e \u{4e2d} \u{627}");
     }
 
     #[test]
     fn to_safe_text_keeps_joiners_for_words_that_need_them() {
         // Persian "I want" and a Hindi half letter.
         for word in ["\u{645}\u{6cc}\u{200c}\u{62e}\u{648}\u{627}\u{647}\u{645}", "\u{915}\u{94d}\u{200d}\u{937}"] {
-            assert_eq!(plain(word, 100), word);
+            assert_eq!(to_safe_text(word, 100), word);
         }
-        assert_eq!(plain("a\u{200b}b\u{200e}c\u{200f}d", 100), "abcd");
+        assert_eq!(to_safe_text("a\u{200b}b\u{200e}c\u{200f}d", 100), "abcd");
     }
 
     #[test]
     fn read_line_stops_at_its_limit_and_reports_half_lines() {
         let mut pipe = Cursor::new(b"one\n\ntwelve chars\nhalf".to_vec());
-        assert_eq!(read_line(&mut pipe, 12), Line::Whole(b"one".to_vec()));
-        assert_eq!(read_line(&mut pipe, 12), Line::Whole(Vec::new()));
-        assert_eq!(read_line(&mut pipe, 12), Line::Whole(b"twelve chars".to_vec()), "the end of a line does not count");
-        assert_eq!(read_line(&mut pipe, 12), Line::Half(b"half".to_vec()));
-        assert_eq!(read_line(&mut pipe, 12), Line::End);
-        assert_eq!(read_line(&mut Cursor::new(b"thirteen char\n"), 12), Line::TooLong);
-        assert_eq!(read_line(&mut std::io::BufReader::new(std::io::repeat(b'x')), 12), Line::TooLong);
+        assert_eq!(read_line(&mut pipe, 12), OutputLine::Whole(b"one".to_vec()));
+        assert_eq!(read_line(&mut pipe, 12), OutputLine::Whole(Vec::new()));
+        assert_eq!(
+            read_line(&mut pipe, 12),
+            OutputLine::Whole(b"twelve chars".to_vec()),
+            "the end of a line does not count"
+        );
+        assert_eq!(read_line(&mut pipe, 12), OutputLine::Half(b"half".to_vec()));
+        assert_eq!(read_line(&mut pipe, 12), OutputLine::End);
+        assert_eq!(read_line(&mut Cursor::new(b"thirteen char\n"), 12), OutputLine::TooLong);
+        assert_eq!(read_line(&mut std::io::BufReader::new(std::io::repeat(b'x')), 12), OutputLine::TooLong);
     }
 }

@@ -4,7 +4,7 @@ use std::{
     collections::{BTreeMap, BTreeSet},
     f64::consts::FRAC_PI_4,
 };
-use wayword_core::{DVec3, Heading, Label, ObjectId, PlatformError, ViewpointGraph, ViewpointId};
+use wayword_core::{DVec3, Heading, ObjectId, ObjectLabel, PlatformError, ViewpointGraph, ViewpointId};
 
 /// The viewpoints from which each object is visible. `labels_around` gives the labels of the four views around an eye, the
 /// first of them along a heading. It is called for two headings that are half a view apart: an object on the border of two
@@ -14,12 +14,12 @@ use wayword_core::{DVec3, Heading, Label, ObjectId, PlatformError, ViewpointGrap
 /// When `labels_around` fails.
 pub fn seen_from(
     graph: &ViewpointGraph,
-    mut labels_around: impl FnMut(DVec3, Heading) -> Result<Vec<Label>, PlatformError>,
+    mut labels_around: impl FnMut(DVec3, Heading) -> Result<Vec<ObjectLabel>, PlatformError>,
 ) -> Result<BTreeMap<ObjectId, BTreeSet<ViewpointId>>, PlatformError> {
     let mut seen_from: BTreeMap<ObjectId, BTreeSet<ViewpointId>> = BTreeMap::new();
     for viewpoint in graph.viewpoints() {
-        let eye = graph.position(viewpoint).unwrap_or_default();
-        for heading in [Heading::NORTH, Heading::NORTH.turned(FRAC_PI_4)] {
+        let eye = graph.position_of(viewpoint).unwrap_or_default();
+        for heading in [Heading::NORTH, Heading::NORTH.turned_by(FRAC_PI_4)] {
             for label in labels_around(eye, heading)? {
                 seen_from.entry(label.object).or_default().insert(viewpoint.clone());
             }
@@ -37,9 +37,9 @@ mod tests {
     fn an_object_on_the_border_of_two_views_is_visible() {
         let viewpoint = ViewpointId::new("hall").unwrap();
         let mut graph = ViewpointGraph::default();
-        graph.add(viewpoint.clone(), DVec3::ZERO, None).unwrap();
+        graph.add_viewpoint(viewpoint.clone(), DVec3::ZERO, None).unwrap();
         let sofa = ObjectId::new("1").unwrap();
-        let label = Label {
+        let label = ObjectLabel {
             object: sofa.clone(),
             name: "sofa".to_owned(),
             heading: Heading::NORTH,

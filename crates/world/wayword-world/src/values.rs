@@ -10,7 +10,7 @@ const MAX_COORDINATE_M: f64 = 1e6;
 ///
 /// # Errors
 /// When it is not finite, or too large for a building.
-pub fn coordinate(number: f64) -> Result<f64, String> {
+pub fn check_coordinate(number: f64) -> Result<f64, String> {
     if number.is_finite() && number.abs() <= MAX_COORDINATE_M {
         Ok(number)
     } else {
@@ -22,7 +22,7 @@ pub fn coordinate(number: f64) -> Result<f64, String> {
 ///
 /// # Errors
 /// When it is missing.
-pub fn field<'a>(item: &'a Value, name: &str) -> Result<&'a Value, String> {
+pub fn required_field<'a>(item: &'a Value, name: &str) -> Result<&'a Value, String> {
     item.get(name).ok_or_else(|| format!("field `{name}` is missing"))
 }
 
@@ -30,38 +30,38 @@ pub fn field<'a>(item: &'a Value, name: &str) -> Result<&'a Value, String> {
 ///
 /// # Errors
 /// When it is missing, or no list.
-pub fn list<'a>(item: &'a Value, name: &str) -> Result<&'a [Value], String> {
-    let found = field(item, name)?;
-    found.as_array().map(Vec::as_slice).ok_or_else(|| format!("field `{name}` is {}, not a list", kind(found)))
+pub fn list_field<'a>(item: &'a Value, name: &str) -> Result<&'a [Value], String> {
+    let found = required_field(item, name)?;
+    found.as_array().map(Vec::as_slice).ok_or_else(|| format!("field `{name}` is {}, not a list", describe_kind(found)))
 }
 
 /// A text in a field of an item.
 ///
 /// # Errors
 /// When it is missing, or no text.
-pub fn text<'a>(item: &'a Value, name: &str) -> Result<&'a str, String> {
-    let found = field(item, name)?;
-    found.as_str().ok_or_else(|| format!("field `{name}` is {}, not a text", kind(found)))
+pub fn text_field<'a>(item: &'a Value, name: &str) -> Result<&'a str, String> {
+    let found = required_field(item, name)?;
+    found.as_str().ok_or_else(|| format!("field `{name}` is {}, not a text", describe_kind(found)))
 }
 
 /// A value that is true or false. `name` is the field that errors name.
 ///
 /// # Errors
 /// When it is neither true nor false.
-pub fn flag(value: &Value, name: &str) -> Result<bool, String> {
-    value.as_bool().ok_or_else(|| format!("field `{name}` holds {}, not true or false", kind(value)))
+pub fn read_flag(value: &Value, name: &str) -> Result<bool, String> {
+    value.as_bool().ok_or_else(|| format!("field `{name}` holds {}, not true or false", describe_kind(value)))
 }
 
 /// A value that is a coordinate, metres. `name` is the field that errors name.
 ///
 /// # Errors
 /// When it is no number, or not a plausible coordinate.
-pub fn number(value: &Value, name: &str) -> Result<f64, String> {
-    let found = value.as_f64().ok_or_else(|| format!("field `{name}` holds {}, not a number", kind(value)))?;
-    coordinate(found).map_err(|reason| format!("field `{name}`: {reason}"))
+pub fn read_coordinate(value: &Value, name: &str) -> Result<f64, String> {
+    let found = value.as_f64().ok_or_else(|| format!("field `{name}` holds {}, not a number", describe_kind(value)))?;
+    check_coordinate(found).map_err(|reason| format!("field `{name}`: {reason}"))
 }
 
-fn kind(value: &Value) -> &'static str {
+fn describe_kind(value: &Value) -> &'static str {
     match value {
         Value::Null => "null",
         Value::Bool(_) => "true or false",

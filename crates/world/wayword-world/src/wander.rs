@@ -1,28 +1,28 @@
 //! Draws random paths through scenes with open ground: there one can walk anywhere, so a path has a length but no hops.
 
-use wayword_core::{DVec3, Frame, Motion, Path, PathRequest, PlatformError, SceneId, Target, path::Stop};
+use wayword_core::{DVec3, Frame, Path, PathMotion, PathRequest, PathTarget, PlatformError, SceneId, path::PathStop};
 
 /// How many pairs of places are tried before the search gives up.
-const TRIES: usize = 400;
+const MAX_PAIRS_TRIED: usize = 400;
 /// How many ends without a visible target are skipped before one is accepted.
 const MAX_BARE_ENDS: usize = 12;
 
 /// A scene with open ground. It makes the random choices of a path: its ends, its stops and its target.
-pub trait Wander {
+pub trait OpenGroundScene {
     /// Two random places for the ends of a path; `None` if the scene has no ground.
-    fn ends(&mut self) -> Option<(DVec3, DVec3)>;
+    fn random_ends(&mut self) -> Option<(DVec3, DVec3)>;
 
     /// The places of frames along the shortest way between two places; `None` if no way joins them.
     ///
     /// # Errors
     /// When the platform cannot answer.
-    fn stops(&mut self, from: DVec3, to: DVec3) -> Result<Option<Vec<Stop>>, PlatformError>;
+    fn stops_between(&mut self, from: DVec3, to: DVec3) -> Result<Option<Vec<PathStop>>, PlatformError>;
 
     /// A target for a path that ends at `last`; `None` if no suitable object is visible there.
     ///
     /// # Errors
     /// When the platform cannot give a view.
-    fn target(&mut self, last: &Frame) -> Result<Option<Target>, PlatformError>;
+    fn target_at(&mut self, last: &Frame) -> Result<Option<PathTarget>, PlatformError>;
 
     /// Whether the objects of the scene are known at all. Without them, the search for a target is useless.
     fn knows_objects(&self) -> bool {
@@ -37,26 +37,31 @@ pub trait Wander {
 ///
 /// # Errors
 /// When the platform cannot answer.
-pub fn wander(
-    world: &mut dyn Wander,
+pub fn sample_open_path(
+    world: &mut dyn OpenGroundScene,
     scene: &SceneId,
     request: &PathRequest,
     seed: u64,
 ) -> Result<Option<Path>, PlatformError> {
     let mut bare = None;
     let mut bare_ends = 0;
-    for _ in 0..TRIES {
-        let Some((from, to)) = world.ends() else { break };
+    for _ in 0..MAX_PAIRS_TRIED {
+        let Some((from, to)) = world.random_ends() else { break };
         if from == to || from.distance(to) > *request.length_m.end() {
             continue;
         }
-        let Some(stops) = world.stops(from, to)? else { continue };
+        let Some(stops) = world.stops_between(from, to)? else { continue };
         let frames = Path::frames_along(stops, None);
-        let mut path =
-            Path { id: format!("{scene}_{seed}"), scene: scene.clone(), frames, motion: Motion::Known, target: None };
+        let mut path = Path {
+            id: format!("{scene}_{seed}"),
+            scene: scene.clone(),
+            frames,
+            motion: PathMotion::Known,
+            target: None,
+        };
         let Some(last) = path.frames.last().filter(|_| request.allows_length_of(&path)) else { continue };
         if world.knows_objects() {
-            path.target = world.target(last)?;
+            path.target = world.target_at(last)?;
         }
         if path.target.is_some() || !world.knows_objects() {
             return Ok(Some(path));
@@ -90,20 +95,20 @@ mod tests {
         knows: bool,
     }
 
-    impl Wander for Line {
-        fn ends(&mut self) -> Option<(DVec3, DVec3)> {
+    impl OpenGroundScene for Line {
+        fn random_ends(&mut self) -> Option<(DVec3, DVec3)> {
             self.tried += 1;
             Some((DVec3::ZERO, DVec3::X * self.tried as f64))
         }
 
-        fn stops(&mut self, from: DVec3, to: DVec3) -> Result<Option<Vec<Stop>>, PlatformError> {
-            let stop = |position| Stop { position, viewpoint: None, level: None };
+        fn stops_between(&mut self, from: DVec3, to: DVec3) -> Result<Option<Vec<PathStop>>, PlatformError> {
+            let stop = |position| PathStop { position, viewpoint: None, level: None };
             Ok((to.x != 3.0).then(|| vec![stop(from), stop(to)]))
         }
 
-        fn target(&mut self, last: &Frame) -> Result<Option<Target>, PlatformError> {
+        fn target_at(&mut self, last: &Frame) -> Result<Option<PathTarget>, PlatformError> {
             let object = ObjectId::new("1").unwrap();
-            let target = Target {
+            let target = PathTarget {
                 object,
                 name: "chair".into(),
                 told_by: Vec::new(),
@@ -122,7 +127,8 @@ mod tests {
 
     fn walked(seen: fn(usize) -> bool, knows: bool, length_m: std::ops::RangeInclusive<f64>) -> Option<(f64, bool)> {
         let request = PathRequest { length_m, ..PathRequest::default() };
-        let path = wander(&mut Line { tried: 0, seen, knows }, &SceneId::new("s").unwrap(), &request, 7).unwrap()?;
+        let path =
+            sample_open_path(&mut Line { tried: 0, seen, knows }, &SceneId::new("s").unwrap(), &request, 7).unwrap()?;
         Some((path.length_m().unwrap(), path.target.is_some()))
     }
 

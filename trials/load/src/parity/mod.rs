@@ -4,22 +4,22 @@
 mod oracle;
 mod subject;
 
-use oracle::{Case, Oracle, Spent};
+use oracle::{ParityCase, PictureCost, PytorchOracle};
 use std::{
     path::{Path, PathBuf},
     time::Instant,
 };
-use subject::Subject;
+use subject::ParitySubject;
 use wayword_core::Image;
-use wayword_run::{error::Error, output::Output};
+use wayword_run::{error::CommandError, output::CommandOutput};
 use wayword_testkit::resources;
 
 /// The flags of `parity`.
 #[derive(Debug, clap::Args)]
-pub(super) struct Flags {
+pub(super) struct ParityArgs {
     /// The detector.
     #[arg(value_enum)]
-    detector: Kind,
+    detector: ParityDetector,
     /// A folder for random checkpoints and PyTorch's numbers, up to 2 GB for each detector. Missing files are made.
     #[arg(long)]
     folder: PathBuf,
@@ -33,7 +33,7 @@ pub(super) struct Flags {
 
 /// The detectors that are compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-enum Kind {
+enum ParityDetector {
     GlipT,
     GroundingDinoTiny,
     GroundingDinoBase,
@@ -44,63 +44,67 @@ enum Kind {
 
 /// The largest differences between the numbers of two implementations.
 #[derive(Debug, Clone, Copy, Default)]
-struct Off {
+struct NumberDifference {
     logits: f32,
     boxes_px: f32,
 }
 
 /// The differences that count as equal.
-const WANTED: Off = Off { logits: 1e-4, boxes_px: 1e-3 };
+const MAX_DIFFERENCE: NumberDifference = NumberDifference { logits: 1e-4, boxes_px: 1e-3 };
 
 /// The number of threads of each side.
-const THREADS: usize = 2;
+const THREAD_COUNT: usize = 2;
 
 /// Width and height of the pictures of which the time is measured, pixels.
-const TIMED: (u32, u32) = (640, 480);
+const TIMED_SIZE_PX: (u32, u32) = (640, 480);
 
-pub(super) fn measure(flags: &Flags, output: &Output) -> Result<(), Error> {
-    let threads = rayon::ThreadPoolBuilder::new().num_threads(THREADS).build_global();
-    threads.map_err(|error| Error::usage(format!("cannot use {THREADS} threads: {error}"), "try again"))?;
-    let folder = flags.folder.join(flags.detector.script().1);
-    let oracle = Oracle::made(flags.detector, &folder, &flags.python)?;
+pub(super) fn measure_parity(flags: &ParityArgs, output: &CommandOutput) -> Result<(), CommandError> {
+    let threads = rayon::ThreadPoolBuilder::new().num_threads(THREAD_COUNT).build_global();
+    threads.map_err(|error| CommandError::usage(format!("cannot use {THREAD_COUNT} threads: {error}"), "try again"))?;
+    let folder = flags.folder.join(flags.detector.script_and_name().1);
+    let oracle = PytorchOracle::open_or_make(flags.detector, &folder, &flags.python)?;
     let mut lines = Vec::new();
     if flags.times > 0 {
-        lines.extend(times(flags, &folder, &oracle)?);
+        lines.extend(compare_times(flags, &folder, &oracle)?);
     }
     lines.push("picture    phrases   logits     boxes".to_owned());
-    let mut loaded: Option<(Option<usize>, Subject)> = None;
+    let mut loaded: Option<(Option<usize>, ParitySubject)> = None;
     for (at, case) in oracle.cases.iter().enumerate() {
         // GLIP's pictures are shown at several sizes.
         let subject = match loaded.take() {
             Some((short_px, subject)) if short_px == case.short_px => subject,
-            _ => Subject::load(flags.detector, &folder, case.short_px)?,
+            _ => ParitySubject::load_detector(flags.detector, &folder, case.short_px)?,
         };
-        let off = subject.off(case, &oracle.numbers(at))?;
-        lines.push(line(case, off));
+        let off = subject.compare_case(case, &oracle.case_numbers(at))?;
+        lines.push(case_line(case, off));
         loaded = Some((case.short_px, subject));
     }
-    output.data(&(), lines.join("\n"));
+    output.print_result(&(), lines.join("\n"));
     Ok(())
 }
 
-fn line(case: &Case, off: Off) -> String {
+fn case_line(case: &ParityCase, off: NumberDifference) -> String {
     let (width, height) = case.size;
-    let reached = if off.logits <= WANTED.logits && off.boxes_px <= WANTED.boxes_px { "" } else { "  not reached" };
+    let reached = if off.logits <= MAX_DIFFERENCE.logits && off.boxes_px <= MAX_DIFFERENCE.boxes_px {
+        ""
+    } else {
+        "  not reached"
+    };
     let size = format!("{width}x{height}");
     format!("{size:<10} {:>7}  {:>7.1e}  {:>7.1e} px{reached}", case.phrases.len(), off.logits, off.boxes_px)
 }
 
 /// The times of both sides, in turns.
-fn times(flags: &Flags, folder: &Path, oracle: &Oracle) -> Result<Vec<String>, Error> {
-    let subject = Subject::load(flags.detector, &flags.detector.timed(folder), Some(480))?;
-    let mut theirs = oracle.clock(&flags.python)?;
+fn compare_times(flags: &ParityArgs, folder: &Path, oracle: &PytorchOracle) -> Result<Vec<String>, CommandError> {
+    let subject = ParitySubject::load_detector(flags.detector, &flags.detector.timed_folder(folder), Some(480))?;
+    let mut theirs = oracle.start_clock(&flags.python)?;
     let (mut ours, mut other, mut many) = (Vec::new(), Vec::new(), Vec::new());
     // The first of each warms up.
     for round in 0..=flags.times {
-        let one = spent(&subject, round, &flags.detector.phrases(round))?;
-        let their = theirs.spent()?;
-        if flags.detector == Kind::Owlv2Base {
-            many.push(spent(&subject, round + 100, &twenty(round))?);
+        let one = time_picture(&subject, round, &flags.detector.round_phrases(round))?;
+        let their = theirs.time_picture()?;
+        if flags.detector == ParityDetector::Owlv2Base {
+            many.push(time_picture(&subject, round + 100, &twenty_phrases(round))?);
         }
         if round > 0 {
             ours.push(one);
@@ -109,7 +113,7 @@ fn times(flags: &Flags, folder: &Path, oracle: &Oracle) -> Result<Vec<String>, E
             many.clear();
         }
     }
-    let (ours, other) = (Spent::median(&ours), Spent::median(&other));
+    let (ours, other) = (PictureCost::median_cost(&ours), PictureCost::median_cost(&other));
     let mut lines = vec![
         "side       seconds  of both threads   at most".to_owned(),
         format!("Wayword    {ours}"),
@@ -117,29 +121,29 @@ fn times(flags: &Flags, folder: &Path, oracle: &Oracle) -> Result<Vec<String>, E
         format!("ratio      {:>7.2} {:>16.2}", ours.wall_s / other.wall_s, ours.cpu_s / other.cpu_s),
     ];
     if !many.is_empty() {
-        let many = Spent::median(&many);
+        let many = PictureCost::median_cost(&many);
         lines.push(format!("20 phrases {many}, {:.3} of the time of 3 phrases", many.cpu_s / ours.cpu_s));
     }
     Ok(lines)
 }
 
 /// The cost of one picture that is not in any cache.
-fn spent(subject: &Subject, number: usize, phrases: &[String]) -> Result<Spent, Error> {
-    let image = picture(TIMED, number as u8)?;
+fn time_picture(subject: &ParitySubject, number: usize, phrases: &[String]) -> Result<PictureCost, CommandError> {
+    let image = test_picture(TIMED_SIZE_PX, number as u8)?;
     let phrases: Vec<&str> = phrases.iter().map(String::as_str).collect();
-    let (begun, before) = (Instant::now(), resources::cpu());
-    subject.find(&image, &phrases)?;
-    let (wall, busy) = (begun.elapsed(), resources::cpu().saturating_sub(before));
-    Ok(Spent { wall_s: wall.as_secs_f64(), cpu_s: busy.as_secs_f64(), peak_mib: resources::peak_mib() })
+    let (begun, before) = (Instant::now(), resources::processor_time());
+    subject.find_phrases(&image, &phrases)?;
+    let (wall, busy) = (begun.elapsed(), resources::processor_time().saturating_sub(before));
+    Ok(PictureCost { wall_s: wall.as_secs_f64(), cpu_s: busy.as_secs_f64(), peak_mib: resources::peak_mib() })
 }
 
 /// Phrases that no earlier round had.
-fn twenty(round: usize) -> Vec<String> {
+fn twenty_phrases(round: usize) -> Vec<String> {
     (0..20).map(|at| format!("{} door {round}", char::from(b'a' + at))).collect()
 }
 
 /// The same formula as in the scripts that make PyTorch's numbers. `number` changes one byte.
-fn picture((width, height): (u32, u32), number: u8) -> Result<Image, Error> {
+fn test_picture((width, height): (u32, u32), number: u8) -> Result<Image, CommandError> {
     let byte = |at: u32| {
         let (x, y, colour) = (at / 3 % width, at / 3 / width, at % 3);
         ((x * x * 7 + y * 13 + colour * 50 + x * y % 31 * 5) % 256) as u8
@@ -149,12 +153,12 @@ fn picture((width, height): (u32, u32), number: u8) -> Result<Image, Error> {
         *first = first.wrapping_add(number);
     }
     let made = Image::new(width, height, rgb);
-    made.map_err(|error| Error::usage(error.to_string(), "take the folder away and make it again"))
+    made.map_err(|error| CommandError::usage(error.to_string(), "take the folder away and make it again"))
 }
 
-impl Kind {
+impl ParityDetector {
     /// The script that makes its random checkpoint, and the model's name there.
-    fn script(self) -> (&'static str, &'static str) {
+    fn script_and_name(self) -> (&'static str, &'static str) {
         match self {
             Self::GlipT => ("make_glip.py", "glip"),
             Self::GroundingDinoTiny => ("make_dino.py", "grounding-dino-tiny"),
@@ -166,7 +170,7 @@ impl Kind {
     }
 
     /// The folder of the model that is timed. A model's processor settings contain the size of pictures.
-    fn timed(self, folder: &Path) -> PathBuf {
+    fn timed_folder(self, folder: &Path) -> PathBuf {
         match self {
             Self::GlipT | Self::Owlv2Base => folder.to_owned(),
             _ => folder.join("small"),
@@ -174,7 +178,7 @@ impl Kind {
     }
 
     /// Phrases of 12 tokens with those at both ends; OWLv2 keeps texts, so it gets others each time.
-    fn phrases(self, round: usize) -> Vec<String> {
+    fn round_phrases(self, round: usize) -> Vec<String> {
         let all = |phrases: &[&str]| phrases.iter().map(|&phrase| phrase.to_owned()).collect();
         match self {
             Self::GlipT => all(&["blue chair", "lamp", "sink", "a wooden door"]),

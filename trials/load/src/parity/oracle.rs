@@ -1,6 +1,6 @@
 //! Runs the PyTorch implementation: a script in Python that makes a random checkpoint, computes the expected numbers, and measures times.
 
-use super::Kind;
+use super::ParityDetector;
 use safetensors::SafeTensors;
 use serde::Deserialize;
 use std::{
@@ -9,21 +9,21 @@ use std::{
     path::{Path, PathBuf},
     process::{Child, ChildStdin, ChildStdout, Command, Stdio},
 };
-use wayword_core::Found;
-use wayword_run::error::Error;
+use wayword_core::DetectedBox;
+use wayword_run::error::CommandError;
 
 /// The numbers that PyTorch computed with a model.
-pub(super) struct Oracle {
+pub(super) struct PytorchOracle {
     script: PathBuf,
     folder: PathBuf,
     /// The pictures and phrases of the computation.
-    pub(super) cases: Vec<Case>,
+    pub(super) cases: Vec<ParityCase>,
     tensors: Vec<u8>,
 }
 
 /// A picture and phrases.
 #[derive(Debug, Deserialize)]
-pub(super) struct Case {
+pub(super) struct ParityCase {
     /// Width and height, pixels.
     pub(super) size: (u32, u32),
     /// The short edge at which the picture is shown to the model, where the model's files do not state it.
@@ -36,95 +36,97 @@ pub(super) struct Case {
     boxes: Vec<Vec<[f32; 5]>>,
 }
 
-impl Case {
+impl ParityCase {
     /// The finds of each phrase.
-    pub(super) fn found(&self) -> Vec<Vec<Found>> {
-        let one = |&[left, top, right, bottom, score]: &[f32; 5]| Found { box_px: [left, top, right, bottom], score };
+    pub(super) fn expected_finds(&self) -> Vec<Vec<DetectedBox>> {
+        let one =
+            |&[left, top, right, bottom, score]: &[f32; 5]| DetectedBox { box_px: [left, top, right, bottom], score };
         self.boxes.iter().map(|found| found.iter().map(one).collect()).collect()
     }
 }
 
 /// The numbers of a case.
-pub(super) struct Numbers<'a> {
+pub(super) struct CaseNumbers<'a> {
     tensors: &'a [u8],
     at: usize,
 }
 
-impl Numbers<'_> {
+impl CaseNumbers<'_> {
     /// A tensor of the case, flat.
-    pub(super) fn of(&self, name: &str) -> Result<Vec<f32>, Error> {
+    pub(super) fn tensor_values(&self, name: &str) -> Result<Vec<f32>, CommandError> {
         let name = format!("{}.{name}", self.at);
         let tensors = SafeTensors::deserialize(self.tensors);
         let numbers = tensors.and_then(|tensors| {
             let bytes = tensors.tensor(&name)?.data().to_vec();
             Ok(bytes.chunks_exact(4).map(|four| f32::from_le_bytes([four[0], four[1], four[2], four[3]])).collect())
         });
-        numbers.map_err(|error| Error::usage(format!("{name}: {error}"), "take the folder away and make it again"))
+        numbers
+            .map_err(|error| CommandError::usage(format!("{name}: {error}"), "take the folder away and make it again"))
     }
 }
 
-impl Oracle {
+impl PytorchOracle {
     /// Opens a folder with PyTorch's numbers. Runs the script to make it if it doesn't exist.
-    pub(super) fn made(kind: Kind, folder: &Path, python: &Path) -> Result<Self, Error> {
-        let (script, name) = kind.script();
+    pub(super) fn open_or_make(kind: ParityDetector, folder: &Path, python: &Path) -> Result<Self, CommandError> {
+        let (script, name) = kind.script_and_name();
         let fixtures = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/wayword-local/fixtures");
         let (script, told) = (fixtures.join(script), folder.join("expected.json"));
         if !told.is_file() {
             let mut command = Command::new(python);
             let made = command.arg(&script).arg("--true").arg(folder).arg(name).stdout(Stdio::null()).status();
-            if !made.map_err(|source| io(python, "run", source))?.success() {
-                return Err(failed(&script));
+            if !made.map_err(|source| io_error(python, "run", source))?.success() {
+                return Err(script_error(&script));
             }
         }
-        let text = fs::read_to_string(&told).map_err(|source| io(&told, "read", source))?;
+        let text = fs::read_to_string(&told).map_err(|source| io_error(&told, "read", source))?;
         let cases = serde_json::from_str(&text).map_err(|error| {
-            Error::usage(format!("{}: {error}", told.display()), "take the folder away and make it again")
+            CommandError::usage(format!("{}: {error}", told.display()), "take the folder away and make it again")
         })?;
         let file = folder.join("expected.safetensors");
-        let tensors = fs::read(&file).map_err(|source| io(&file, "read", source))?;
+        let tensors = fs::read(&file).map_err(|source| io_error(&file, "read", source))?;
         Ok(Self { script, folder: folder.to_owned(), cases, tensors })
     }
 
     /// The numbers of a case.
-    pub(super) fn numbers(&self, at: usize) -> Numbers<'_> {
-        Numbers { tensors: &self.tensors, at }
+    pub(super) fn case_numbers(&self, at: usize) -> CaseNumbers<'_> {
+        CaseNumbers { tensors: &self.tensors, at }
     }
 
     /// Starts the process that measures PyTorch's times.
-    pub(super) fn clock(&self, python: &Path) -> Result<Clock, Error> {
+    pub(super) fn start_clock(&self, python: &Path) -> Result<PytorchClock, CommandError> {
         let mut command = Command::new(python);
         command.arg(&self.script).arg("--time").arg(&self.folder).stdin(Stdio::piped()).stdout(Stdio::piped());
-        let mut child = command.spawn().map_err(|source| io(python, "run", source))?;
+        let mut child = command.spawn().map_err(|source| io_error(python, "run", source))?;
         let (Some(asks), Some(says)) = (child.stdin.take(), child.stdout.take()) else {
-            return Err(failed(&self.script));
+            return Err(script_error(&self.script));
         };
-        Ok(Clock { child, asks, says: BufReader::new(says), script: self.script.clone() })
+        Ok(PytorchClock { child, asks, says: BufReader::new(says), script: self.script.clone() })
     }
 }
 
 /// A process that computes one picture each time that it is asked.
-pub(super) struct Clock {
+pub(super) struct PytorchClock {
     child: Child,
     asks: ChildStdin,
     says: BufReader<ChildStdout>,
     script: PathBuf,
 }
 
-impl Clock {
+impl PytorchClock {
     /// The cost of one picture.
-    pub(super) fn spent(&mut self) -> Result<Spent, Error> {
+    pub(super) fn time_picture(&mut self) -> Result<PictureCost, CommandError> {
         let mut line = String::new();
         let asked = writeln!(self.asks).and_then(|()| self.asks.flush());
-        asked.and_then(|()| self.says.read_line(&mut line)).map_err(|source| io(&self.script, "ask", source))?;
+        asked.and_then(|()| self.says.read_line(&mut line)).map_err(|source| io_error(&self.script, "ask", source))?;
         let numbers: Vec<f64> = line.split_whitespace().filter_map(|number| number.parse().ok()).collect();
         match numbers[..] {
-            [wall_s, cpu_s, peak_mib] => Ok(Spent { wall_s, cpu_s, peak_mib }),
-            _ => Err(failed(&self.script)),
+            [wall_s, cpu_s, peak_mib] => Ok(PictureCost { wall_s, cpu_s, peak_mib }),
+            _ => Err(script_error(&self.script)),
         }
     }
 }
 
-impl Drop for Clock {
+impl Drop for PytorchClock {
     fn drop(&mut self) {
         // It may have ended by itself.
         self.child.kill().ok();
@@ -134,16 +136,16 @@ impl Drop for Clock {
 
 /// The time that a picture took, and the most memory of the process so far.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Spent {
+pub(super) struct PictureCost {
     pub(super) wall_s: f64,
     /// Of all threads.
     pub(super) cpu_s: f64,
     pub(super) peak_mib: f64,
 }
 
-impl Spent {
+impl PictureCost {
     /// The median times, and the most memory.
-    pub(super) fn median(all: &[Self]) -> Self {
+    pub(super) fn median_cost(all: &[Self]) -> Self {
         let middle = |of: fn(&Self) -> f64| {
             let mut all: Vec<f64> = all.iter().map(of).collect();
             all.sort_by(f64::total_cmp);
@@ -154,17 +156,17 @@ impl Spent {
     }
 }
 
-impl fmt::Display for Spent {
+impl fmt::Display for PictureCost {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{:>7.2} {:>16.2} {:>5.0} MiB", self.wall_s, self.cpu_s, self.peak_mib)
     }
 }
 
-fn io(path: &Path, doing: &'static str, source: std::io::Error) -> Error {
-    Error::Io { path: path.to_owned(), doing, source }
+fn io_error(path: &Path, doing: &'static str, source: std::io::Error) -> CommandError {
+    CommandError::Io { path: path.to_owned(), doing, source }
 }
 
-fn failed(script: &Path) -> Error {
+fn script_error(script: &Path) -> CommandError {
     let problem = format!("{} failed", script.display());
-    Error::usage(problem, "install the packages that its head names, or name another Python by --python")
+    CommandError::usage(problem, "install the packages that its head names, or name another Python by --python")
 }

@@ -2,36 +2,36 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use wayword_checks::open::class_name;
-use wayword_core::Survey;
-use wayword_language::lexicon::{Class, room_name, thing};
+use wayword_core::ViewpointSurvey;
+use wayword_language::lexicon::{ThingClass, find_thing, room_name};
 
 /// A room is a home of a class if its viewpoints list it this many times as often as all viewpoints do.
-const LIFT: f64 = 1.5;
+const MIN_LIFT: f64 = 1.5;
 /// Viewpoints that a room must have before its shares count.
-const ENOUGH: f64 = 20.0;
+const MIN_ROOM_VIEWPOINTS: f64 = 20.0;
 
 /// For each class of objects, by its name, the rooms that are its homes.
-pub(crate) fn homes<'a>(surveys: impl Iterator<Item = &'a Survey>) -> BTreeMap<String, BTreeSet<String>> {
+pub(crate) fn find_homes<'a>(surveys: impl Iterator<Item = &'a ViewpointSurvey>) -> BTreeMap<String, BTreeSet<String>> {
     let mut viewpoints: BTreeMap<&str, f64> = BTreeMap::new();
-    let mut listing: BTreeMap<(Class, &str), f64> = BTreeMap::new();
-    for viewpoint in surveys.flat_map(Survey::viewpoints) {
+    let mut listing: BTreeMap<(ThingClass, &str), f64> = BTreeMap::new();
+    for viewpoint in surveys.flat_map(ViewpointSurvey::viewpoints) {
         let Some(room) = viewpoint.known.room.as_deref().and_then(room_name) else { continue };
         *viewpoints.entry(room).or_default() += 1.0;
         let labels = viewpoint.known.things.iter().flatten();
-        let classes: BTreeSet<Class> = labels.filter_map(|label| Some(thing(&label.name)?.class)).collect();
+        let classes: BTreeSet<ThingClass> = labels.filter_map(|label| Some(find_thing(&label.name)?.class)).collect();
         for class in classes {
             *listing.entry((class, room)).or_default() += 1.0;
         }
     }
     let all: f64 = viewpoints.values().sum();
-    let mut of_class: BTreeMap<Class, f64> = BTreeMap::new();
+    let mut of_class: BTreeMap<ThingClass, f64> = BTreeMap::new();
     for ((class, _), count) in &listing {
         *of_class.entry(*class).or_default() += count;
     }
     let mut homes: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
     for ((class, room), count) in &listing {
         let lift = (count / viewpoints[room]) / (of_class[class] / all);
-        if viewpoints[room] >= ENOUGH && lift >= LIFT {
+        if viewpoints[room] >= MIN_ROOM_VIEWPOINTS && lift >= MIN_LIFT {
             homes.entry(class_name(*class)).or_default().insert((*room).to_owned());
         }
     }

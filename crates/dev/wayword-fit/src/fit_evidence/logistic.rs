@@ -3,18 +3,18 @@
 use std::collections::BTreeMap;
 
 /// One observation: features, whether the claim is wrong, and how much it counts.
-pub(crate) struct Sample {
+pub(crate) struct WeighedClaimSample {
     pub(crate) features: Vec<(String, f64)>,
     pub(crate) wrong: bool,
     pub(crate) weight: f64,
 }
 
 /// Most Newton steps. Most fits converge earlier.
-const STEPS: usize = 25;
+const MAX_NEWTON_STEPS: usize = 25;
 
 /// Fits a weight for each feature. The sum of a claim's weights is the natural logarithm of the odds that it is wrong. `ridge` pulls all
 /// weights except the bias to zero.
-pub(crate) fn fit(samples: &[Sample], ridge: f64) -> BTreeMap<String, f64> {
+pub(crate) fn fit_weights(samples: &[WeighedClaimSample], ridge: f64) -> BTreeMap<String, f64> {
     let mut places: BTreeMap<&str, usize> = BTreeMap::new();
     for (name, _) in samples.iter().flat_map(|sample| &sample.features) {
         let next = places.len();
@@ -27,7 +27,7 @@ pub(crate) fn fit(samples: &[Sample], ridge: f64) -> BTreeMap<String, f64> {
     let size = places.len();
     let bias = places.get("bias").copied();
     let mut weights = vec![0.0; size];
-    for _ in 0..STEPS {
+    for _ in 0..MAX_NEWTON_STEPS {
         let penalty = |at: usize| if Some(at) == bias { 1e-6 } else { ridge };
         let mut gradient: Vec<f64> = (0..size).map(|at| -penalty(at) * weights[at]).collect();
         let mut curvature = vec![vec![0.0; size]; size];
@@ -46,7 +46,7 @@ pub(crate) fn fit(samples: &[Sample], ridge: f64) -> BTreeMap<String, f64> {
                 }
             }
         }
-        let step = solve(curvature, gradient);
+        let step = solve_cholesky(curvature, gradient);
         let longest = step.iter().fold(0.0_f64, |most, one| most.max(one.abs()));
         let scale = if longest > 2.0 { 2.0 / longest } else { 1.0 };
         weights.iter_mut().zip(&step).for_each(|(weight, step)| *weight += step * scale);
@@ -58,7 +58,7 @@ pub(crate) fn fit(samples: &[Sample], ridge: f64) -> BTreeMap<String, f64> {
 }
 
 /// Solves a linear system with a positive definite matrix by Cholesky decomposition.
-fn solve(mut matrix: Vec<Vec<f64>>, mut right: Vec<f64>) -> Vec<f64> {
+fn solve_cholesky(mut matrix: Vec<Vec<f64>>, mut right: Vec<f64>) -> Vec<f64> {
     let size = right.len();
     for at in 0..size {
         for row in at..size {

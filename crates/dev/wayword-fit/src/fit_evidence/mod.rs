@@ -7,19 +7,19 @@ mod fold;
 mod homes;
 mod logistic;
 
-use fold::{GROUPS, buildings, missed, of, tables};
+use fold::{CASE_GROUPS, building_numbers, claims_for_case, failing_miss, fit_tables};
 use std::{
     collections::{BTreeMap, BTreeSet},
     path::Path,
 };
-use wayword_checks::open::{Case, Table, Weights};
+use wayword_checks::open::{ClaimCase, SilenceWeights, WeightTable};
 use wayword_core::SceneId;
 use wayword_run::{
-    error::Error,
-    output::Output,
-    people::{Held, Labels, Walk, held, left_out, walks},
+    error::CommandError,
+    output::CommandOutput,
+    people::{ClaimSample, LabelNames, PeopleWalk, left_out, read_people_walks, sample_claims},
     platforms,
-    settings::{Asked, AskedPlatform},
+    settings::{AskedPlatform, AskedSettings},
 };
 
 /// Rooms in groups of like evidence. Rooms of one group share weights.
@@ -37,32 +37,43 @@ const ROOM_GROUPS: [(&str, &[&str]); 7] = [
 ];
 
 /// Fits the weights, prints how they do on the buildings that were left out, and writes the file.
-pub fn measure(data: &Path, episodes: &Path, out: Option<&Path>, output: &Output) -> Result<(), Error> {
+pub fn fit_evidence_weights(
+    data: &Path,
+    episodes: &Path,
+    out: Option<&Path>,
+    output: &CommandOutput,
+) -> Result<(), CommandError> {
     let matterport =
         AskedPlatform { platform: Some("matterport".into()), data: Some(data.to_owned()), ..AskedPlatform::default() };
-    let platform = platforms::open(&Asked::from(matterport).resolve()?)?;
-    let (walks, mut surveys) = walks(platform.as_ref(), episodes)?;
+    let platform = platforms::open_platform(&AskedSettings::from(matterport).resolve()?)?;
+    let (walks, mut surveys) = read_people_walks(platform.as_ref(), episodes)?;
     let scenes: BTreeSet<SceneId> = walks.iter().map(|walk| walk.path.scene.clone()).collect();
     let out_scenes = left_out(&scenes);
-    let (apart, fitted): (Vec<&Walk>, Vec<&Walk>) =
+    let (apart, fitted): (Vec<&PeopleWalk>, Vec<&PeopleWalk>) =
         walks.iter().partition(|walk| out_scenes.contains(&walk.path.scene));
-    let all_labels = Labels::of(surveys.iter());
+    let all_labels = LabelNames::from_surveys(surveys.iter());
     surveys.retain(|scene, _| !out_scenes.contains(scene));
-    let labels = Labels::of(surveys.iter());
-    let mut weights =
-        Weights { room_groups: room_groups(), homes: homes::homes(surveys.values()), cases: BTreeMap::new() };
-    let samples = held(&fitted, &labels, &weights, 0);
-    let numbers = buildings(fitted.iter().map(|walk| walk.path.scene.as_str()));
-    for group in &GROUPS {
-        let tables = tables(&samples, group, &|walk| numbers[walk], texts(&fitted));
+    let labels = LabelNames::from_surveys(surveys.iter());
+    let mut weights = SilenceWeights {
+        room_groups: room_groups(),
+        homes: homes::find_homes(surveys.values()),
+        cases: BTreeMap::new(),
+    };
+    let samples = sample_claims(&fitted, &labels, &weights, 0);
+    let numbers = building_numbers(fitted.iter().map(|walk| walk.path.scene.as_str()));
+    for group in &CASE_GROUPS {
+        let tables = fit_tables(&samples, group, &|walk| numbers[walk], count_texts(&fitted));
         weights.cases.extend(tables.into_iter().map(|(case, table)| (case.name().to_owned(), table)));
     }
-    let apart_samples = held(&apart, &all_labels, &weights, 1);
+    let apart_samples = sample_claims(&apart, &all_labels, &weights, 1);
     let names = out_scenes.iter().map(SceneId::as_str).collect::<Vec<_>>().join(" ");
     output.say(format!("left out: {names}"));
-    output.data(&(), report(&[("fitted", &fitted, &samples), ("left out", &apart, &apart_samples)], &weights));
+    output.print_result(
+        &(),
+        report_fit(&[("fitted", &fitted, &samples), ("left out", &apart, &apart_samples)], &weights),
+    );
     if let Some(out) = out {
-        std::fs::write(out, file(&weights, episodes)).map_err(Error::io(out, "write"))?;
+        std::fs::write(out, weights_file_text(&weights, episodes)).map_err(CommandError::io(out, "write"))?;
     }
     Ok(())
 }
@@ -73,33 +84,36 @@ fn room_groups() -> BTreeMap<String, BTreeSet<String>> {
     ROOM_GROUPS.map(group).into()
 }
 
-fn texts(walks: &[&Walk]) -> usize {
+fn count_texts(walks: &[&PeopleWalk]) -> usize {
     walks.iter().map(|walk| walk.texts.len()).sum()
 }
 
 /// Per case and part: the share of texts with a true claim that fails, and the shares of wrong claims that do.
-fn report(parts: &[(&str, &Vec<&Walk>, &Vec<Held>)], weights: &Weights) -> String {
+fn report_fit(parts: &[(&str, &Vec<&PeopleWalk>, &Vec<ClaimSample>)], weights: &SilenceWeights) -> String {
     let mut lines = vec![format!(
         "{:<14} {:<9} {:>8} {:>12} {:>18} {:>18} {:>18}",
         "case", "buildings", "fails at", "texts, %", "lacking, %", "8 m off, %", "3 to 8 m off, %"
     )];
-    for case in Case::ALL {
-        let Some(Table { fails_at, .. }) = weights.table(case) else { continue };
+    for case in ClaimCase::ALL {
+        let Some(WeightTable { fails_at, .. }) = weights.table_for(case) else { continue };
         for (name, walks, samples) in parts {
-            let fails = |held: &&&Held| {
-                let ratio = missed(held, case).and_then(|missed| weights.log_ratio(missed));
+            let fails = |held: &&&ClaimSample| {
+                let ratio = failing_miss(held, case).and_then(|missed| weights.log_ratio(missed));
                 ratio.is_some_and(|ratio| ratio >= fails_at.ln())
             };
-            let of_case = of(samples, case);
+            let of_case = claims_for_case(samples, case);
             let true_ones = of_case.iter().filter(|held| !held.wrong).filter(fails);
             let failing: BTreeSet<(usize, usize)> = true_ones.map(|held| (held.walk, held.text)).collect();
             let share = |least_m: f64, most_m: f64| {
-                let within = |held: &&&Held| {
-                    missed(held, case).is_some_and(|missed| missed.nearest_m >= least_m && missed.nearest_m < most_m)
+                let within = |held: &&&ClaimSample| {
+                    failing_miss(held, case)
+                        .is_some_and(|missed| missed.nearest_m >= least_m && missed.nearest_m < most_m)
                 };
-                let nowhere = |held: &&&Held| missed(held, case).is_some_and(|missed| missed.nearest_m.is_infinite());
+                let nowhere = |held: &&&ClaimSample| {
+                    failing_miss(held, case).is_some_and(|missed| missed.nearest_m.is_infinite())
+                };
                 let all = of_case.iter().filter(|held| held.wrong);
-                let all: Vec<&&Held> =
+                let all: Vec<&&ClaimSample> =
                     if least_m.is_infinite() { all.filter(nowhere).collect() } else { all.filter(within).collect() };
                 let found = all.iter().copied().filter(|held| fails(held)).count();
                 format!("{:.1} of {}", 100.0 * found as f64 / all.len().max(1) as f64, all.len())
@@ -107,7 +121,7 @@ fn report(parts: &[(&str, &Vec<&Walk>, &Vec<Held>)], weights: &Weights) -> Strin
             lines.push(format!(
                 "{:<14} {name:<9} {fails_at:>8.1} {:>12.2} {:>18} {:>18} {:>18}",
                 case.name(),
-                100.0 * failing.len() as f64 / texts(walks).max(1) as f64,
+                100.0 * failing.len() as f64 / count_texts(walks).max(1) as f64,
                 share(f64::INFINITY, f64::INFINITY),
                 share(8.0, f64::INFINITY),
                 share(3.0, 8.0),
@@ -118,9 +132,9 @@ fn report(parts: &[(&str, &Vec<&Walk>, &Vec<Held>)], weights: &Weights) -> Strin
 }
 
 /// The text of the weights file that ships, with its explanation.
-fn file(weights: &Weights, episodes: &Path) -> String {
+fn weights_file_text(weights: &SilenceWeights, episodes: &Path) -> String {
     let episodes = episodes.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-    let budgets = GROUPS.map(|group| format!("{} {:.2} %", group.name, 100.0 * group.budget)).join(", ");
+    let budgets = CASE_GROUPS.map(|group| format!("{} {:.2} %", group.name, 100.0 * group.budget)).join(", ");
     let head = format!(
         "# How much the silence of labels says about a claim, by class of object and group of rooms.
 # Fitted by `wayword-measure fit-evidence --data DIR --episodes {episodes} --out weights.toml` on people's texts and

@@ -12,23 +12,23 @@ use std::{
     collections::BTreeSet,
     path::{Path, PathBuf},
 };
-use texts::{Scene, Text, texts};
-use wayword_core::{SceneId, rng};
+use texts::{FollowerScene, WalkedText, read_texts};
+use wayword_core::{SceneId, seeded_rng};
 use wayword_follower::{
-    Fit, Guide, Prior, Tree, Trial, Weights, best,
-    change::flipped,
-    learn::{Learner, Plan, Slope},
+    FeatureWeights, Guide, GuideTrial, WalkFit, WalkPrior, WalkTree, best_walk,
+    change::flip_turns,
+    learn::{FitPlan, FitSlope, WeightLearner},
     online::{OnwardLearner, OnwardSlope, OnwardWeights},
 };
-use wayword_run::{error::Error, output::Output, people::left_out};
+use wayword_run::{error::CommandError, output::CommandOutput, people::left_out};
 
 /// The weight of the contrast between a text and the same text with one turn flipped.
-const CONTRAST: f64 = 1.0;
+const CONTRAST_WEIGHT: f64 = 1.0;
 /// How many texts one thread adds up at a time.
-const CHUNK: usize = 8;
+const TEXTS_PER_CHUNK: usize = 8;
 
 #[derive(Debug, Args)]
-pub struct Flags {
+pub struct FitFollowerArgs {
     /// Folder of Matterport3D's and REVERIE's data.
     #[arg(long)]
     data: PathBuf,
@@ -52,79 +52,84 @@ pub struct Flags {
     out: Option<PathBuf>,
 }
 
-pub fn measure(flags: &Flags, output: &Output) -> Result<(), Error> {
-    let (scenes, files) = texts(&flags.data, &flags.episodes)?;
+pub fn fit_follower_weights(flags: &FitFollowerArgs, output: &CommandOutput) -> Result<(), CommandError> {
+    let (scenes, files) = read_texts(&flags.data, &flags.episodes)?;
     let names: BTreeSet<SceneId> = scenes.iter().map(|scene| scene.name.clone()).collect();
     let left_out = left_out(&names);
     // The texts about the buildings that are left out, file by file, and all other texts together.
     let (mut apart, mut fitted) = (Vec::new(), Vec::new());
     for (number, (file, texts)) in flags.episodes.iter().zip(files).enumerate() {
-        let (out, kept): (Vec<Text>, Vec<Text>) =
+        let (out, kept): (Vec<WalkedText>, Vec<WalkedText>) =
             texts.into_iter().partition(|text| left_out.contains(&scenes[text.scene].name));
-        apart.push((name(file), out));
-        fitted.extend(kept.into_iter().map(|text| Text { file: number, ..text }));
+        apart.push((file_name(file), out));
+        fitted.extend(kept.into_iter().map(|text| WalkedText { file: number, ..text }));
     }
-    fitted.shuffle(&mut rng(flags.seed, &["fit-follower"]));
+    fitted.shuffle(&mut seeded_rng(flags.seed, &["fit-follower"]));
     fitted.truncate(flags.texts.unwrap_or(usize::MAX));
     let names = left_out.iter().map(SceneId::as_str).collect::<Vec<_>>().join(" ");
     output.say(format!("{} texts; left out: {names}", fitted.len()));
-    let say = |what: &str, score: &dyn Fn(&[Text]) -> String| {
+    let say = |what: &str, score: &dyn Fn(&[WalkedText]) -> String| {
         for (file, texts) in &apart {
             output.say(format!("{what}, on the buildings left out of {file}: {}", score(texts)));
         }
     };
-    say("by hand", &|texts| with_map(&scenes, texts, &Weights::by_hand()));
+    say("by hand", &|texts| with_map(&scenes, texts, &FeatureWeights::by_hand()));
     let map = fit_map(flags, &scenes, &fitted, output);
     say("with the map", &|texts| with_map(&scenes, texts, &map));
     for (number, file) in flags.episodes.iter().enumerate() {
-        let texts: Vec<&Text> = fitted.iter().filter(|text| text.file == number).collect();
-        output.say(format!("shares of the texts of {} that a change gains more for:", name(file)));
-        output.say(gains::gains(&scenes, &texts, &map));
+        let texts: Vec<&WalkedText> = fitted.iter().filter(|text| text.file == number).collect();
+        output.say(format!("shares of the texts of {} that a change gains more for:", file_name(file)));
+        output.say(gains::gain_table(&scenes, &texts, &map));
     }
     let start = OnwardWeights { done: map.clone(), going: map.clone(), ..OnwardWeights::by_hand() };
     let walking = fit_walker(flags, &scenes, &fitted, &start, output);
-    say("walking", &|texts| walker::score(&scenes, texts, &walking));
+    say("walking", &|texts| walker::score_walker(&scenes, texts, &walking));
     if let Some(out) = &flags.out {
-        let files: Vec<String> = flags.episodes.iter().map(|file| name(file)).collect();
+        let files: Vec<String> = flags.episodes.iter().map(|file| file_name(file)).collect();
         let origin = format!("people's texts of {}, without the last ten buildings by name", files.join(" and "));
         let given: String = files.iter().map(|file| format!(" --episodes {file}")).collect();
-        let Flags { seed, rounds, walker_rounds, .. } = flags;
+        let FitFollowerArgs { seed, rounds, walker_rounds, .. } = flags;
         let command = format!(
             "wayword-measure fit-follower --data DATA{given} --seed {seed} --rounds {rounds} --walker-rounds \
              {walker_rounds} --out DIR"
         );
-        std::fs::create_dir_all(out).map_err(Error::io(out, "make"))?;
+        std::fs::create_dir_all(out).map_err(CommandError::io(out, "make"))?;
         for (name, text) in
             [("map.json", map.to_json(&origin, &command)), ("walker.json", walking.to_json(&origin, &command))]
         {
-            std::fs::write(out.join(name), text).map_err(Error::io(out, "write"))?;
+            std::fs::write(out.join(name), text).map_err(CommandError::io(out, "write"))?;
         }
     }
     Ok(())
 }
 
 /// The name of a file, without its folder.
-fn name(file: &Path) -> String {
+fn file_name(file: &Path) -> String {
     file.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
-fn fit_map(flags: &Flags, scenes: &[Scene], texts: &[Text], output: &Output) -> Weights {
-    let plan = Plan { rounds: flags.rounds, rate: 0.04, batch: 48, hold: 2e-4, hold_fine: 5.0 };
-    let trees: Vec<Tree> = texts.par_iter().map(|text| tree(scenes, text)).collect();
-    let items: Vec<(&Text, &Tree)> = texts.iter().zip(&trees).collect();
-    let mut learner = Learner::new(plan, &Weights::by_hand());
+fn fit_map(
+    flags: &FitFollowerArgs,
+    scenes: &[FollowerScene],
+    texts: &[WalkedText],
+    output: &CommandOutput,
+) -> FeatureWeights {
+    let plan = FitPlan { rounds: flags.rounds, rate: 0.04, batch: 48, hold: 2e-4, hold_fine: 5.0 };
+    let trees: Vec<WalkTree> = texts.par_iter().map(|text| walk_tree(scenes, text)).collect();
+    let items: Vec<(&WalkedText, &WalkTree)> = texts.iter().zip(&trees).collect();
+    let mut learner = WeightLearner::new(plan, &FeatureWeights::by_hand());
     for round in 0..plan.rounds {
         let mut loss = 0.0;
         for batch in items.chunks(plan.batch) {
-            let weights = learner.weights();
-            let slopes = batch.par_chunks(CHUNK).map(|items| {
-                let mut slope = Slope::default();
-                items.iter().for_each(|(text, tree)| add(&mut slope, scenes, text, tree, &weights));
+            let weights = learner.current_weights();
+            let slopes = batch.par_chunks(TEXTS_PER_CHUNK).map(|items| {
+                let mut slope = FitSlope::default();
+                items.iter().for_each(|(text, tree)| add_text_slope(&mut slope, scenes, text, tree, &weights));
                 slope
             });
-            let slope = slopes.reduce(Slope::default, |a, b| a.plus(&b));
+            let slope = slopes.reduce(FitSlope::default, |a, b| a.plus(&b));
             loss += slope.loss;
-            learner.step(round, &slope);
+            learner.step_down(round, &slope);
         }
         output.say(format!("map, round {}: loss {:.3}", round + 1, loss / items.len().max(1) as f64));
     }
@@ -132,44 +137,50 @@ fn fit_map(flags: &Flags, scenes: &[Scene], texts: &[Text], output: &Output) -> 
 }
 
 /// Adds a text: its walk against the other walks, and its turns against flipped ones.
-fn add(slope: &mut Slope, scenes: &[Scene], text: &Text, tree: &Tree, weights: &Weights) {
+fn add_text_slope(
+    slope: &mut FitSlope,
+    scenes: &[FollowerScene],
+    text: &WalkedText,
+    tree: &WalkTree,
+    weights: &FeatureWeights,
+) {
     let building = &scenes[text.scene].building;
-    let right = Trial::new(&text.guide, building);
-    if let Some(goal) = tree.find(&text.walk) {
-        slope.add(&right, tree, goal, weights);
+    let right = GuideTrial::new(&text.guide, building);
+    if let Some(goal) = tree.find_walk(&text.walk) {
+        slope.add_text(&right, tree, goal, weights);
         // The same walk by an empty text teaches how long people's walks are. A text without readable words then has this to go by.
-        let nothing = Guide::read("");
-        slope.add_floor(&Trial::new(&nothing, building), tree, goal, weights);
+        let nothing = Guide::read_text("");
+        slope.add_floor(&GuideTrial::new(&nothing, building), tree, goal, weights);
     }
-    let walk = Tree::single(building, &text.walk, text.heading_rad);
-    for wrong in flipped(&text.guide) {
-        slope.add_contrast(&right, &Trial::new(&wrong, building), &walk, weights, CONTRAST);
+    let walk = WalkTree::single_walk(building, &text.walk, text.heading_rad);
+    for wrong in flip_turns(&text.guide) {
+        slope.add_contrast(&right, &GuideTrial::new(&wrong, building), &walk, weights, CONTRAST_WEIGHT);
     }
 }
 
 fn fit_walker(
-    flags: &Flags,
-    scenes: &[Scene],
-    texts: &[Text],
+    flags: &FitFollowerArgs,
+    scenes: &[FollowerScene],
+    texts: &[WalkedText],
     start: &OnwardWeights,
-    output: &Output,
+    output: &CommandOutput,
 ) -> OnwardWeights {
-    let plan = Plan { rounds: flags.walker_rounds, rate: 0.03, batch: 32, hold: 1e-4, hold_fine: 5.0 };
+    let plan = FitPlan { rounds: flags.walker_rounds, rate: 0.03, batch: 32, hold: 1e-4, hold_fine: 5.0 };
     let mut learner = OnwardLearner::new(plan, start);
     for round in 0..plan.rounds {
         let (mut loss, mut decisions) = (0.0, 0);
         for (number, batch) in texts.chunks(plan.batch).enumerate() {
-            let weights = learner.weights();
+            let weights = learner.current_weights();
             let slopes = batch.par_iter().enumerate().map(|(at, text)| {
                 let mut slope = OnwardSlope::default();
                 // Half of the walks keep to the right way, the others are the walker's own.
                 let is_own = (round + number + at) % 2 == 0;
-                walker::teach(&scenes[text.scene], text, &weights, is_own, &mut slope);
+                walker::teach_walker(&scenes[text.scene], text, &weights, is_own, &mut slope);
                 slope
             });
             let slope = slopes.reduce(OnwardSlope::default, |a, b| a.plus(&b));
             (loss, decisions) = (loss + slope.loss, decisions + slope.decisions);
-            learner.step(round, &slope);
+            learner.step_down(round, &slope);
         }
         let mean = loss / decisions.max(1) as f64;
         output.say(format!("walker, round {}: loss {mean:.3} of {decisions} decisions", round + 1));
@@ -177,17 +188,17 @@ fn fit_walker(
     learner.finish()
 }
 
-fn tree(scenes: &[Scene], text: &Text) -> Tree {
-    Tree::of(&scenes[text.scene].building, text.walk[0], text.heading_rad, Prior::default())
+fn walk_tree(scenes: &[FollowerScene], text: &WalkedText) -> WalkTree {
+    WalkTree::from_prior(&scenes[text.scene].building, text.walk[0], text.heading_rad, WalkPrior::default())
 }
 
 /// Success rate and SPL of the best walk.
-fn with_map(scenes: &[Scene], texts: &[Text], weights: &Weights) -> String {
+fn with_map(scenes: &[FollowerScene], texts: &[WalkedText], weights: &FeatureWeights) -> String {
     let scores = texts.par_iter().map(|text| {
         let scene = &scenes[text.scene];
-        let tree = tree(scenes, text);
-        let fit = Fit::new(&Trial::new(&text.guide, &scene.building), &tree, weights);
-        best(&fit, &tree).map_or([0.0; 2], |walk| text.score(scene, &tree.viewpoints(walk)))
+        let tree = walk_tree(scenes, text);
+        let fit = WalkFit::new(&GuideTrial::new(&text.guide, &scene.building), &tree, weights);
+        best_walk(&fit, &tree).map_or([0.0; 2], |walk| text.score_walk(scene, &tree.viewpoints(walk)))
     });
-    texts::mean(scores)
+    texts::mean_scores(scores)
 }

@@ -1,9 +1,11 @@
 //! Teaches the follower that has no map and decides at each viewpoint, and scores its walks.
 
-use super::texts::{Scene, Text, mean};
+use super::texts::{FollowerScene, WalkedText, mean_scores};
 use rayon::prelude::*;
 use wayword_core::Heading;
-use wayword_follower::online::{Decision, Hop, OnwardSlope, OnwardWeights, Reader, Sighting};
+use wayword_follower::online::{
+    OnwardSlope, OnwardWeights, WalkerDecision, WalkerHop, WalkerSighting, WalkingFollower,
+};
 
 /// Most hops of a walk in training.
 const MOST_HOPS: usize = 16;
@@ -11,31 +13,31 @@ const MOST_HOPS: usize = 16;
 const MOST_WALKED: usize = 60;
 
 /// The walker's viewpoint and heading.
-struct Body<'a> {
-    scene: &'a Scene,
+struct WalkerBody<'a> {
+    scene: &'a FollowerScene,
     here: usize,
     heading: Heading,
 }
 
-impl<'a> Body<'a> {
-    fn at_start(scene: &'a Scene, text: &Text) -> Self {
+impl<'a> WalkerBody<'a> {
+    fn at_start(scene: &'a FollowerScene, text: &WalkedText) -> Self {
         let heading = Heading::new(text.heading_rad).unwrap_or(Heading::NORTH);
         Self { scene, here: text.walk[0], heading }
     }
 
-    fn sight(&self) -> Sighting {
+    fn current_sighting(&self) -> WalkerSighting {
         let viewpoints = self.scene.survey.viewpoints();
         let here = &viewpoints[self.here];
-        let hop = |to: &usize| Hop::between(here.position, viewpoints[*to].position, self.heading);
-        let hops: Vec<Hop> = here.neighbours.iter().map(hop).collect();
+        let hop = |to: &usize| WalkerHop::between(here.position, viewpoints[*to].position, self.heading);
+        let hops: Vec<WalkerHop> = here.neighbours.iter().map(hop).collect();
         let labels = here.known.things.iter().flatten();
         let things = labels
-            .filter_map(|label| Some((label.name.clone(), Hop::nearest(&hops, self.heading, label.heading)?)))
+            .filter_map(|label| Some((label.name.clone(), WalkerHop::nearest_hop(&hops, self.heading, label.heading)?)))
             .collect();
-        Sighting { hops, room: here.known.room.clone(), things }
+        WalkerSighting { hops, room: here.known.room.clone(), things }
     }
 
-    fn take(&mut self, hop: usize) {
+    fn take_hop(&mut self, hop: usize) {
         let viewpoints = self.scene.survey.viewpoints();
         let to = viewpoints[self.here].neighbours[hop];
         self.heading =
@@ -44,13 +46,13 @@ impl<'a> Body<'a> {
     }
 
     /// The hops of the shortest way to the goal.
-    fn way(&self, text: &Text) -> Vec<usize> {
+    fn shortest_way(&self, text: &WalkedText) -> Vec<usize> {
         let viewpoints = self.scene.survey.viewpoints();
         let (mut here, mut way) = (self.here, Vec::new());
         while here != text.walk[text.walk.len() - 1] && way.len() < MOST_WALKED {
             let far_m = |hop: &usize| {
                 let to = viewpoints[here].neighbours[*hop];
-                text.to_goal_m[to] + self.scene.building.distance(here, to)
+                text.to_goal_m[to] + self.scene.building.distance_m(here, to)
             };
             let Some(hop) = (0..viewpoints[here].neighbours.len()).min_by(|a, b| far_m(a).total_cmp(&far_m(b))) else {
                 return way;
@@ -64,21 +66,27 @@ impl<'a> Body<'a> {
 
 /// Adds the slope for the right decision at each viewpoint of a walk. With `is_own` the walker goes by its own decisions, so that it also
 /// learns to come back from errors; otherwise it keeps to the shortest way.
-pub(super) fn teach(scene: &Scene, text: &Text, weights: &OnwardWeights, is_own: bool, slope: &mut OnwardSlope) {
-    let mut reader = Reader::new(&text.guide, weights);
-    let mut body = Body::at_start(scene, text);
+pub(super) fn teach_walker(
+    scene: &FollowerScene,
+    text: &WalkedText,
+    weights: &OnwardWeights,
+    is_own: bool,
+    slope: &mut OnwardSlope,
+) {
+    let mut reader = WalkingFollower::new(&text.guide, weights);
+    let mut body = WalkerBody::at_start(scene, text);
     for _ in 0..MOST_HOPS {
-        let seen = body.sight();
-        reader.look(&seen);
-        let way = body.way(text);
+        let seen = body.current_sighting();
+        reader.look_around(&seen);
+        let way = body.shortest_way(text);
         let right = way.first().copied();
-        reader.learn(way, slope);
-        let own = if is_own { Some(reader.decide(&seen)) } else { None };
+        reader.learn_decision(way, slope);
+        let own = if is_own { Some(reader.decide_next(&seen)) } else { None };
         match (own, right) {
-            (Some(Decision::Go(hop)), _) => body.take(hop),
+            (Some(WalkerDecision::Go(hop)), _) => body.take_hop(hop),
             (_, Some(hop)) => {
-                reader.take(hop);
-                body.take(hop);
+                reader.take_hop(hop);
+                body.take_hop(hop);
             }
             (_, None) => return,
         }
@@ -86,19 +94,19 @@ pub(super) fn teach(scene: &Scene, text: &Text, weights: &OnwardWeights, is_own:
 }
 
 /// Success rate and SPL.
-pub(super) fn score(scenes: &[Scene], texts: &[Text], weights: &OnwardWeights) -> String {
-    mean(texts.par_iter().map(|text| {
+pub(super) fn score_walker(scenes: &[FollowerScene], texts: &[WalkedText], weights: &OnwardWeights) -> String {
+    mean_scores(texts.par_iter().map(|text| {
         let scene = &scenes[text.scene];
-        let mut reader = Reader::new(&text.guide, weights);
-        let mut body = Body::at_start(scene, text);
+        let mut reader = WalkingFollower::new(&text.guide, weights);
+        let mut body = WalkerBody::at_start(scene, text);
         let mut walked = vec![body.here];
-        while let Decision::Go(hop) = reader.decide(&body.sight()) {
-            body.take(hop);
+        while let WalkerDecision::Go(hop) = reader.decide_next(&body.current_sighting()) {
+            body.take_hop(hop);
             walked.push(body.here);
             if walked.len() > MOST_WALKED {
                 break;
             }
         }
-        text.score(scene, &walked)
+        text.score_walk(scene, &walked)
     }))
 }

@@ -6,20 +6,20 @@ use rand::{
 };
 use std::collections::BTreeSet;
 use wayword_checks::{Evidence, FrameEvidence};
-use wayword_core::{Side, Witness};
-use wayword_language::lexicon::{Class, agree, room_name, same_room, thing};
-use wayword_synthesis::walk::Walk;
+use wayword_core::{Side, WitnessAnswer};
+use wayword_language::lexicon::{ThingClass, find_thing, names_agree, room_name, same_room};
+use wayword_synthesis::walk::ObservedWalk;
 
 /// A path with the evidence from its labels and the evidence from its captions.
-pub(super) struct Known {
-    pub(super) walk: Walk,
+pub(super) struct ClaimedPath {
+    pub(super) walk: ObservedWalk,
     pub(super) labels: Evidence,
     pub(super) captions: Evidence,
 }
 
 /// Whether a claim is true, and in which way it is false.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Kind {
+pub(super) enum SeededClaimKind {
     /// A thing in a view that the eye looked at, or a room of the path.
     True,
     /// A thing or a room at the end, as the goal.
@@ -34,7 +34,7 @@ pub(super) enum Kind {
     WrongRoom,
 }
 
-impl Kind {
+impl SeededClaimKind {
     pub(super) fn is_true(self) -> bool {
         matches!(self, Self::True | Self::TrueGoal)
     }
@@ -52,21 +52,21 @@ impl Kind {
 }
 
 /// A short text that makes one claim.
-pub(super) struct Claim {
-    pub(super) kind: Kind,
+pub(super) struct SeededClaim {
+    pub(super) kind: SeededClaimKind,
     pub(super) text: String,
 }
 
 /// The names of all things and rooms along all paths, from which false claims are drawn.
-pub(super) struct Names {
+pub(super) struct ClaimNamePool {
     things: Vec<String>,
     rooms: Vec<String>,
 }
 
-impl Names {
-    pub(super) fn of(known: &[Known]) -> Self {
+impl ClaimNamePool {
+    pub(super) fn from_paths(known: &[ClaimedPath]) -> Self {
         let frames = || known.iter().flat_map(|one| &one.labels.frames);
-        let things: BTreeSet<&str> = frames().flat_map(names).filter(|name| is_landmark(name)).collect();
+        let things: BTreeSet<&str> = frames().flat_map(thing_names).filter(|name| is_landmark(name)).collect();
         let rooms: BTreeSet<&str> = frames()
             .flat_map(|frame| &frame.rooms)
             .map(String::as_str)
@@ -77,25 +77,30 @@ impl Names {
     }
 }
 
-fn names(frame: &FrameEvidence) -> impl Iterator<Item = &str> {
+fn thing_names(frame: &FrameEvidence) -> impl Iterator<Item = &str> {
     frame.things.iter().map(|thing| thing.name.as_str())
 }
 
 /// Whether a text would use the thing as a landmark. Walls, doors and stairs are checked in other ways.
 fn is_landmark(name: &str) -> bool {
-    let is_of_the_building = |class| matches!(class, Class::Fabric | Class::Door | Class::Stairs);
-    thing(name).is_some_and(|thing| !is_of_the_building(thing.class)) && room_name(name).is_none()
+    let is_of_the_building = |class| matches!(class, ThingClass::Fabric | ThingClass::Door | ThingClass::Stairs);
+    find_thing(name).is_some_and(|thing| !is_of_the_building(thing.class)) && room_name(name).is_none()
 }
 
 /// Draws at most `most` claims of each kind about a path.
-pub(super) fn claims(known: &Known, names: &Names, most: usize, rng: &mut impl Rng) -> Vec<Claim> {
+pub(super) fn make_claims(
+    known: &ClaimedPath,
+    names: &ClaimNamePool,
+    most: usize,
+    rng: &mut impl Rng,
+) -> Vec<SeededClaim> {
     let mut made = Vec::new();
     let Some((last, last_seen)) = known.labels.frames.last().zip(known.captions.frames.last()) else { return made };
-    let mut add = |kind: Kind, mut texts: Vec<String>, rng: &mut _| {
+    let mut add = |kind: SeededClaimKind, mut texts: Vec<String>, rng: &mut _| {
         texts.sort();
         texts.dedup();
         texts.shuffle(rng);
-        made.extend(texts.into_iter().take(most).map(|text| Claim { kind, text }));
+        made.extend(texts.into_iter().take(most).map(|text| SeededClaim { kind, text }));
     };
     let (past, stop) = (
         |name: &str| format!("Walk past the {name}."),
@@ -115,49 +120,50 @@ pub(super) fn claims(known: &Known, names: &Names, most: usize, rng: &mut impl R
             .filter(|room| room_name(room).is_some())
             .map(|room| enter(room)),
     );
-    add(Kind::True, real, rng);
+    add(SeededClaimKind::True, real, rng);
 
     let end = known.labels.frames.len() - 1;
     let mut goals: Vec<String> = looked.iter().filter(|(at, ..)| *at == end).map(|(_, name, _)| stop(name)).collect();
     goals.extend(last.rooms.iter().filter(|room| room_name(room).is_some()).map(|room| stop_in(room)));
-    add(Kind::TrueGoal, goals, rng);
+    add(SeededClaimKind::TrueGoal, goals, rng);
 
-    let stands = |name: &str| known.labels.frames.iter().flat_map(self::names).any(|other| agree(other, name));
+    let stands =
+        |name: &str| known.labels.frames.iter().flat_map(self::thing_names).any(|other| names_agree(other, name));
     let named = |frame: &FrameEvidence, name: &str| {
-        self::names(frame)
+        self::thing_names(frame)
             .chain(frame.perhaps.things.iter().map(|thing| thing.name.as_str()))
-            .any(|other| agree(other, name))
+            .any(|other| names_agree(other, name))
     };
     let was_named = |name: &str| known.captions.frames.iter().any(|frame| named(frame, name));
     let elsewhere = names.things.iter().filter(|name| !stands(name) && !was_named(name)).map(|name| past(name));
-    add(Kind::False, elsewhere.collect(), rng);
+    add(SeededClaimKind::False, elsewhere.collect(), rng);
 
     let sightings =
         known.walk.observations.iter().flat_map(|seen| &seen.looks).flat_map(|look| &look.caption.sightings);
-    let dreamt =
-        sightings.filter(|seen| seen.witness != Witness::Denied && is_landmark(&seen.name) && !stands(&seen.name));
-    add(Kind::Hallucinated, dreamt.map(|seen| past(&seen.name)).collect(), rng);
+    let dreamt = sightings
+        .filter(|seen| seen.witness != WitnessAnswer::Denied && is_landmark(&seen.name) && !stands(&seen.name));
+    add(SeededClaimKind::Hallucinated, dreamt.map(|seen| past(&seen.name)).collect(), rng);
 
-    let at_end = |name: &str| self::names(last).any(|other| agree(other, name)) || named(last_seen, name);
+    let at_end = |name: &str| self::thing_names(last).any(|other| names_agree(other, name)) || named(last_seen, name);
     let wrong = names.things.iter().filter(|name| !at_end(name)).map(|name| stop(name));
-    add(Kind::WrongThing, wrong.collect(), rng);
+    add(SeededClaimKind::WrongThing, wrong.collect(), rng);
     let other = names
         .rooms
         .iter()
         .filter(|room| !last.rooms.is_empty() && !last.rooms.iter().any(|here| same_room(here, room)));
     let others: Vec<&String> = other.collect();
-    add(Kind::WrongRoom, others.choose(rng).map(|room| stop_in(room)).into_iter().collect(), rng);
+    add(SeededClaimKind::WrongRoom, others.choose(rng).map(|room| stop_in(room)).into_iter().collect(), rng);
     made
 }
 
 /// The labelled landmarks in the views that the eye looked at: the frame, the name, and the side unless the thing is ahead.
-fn looked_at(known: &Known) -> Vec<(usize, &str, Option<Side>)> {
+fn looked_at(known: &ClaimedPath) -> Vec<(usize, &str, Option<Side>)> {
     let mut found = Vec::new();
     for (at, (frame, seen)) in known.walk.path.frames.iter().zip(&known.walk.observations).enumerate() {
         for thing in known.labels.frames[at].things.iter().filter(|thing| is_landmark(&thing.name)) {
             let Some(turn_rad) = thing.turn_rad else { continue };
             let is_in_view = seen.looks.iter().any(|look| {
-                let off_rad = look.gaze.heading.turn_to(frame.pose.heading.turned(turn_rad));
+                let off_rad = look.gaze.heading.turn_to(frame.pose.heading.turned_by(turn_rad));
                 off_rad.abs() < look.gaze.horizontal_fov_rad / 2.0
             });
             let side = if turn_rad < 0.0 { Side::Left } else { Side::Right };

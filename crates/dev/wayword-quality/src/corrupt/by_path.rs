@@ -1,10 +1,10 @@
 //! Corruptions that depend only on the path and its labels, not on what the checks recognised in the text.
 
-use super::ABSENT;
+use super::ABSENT_OBJECTS;
 use rand::{Rng, seq::IndexedRandom};
 use wayword_checks::Evidence;
-use wayword_core::{Path, Style};
-use wayword_language::lexicon::agree;
+use wayword_core::{InstructionStyle, Path};
+use wayword_language::lexicon::names_agree;
 
 /// A path has no stairs if its heights differ by less than this, metres.
 const FLAT_M: f64 = 0.4;
@@ -12,7 +12,7 @@ const FLAT_M: f64 = 0.4;
 const SURE_OF_SIDE_DEG: std::ops::Range<f64> = 30.0..150.0;
 
 /// Rooms that replace others. Each has parts of the names of rooms that people could mistake for it.
-const ROOMS: [(&str, &[&str]); 7] = [
+const ROOMS_WITH_ALIKE_NAMES: [(&str, &[&str]); 7] = [
     ("kitchen", &["kitchen", "dining", "bar"]),
     ("bathroom", &["bath", "toilet", "spa"]),
     ("bedroom", &["bed"]),
@@ -23,7 +23,7 @@ const ROOMS: [(&str, &[&str]); 7] = [
 ];
 
 /// Adds a command to take stairs to a path that has none.
-pub(super) fn stairs(text: &str, path: &Path, style: &Style, rng: &mut impl Rng) -> Option<String> {
+pub(super) fn add_stairs(text: &str, path: &Path, style: &InstructionStyle, rng: &mut impl Rng) -> Option<String> {
     let heights = path.frames.iter().map(|frame| frame.pose.position.z);
     let (low, high) = heights.fold((f64::MAX, f64::MIN), |(low, high), z| (low.min(z), high.max(z)));
     let commands = ["Go up the stairs", "Go downstairs", "Climb the stairs", "Walk down the stairs", "Go upstairs"];
@@ -34,7 +34,7 @@ pub(super) fn stairs(text: &str, path: &Path, style: &Style, rng: &mut impl Rng)
 }
 
 /// Adds a phrase at the end of the text with a storey on which the path does not end.
-pub(super) fn floor(text: &str, path: &Path, style: &Style, rng: &mut impl Rng) -> Option<String> {
+pub(super) fn add_wrong_floor(text: &str, path: &Path, style: &InstructionStyle, rng: &mut impl Rng) -> Option<String> {
     let last = path.frames.last()?.level?;
     let others: Vec<u32> = (1..=4).filter(|level| *level != last).collect();
     let says_floor = ["floor", "level", "stairs"].iter().any(|word| text.contains(word));
@@ -43,12 +43,17 @@ pub(super) fn floor(text: &str, path: &Path, style: &Style, rng: &mut impl Rng) 
 }
 
 /// Replaces a room of the path by one in which no frame is.
-pub(super) fn room(text: &str, evidence: &Evidence, style: &Style, rng: &mut impl Rng) -> Option<String> {
+pub(super) fn replace_room(
+    text: &str,
+    evidence: &Evidence,
+    style: &InstructionStyle,
+    rng: &mut impl Rng,
+) -> Option<String> {
     let rooms: Vec<&String> = evidence.frames.iter().flat_map(|frame| &frame.rooms).collect();
     let all_known = evidence.frames.iter().all(|frame| !frame.rooms.is_empty());
     let told: Vec<&&String> = rooms.iter().filter(|room| find_word(text, room).is_some()).collect();
     let name = told.choose(rng).filter(|_| all_known)?;
-    let absent: Vec<&str> = ROOMS
+    let absent: Vec<&str> = ROOMS_WITH_ALIKE_NAMES
         .iter()
         .filter(|(_, alike)| !alike.iter().any(|part| rooms.iter().any(|room| room.contains(part))))
         .map(|(room, _)| *room)
@@ -63,11 +68,16 @@ pub(super) fn room(text: &str, evidence: &Evidence, style: &Style, rng: &mut imp
 }
 
 /// Puts a thing on the wrong side. It must be on the same side in every frame that shows it.
-pub(super) fn side(text: &str, evidence: &Evidence, style: &Style, rng: &mut impl Rng) -> Option<String> {
+pub(super) fn put_on_wrong_side(
+    text: &str,
+    evidence: &Evidence,
+    style: &InstructionStyle,
+    rng: &mut impl Rng,
+) -> Option<String> {
     let things =
         || evidence.frames.iter().enumerate().flat_map(|(at, frame)| frame.things.iter().map(move |thing| (at, thing)));
     let side_of = |name: &str| {
-        let turns = things().filter(|(_, thing)| agree(&thing.name, name)).flat_map(|(at, thing)| {
+        let turns = things().filter(|(_, thing)| names_agree(&thing.name, name)).flat_map(|(at, thing)| {
             let leaving_rad = evidence.moves.get(at).map_or(0.0, |step| step.turn_rad);
             let deg = thing.turn_rad.map_or(0.0, f64::to_degrees);
             [deg, (deg - leaving_rad.to_degrees() + 180.0).rem_euclid(360.0) - 180.0]
@@ -89,19 +99,25 @@ pub(super) fn side(text: &str, evidence: &Evidence, style: &Style, rng: &mut imp
 }
 
 /// Adds a task on an object that no frame shows, in a style that asks for no task.
-pub(super) fn unasked_task(text: &str, evidence: &Evidence, style: &Style, rng: &mut impl Rng) -> Option<String> {
-    let absent: Vec<&str> = ABSENT.into_iter().filter(|name| evidence.frames_with_thing(name).is_empty()).collect();
+pub(super) fn unasked_task(
+    text: &str,
+    evidence: &Evidence,
+    style: &InstructionStyle,
+    rng: &mut impl Rng,
+) -> Option<String> {
+    let absent: Vec<&str> =
+        ABSENT_OBJECTS.into_iter().filter(|name| evidence.frames_with_thing(name).is_empty()).collect();
     let object = absent.choose(rng).filter(|_| !style.constraints.ends_in_task)?;
     at_end(text, &format!("and clean the {object}"), style)
 }
 
-fn at_end(text: &str, words: &str, style: &Style) -> Option<String> {
+fn at_end(text: &str, words: &str, style: &InstructionStyle) -> Option<String> {
     let bare = text.trim_end_matches('.');
     in_form(format!("{bare} {words}{}", &text[bare.len()..]), style)
 }
 
 /// The text, or `None` if the style's limit on length would reject it anyway.
-fn in_form(text: String, style: &Style) -> Option<String> {
+fn in_form(text: String, style: &InstructionStyle) -> Option<String> {
     let words = text.split_whitespace().count();
     style.constraints.fewer_words_than.is_none_or(|limit| words < limit).then_some(text)
 }

@@ -1,22 +1,22 @@
 //! The rooms and objects of a building with their positions, as a platform's labels list them.
 
 use super::{
-    lists::{OBJECTS, ROOMS, under},
-    text::words,
+    lists::{OBJECT_WORDS, ROOM_WORDS, words_under},
+    text::split_words,
 };
 use std::collections::{BTreeMap, BTreeSet};
-use wayword_core::{DVec3, Survey, ViewpointId};
+use wayword_core::{DVec3, ViewpointId, ViewpointSurvey};
 
 /// A building as its labels describe it.
-pub(super) struct Building {
+pub(super) struct LabelledBuilding {
     /// The position of each viewpoint, and the name of its room in lower case.
     viewpoints: BTreeMap<ViewpointId, (DVec3, Option<String>)>,
     /// The positions of objects by their name, which is split into words in the singular.
     things: BTreeMap<Vec<String>, Vec<DVec3>>,
 }
 
-impl Building {
-    pub(super) fn new(survey: &Survey) -> Self {
+impl LabelledBuilding {
+    pub(super) fn new(survey: &ViewpointSurvey) -> Self {
         let mut things: BTreeMap<Vec<String>, Vec<DVec3>> = BTreeMap::new();
         let mut known = BTreeSet::new();
         for viewpoint in survey.viewpoints() {
@@ -24,7 +24,7 @@ impl Building {
                 // A label without a position counts as one object at each viewpoint that sees it.
                 let place = label.position.unwrap_or(viewpoint.position);
                 if known.insert((label.object.clone(), place.to_array().map(f64::to_bits))) {
-                    things.entry(parts(&label.name)).or_default().push(place);
+                    things.entry(singular_words(&label.name)).or_default().push(place);
                 }
             }
         }
@@ -35,24 +35,25 @@ impl Building {
     }
 
     /// The positions of a path's viewpoints. Viewpoints that the building does not have are left out.
-    pub(super) fn places(&self, path: &[ViewpointId]) -> Vec<DVec3> {
+    pub(super) fn viewpoint_positions(&self, path: &[ViewpointId]) -> Vec<DVec3> {
         path.iter().filter_map(|id| Some(self.viewpoints.get(id)?.0)).collect()
     }
 
     /// The positions of all viewpoints in rooms of a kind. The kind is a name in the list of rooms.
-    pub(super) fn rooms(&self, kind: &str) -> Vec<DVec3> {
-        let alike = under(&ROOMS, kind);
+    pub(super) fn room_positions(&self, kind: &str) -> Vec<DVec3> {
+        let alike = words_under(&ROOM_WORDS, kind);
         let is_alike = |room: &Option<String>| room.as_ref().is_some_and(|room| alike.contains(&room.as_str()));
         self.viewpoints.values().filter(|(_, room)| is_alike(room)).map(|(place, _)| *place).collect()
     }
 
     /// The positions of all objects that people could mean by a name. The list of objects gives names that mean the same; for a name that
     /// is not in the list, any label with its last word counts, so that "dining table" may mean every table.
-    pub(super) fn objects(&self, name: &str) -> Vec<DVec3> {
-        let named = parts(name);
+    pub(super) fn object_positions(&self, name: &str) -> Vec<DVec3> {
+        let named = singular_words(name);
         let last = named.last().cloned().into_iter().collect();
-        let alike =
-            OBJECTS.get(name).map_or_else(|| vec![last], |alike| alike.iter().map(|name| parts(name)).collect());
+        let alike = OBJECT_WORDS
+            .get(name)
+            .map_or_else(|| vec![last], |alike| alike.iter().map(|name| singular_words(name)).collect());
         let has = |label: &Vec<String>, part: &Vec<String>| {
             !part.is_empty() && label.windows(part.len()).any(|some| some == part.as_slice())
         };
@@ -67,12 +68,12 @@ impl Building {
 }
 
 /// The words of a name in the singular.
-pub(super) fn parts(name: &str) -> Vec<String> {
-    words(name).into_iter().map(|word| singular(&word.low)).collect()
+pub(super) fn singular_words(name: &str) -> Vec<String> {
+    split_words(name).into_iter().map(|word| to_singular(&word.low)).collect()
 }
 
 /// A noun in the singular, by its ending alone.
-pub(super) fn singular(word: &str) -> String {
+pub(super) fn to_singular(word: &str) -> String {
     if let Some(stem) = word.strip_suffix("ies").filter(|stem| stem.len() > 2) {
         return format!("{stem}y");
     }
@@ -89,7 +90,7 @@ pub(super) fn singular(word: &str) -> String {
 }
 
 /// The plural of a noun.
-pub(super) fn plural(noun: &str) -> String {
+pub(super) fn to_plural(noun: &str) -> String {
     let es = ["s", "x", "ch", "sh"].iter().any(|end| noun.ends_with(end));
     match noun.strip_suffix("lf") {
         Some(stem) => format!("{stem}lves"),
@@ -110,14 +111,14 @@ pub(super) mod tests {
     use wayword_core::SceneId;
     use wayword_run::platforms;
     use wayword_testkit::{SCAN, viewpoint_id};
-    use wayword_world::survey;
+    use wayword_world::survey_scene;
 
     /// The test kit's building: entryway 0, hallway 1, living room 2 and 3, kitchen 4 and 5, stairs 6 and 7, and above
     /// them the hallway 8 and 9, bedroom 10 and 11, bathroom 12, office 13.
-    pub(in super::super) fn made_up_building() -> Building {
-        let building = made_up::Building::new();
-        let platform = platforms::open_named("matterport", Some(&building.data()), None, None).unwrap();
-        Building::new(&survey(platform.as_ref(), &SceneId::new(SCAN).unwrap()).unwrap())
+    pub(in super::super) fn made_up_building() -> LabelledBuilding {
+        let building = made_up::TestBuildingFolder::new();
+        let platform = platforms::open_named("matterport", Some(&building.data_folder()), None, None).unwrap();
+        LabelledBuilding::new(&survey_scene(platform.as_ref(), &SceneId::new(SCAN).unwrap()).unwrap())
     }
 
     pub(in super::super) fn path(places: &[usize]) -> Vec<ViewpointId> {
@@ -127,14 +128,14 @@ pub(super) mod tests {
     #[test]
     fn positions_are_those_of_every_label_that_a_name_could_mean() {
         let building = made_up_building();
-        let start = building.places(&path(&[0]));
-        assert_eq!(building.rooms("kitchen").len(), 2);
-        assert_eq!(building.rooms("hallway").len(), 3);
-        assert!(building.rooms("garage").is_empty());
-        assert!(building.objects("piano").is_empty());
-        let couch_m = nearest_m(&start, &building.objects("couch")).unwrap();
+        let start = building.viewpoint_positions(&path(&[0]));
+        assert_eq!(building.room_positions("kitchen").len(), 2);
+        assert_eq!(building.room_positions("hallway").len(), 3);
+        assert!(building.room_positions("garage").is_empty());
+        assert!(building.object_positions("piano").is_empty());
+        let couch_m = nearest_m(&start, &building.object_positions("couch")).unwrap();
         assert!((4.0..5.0).contains(&couch_m), "{couch_m}");
-        assert_eq!(building.objects("dining table").len(), 3, "every table could be taken for one");
+        assert_eq!(building.object_positions("dining table").len(), 3, "every table could be taken for one");
         assert!(building.has_label(&["coffee".to_owned(), "table".to_owned()]));
         assert_eq!(nearest_m(&start, &[]), None);
     }
@@ -142,10 +143,10 @@ pub(super) mod tests {
     #[test]
     fn singular_and_plural_follow_the_ending_of_a_noun() {
         for (one, many) in [("chair", "chairs"), ("couch", "couches"), ("bookshelf", "bookshelves"), ("box", "boxes")] {
-            assert_eq!(plural(one), many);
+            assert_eq!(to_plural(one), many);
         }
         for (many, one) in [("chairs", "chair"), ("couches", "couch"), ("glass", "glass"), ("pantries", "pantry")] {
-            assert_eq!(singular(many), one);
+            assert_eq!(to_singular(many), one);
         }
     }
 }

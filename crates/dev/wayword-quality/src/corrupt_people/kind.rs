@@ -2,16 +2,16 @@
 
 use super::{
     moved,
-    replaced::{self, Whereabouts},
-    told::Told,
+    replaced::{self, ReplacementDistance},
+    told::CorruptibleText,
     turns,
 };
-use crate::key::Edit;
+use crate::key::WordEdit;
 use rand::{Rng, seq::IndexedRandom};
 
 /// A way to make a person's text wrong.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum PeopleCorruptionKind {
     /// A left turn becomes a right turn, or the other way round.
     TurnFlipped,
     /// A climb becomes a descent, or the other way round.
@@ -36,7 +36,7 @@ pub(super) enum Kind {
     OtherPath,
 }
 
-impl Kind {
+impl PeopleCorruptionKind {
     pub(super) const ALL: [Self; 11] = [
         Self::TurnFlipped,
         Self::ClimbFlipped,
@@ -69,19 +69,19 @@ impl Kind {
     }
 
     /// Draws the edits that corrupt a text; `None` where it has no words that this kind can change.
-    pub(super) fn edits(self, told: &Told<'_>, rng: &mut impl Rng) -> Option<Vec<Edit>> {
-        let one = |edits: Vec<Edit>, rng: &mut _| Some(vec![edits.choose(rng)?.clone()]);
+    pub(super) fn draw_edits(self, told: &CorruptibleText<'_>, rng: &mut impl Rng) -> Option<Vec<WordEdit>> {
+        let one = |edits: Vec<WordEdit>, rng: &mut _| Some(vec![edits.choose(rng)?.clone()]);
         match self {
-            Self::TurnFlipped => one(turns::turns(told.text, &told.words), rng),
-            Self::ClimbFlipped => one(turns::climbs(told.text, &told.words), rng),
-            Self::SentenceTwice => moved::twice(told, rng),
-            Self::RoomLacking => replaced::room(told, Whereabouts::Lacking, rng),
-            Self::RoomElsewhere => replaced::room(told, Whereabouts::Far, rng),
-            Self::ObjectLacking => replaced::object(told, Whereabouts::Lacking, rng),
-            Self::ObjectFar => replaced::object(told, Whereabouts::Far, rng),
-            Self::ObjectNear => replaced::object(told, Whereabouts::Near, rng),
-            Self::LandmarksSwapped => moved::swapped(told, rng),
-            Self::StopElsewhere => replaced::stop(told, rng),
+            Self::TurnFlipped => one(turns::flipped_turns(told.text, &told.words), rng),
+            Self::ClimbFlipped => one(turns::flipped_climbs(told.text, &told.words), rng),
+            Self::SentenceTwice => moved::repeat_sentence(told, rng),
+            Self::RoomLacking => replaced::replace_room(told, ReplacementDistance::Lacking, rng),
+            Self::RoomElsewhere => replaced::replace_room(told, ReplacementDistance::Far, rng),
+            Self::ObjectLacking => replaced::replace_object(told, ReplacementDistance::Lacking, rng),
+            Self::ObjectFar => replaced::replace_object(told, ReplacementDistance::Far, rng),
+            Self::ObjectNear => replaced::replace_object(told, ReplacementDistance::Near, rng),
+            Self::LandmarksSwapped => moved::swap_mentions(told, rng),
+            Self::StopElsewhere => replaced::replace_stop(told, rng),
             Self::OtherPath => moved::other_path(told, rng),
         }
     }

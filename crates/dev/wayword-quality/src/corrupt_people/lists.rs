@@ -2,15 +2,19 @@
 
 use std::{collections::BTreeMap, sync::LazyLock};
 
-type Words = BTreeMap<&'static str, Vec<&'static str>>;
+type NamedWordLists = BTreeMap<&'static str, Vec<&'static str>>;
 
-pub(super) static MOTIONS: LazyLock<Words> = LazyLock::new(|| words(include_str!("lists/motions.txt")));
-pub(super) static SMALL_WORDS: LazyLock<Words> = LazyLock::new(|| words(include_str!("lists/small_words.txt")));
-pub(super) static ROOMS: LazyLock<Words> = LazyLock::new(|| words(include_str!("lists/rooms.txt")));
-pub(super) static OBJECTS: LazyLock<Words> = LazyLock::new(|| words(include_str!("lists/objects.txt")));
+pub(super) static MOTION_WORDS: LazyLock<NamedWordLists> =
+    LazyLock::new(|| parse_word_lists(include_str!("lists/motions.txt")));
+pub(super) static SMALL_WORDS: LazyLock<NamedWordLists> =
+    LazyLock::new(|| parse_word_lists(include_str!("lists/small_words.txt")));
+pub(super) static ROOM_WORDS: LazyLock<NamedWordLists> =
+    LazyLock::new(|| parse_word_lists(include_str!("lists/rooms.txt")));
+pub(super) static OBJECT_WORDS: LazyLock<NamedWordLists> =
+    LazyLock::new(|| parse_word_lists(include_str!("lists/objects.txt")));
 
 /// The lines of a list: a name, a colon, and its words.
-fn words(list: &'static str) -> Words {
+fn parse_word_lists(list: &'static str) -> NamedWordLists {
     let lines = list.lines().filter(|line| !line.starts_with('#'));
     let line = |line: &'static str| {
         let (name, words) = line.split_once(':')?;
@@ -20,13 +24,13 @@ fn words(list: &'static str) -> Words {
 }
 
 /// The words of a list under a name.
-pub(super) fn under<'l>(list: &'l Words, name: &str) -> &'l [&'static str] {
+pub(super) fn words_under<'l>(list: &'l NamedWordLists, name: &str) -> &'l [&'static str] {
     list.get(name).map_or(&[], |words| words.as_slice())
 }
 
 /// Whether a list has a word under a name.
-pub(super) fn has(list: &Words, name: &str, word: &str) -> bool {
-    under(list, name).contains(&word)
+pub(super) fn has_word(list: &NamedWordLists, name: &str, word: &str) -> bool {
+    words_under(list, name).contains(&word)
 }
 
 #[cfg(test)]
@@ -36,7 +40,7 @@ mod tests {
 
     #[test]
     fn every_line_of_a_list_is_a_name_with_its_words() {
-        for (list, least) in [(&*MOTIONS, 13), (&*SMALL_WORDS, 5), (&*ROOMS, 18), (&*OBJECTS, 60)] {
+        for (list, least) in [(&*MOTION_WORDS, 13), (&*SMALL_WORDS, 5), (&*ROOM_WORDS, 18), (&*OBJECT_WORDS, 60)] {
             assert!(list.len() >= least, "{}", list.len());
             for (name, words) in list {
                 assert!(words.iter().all(|word| !word.is_empty() && *word == word.to_lowercase()), "{name}: {words:?}");

@@ -14,12 +14,12 @@ mod told;
 mod turns;
 
 use crate::{
-    judged::{item, write_items},
-    key::{Corruption, Key, edited},
+    judged::{text_item, write_items},
+    key::{CorruptionKey, TextCorruption, apply_edits},
 };
-use building::{Building, nearest_m};
+use building::{LabelledBuilding, nearest_m};
 use clap::{Args, builder::PossibleValuesParser};
-use kind::Kind;
+use kind::PeopleCorruptionKind;
 use rand::{
     Rng,
     seq::{IteratorRandom, SliceRandom},
@@ -29,22 +29,22 @@ use std::{
     collections::{BTreeMap, BTreeSet},
     path::PathBuf,
 };
-use text::words;
-use told::Told;
-use wayword_core::{Platform, SceneId, rng};
-use wayword_experiments::episodes::{cluster, read};
+use text::split_words;
+use told::CorruptibleText;
+use wayword_core::{Platform, SceneId, seeded_rng};
+use wayword_experiments::episodes::{episode_path_name, read_episodes};
 use wayword_formats::Episode;
-use wayword_run::{error::Error, output::Output, platforms};
-use wayword_world::survey;
+use wayword_run::{error::CommandError, output::CommandOutput, platforms};
+use wayword_world::survey_scene;
 
-pub(crate) use text::around;
+pub(crate) use text::clauses_around;
 
 /// Another path's text counts as wrong only if its goal is at least this far from the goal of the own path, metres.
 const OTHER_GOAL_M: f64 = 3.0;
 
 /// The flags of `corrupt-people`.
 #[derive(Debug, Args)]
-pub struct Flags {
+pub struct CorruptPeopleArgs {
     /// Folder of Matterport3D's and REVERIE's data.
     #[arg(long)]
     data: PathBuf,
@@ -55,7 +55,7 @@ pub struct Flags {
     #[arg(long)]
     scan: Vec<String>,
     /// Kinds of corruption. May be given several times.
-    #[arg(long, value_parser = PossibleValuesParser::new(["all"].into_iter().chain(Kind::ALL.map(Kind::name))), default_value = "all")]
+    #[arg(long, value_parser = PossibleValuesParser::new(["all"].into_iter().chain(PeopleCorruptionKind::ALL.map(PeopleCorruptionKind::name))), default_value = "all")]
     kind: Vec<String>,
     /// Most texts of each kind.
     #[arg(long, default_value_t = 300)]
@@ -69,44 +69,44 @@ pub struct Flags {
 }
 
 /// A text with one of its turns flipped; `None` where it commands no turn.
-pub(crate) fn turned(text: &str, rng: &mut impl Rng) -> Option<String> {
-    let edits = turns::turns(text, &words(text));
+pub(crate) fn flip_one_turn(text: &str, rng: &mut impl Rng) -> Option<String> {
+    let edits = turns::flipped_turns(text, &split_words(text));
     let edit = edits.into_iter().choose(rng)?;
-    Some(edited(text, vec![edit])?.0)
+    Some(apply_edits(text, vec![edit])?.0)
 }
 
-pub fn write(flags: &Flags, output: &Output) -> Result<(), Error> {
+pub fn write_corruptions(flags: &CorruptPeopleArgs, output: &CommandOutput) -> Result<(), CommandError> {
     let platform = platforms::open_named("matterport", Some(&flags.data), None, None)?;
-    let mut episodes = read(&flags.episodes, platform.as_ref())?;
+    let mut episodes = read_episodes(&flags.episodes, platform.as_ref())?;
     episodes.retain(|episode| flags.scan.is_empty() || flags.scan.iter().any(|scan| scan == episode.scene.as_str()));
-    let known: BTreeSet<SceneId> = platform.scenes()?.into_iter().collect();
+    let known: BTreeSet<SceneId> = platform.list_scenes()?.into_iter().collect();
     episodes.retain(|episode| known.contains(&episode.scene));
-    let is_asked = |kind: &Kind| flags.kind.iter().any(|name| name == "all" || name == kind.name());
-    let kinds: Vec<Kind> = Kind::ALL.into_iter().filter(is_asked).collect();
-    let buildings = buildings(&episodes, platform.as_ref(), output)?;
-    let (items, corruptions) = corrupted(&episodes, &buildings, &kinds, flags.count, flags.seed);
+    let is_asked = |kind: &PeopleCorruptionKind| flags.kind.iter().any(|name| name == "all" || name == kind.name());
+    let kinds: Vec<PeopleCorruptionKind> = PeopleCorruptionKind::ALL.into_iter().filter(is_asked).collect();
+    let buildings = survey_buildings(&episodes, platform.as_ref(), output)?;
+    let (items, corruptions) = corrupt_texts(&episodes, &buildings, &kinds, flags.count, flags.seed);
     if items.is_empty() {
         let problem = format!("{}: no text of these buildings can be changed in these ways", flags.episodes.display());
-        return Err(Error::usage(problem, "give other kinds, another --scan or another file"));
+        return Err(CommandError::usage(problem, "give other kinds, another --scan or another file"));
     }
     write_items(&flags.out, &items)?;
-    let lines = table(&kinds, &corruptions);
-    Key::new(flags.seed, corruptions).write(&Key::beside(&flags.out))?;
-    output.data(&(), lines.join("\n"));
+    let lines = kind_count_lines(&kinds, &corruptions);
+    CorruptionKey::new(flags.seed, corruptions).write(&CorruptionKey::path_for_texts(&flags.out))?;
+    output.print_result(&(), lines.join("\n"));
     Ok(())
 }
 
-fn buildings(
+fn survey_buildings(
     episodes: &[Episode],
     platform: &dyn Platform,
-    output: &Output,
-) -> Result<BTreeMap<SceneId, Building>, Error> {
+    output: &CommandOutput,
+) -> Result<BTreeMap<SceneId, LabelledBuilding>, CommandError> {
     let scenes: BTreeSet<&SceneId> = episodes.iter().map(|episode| &episode.scene).collect();
-    let bar = output.progress(scenes.len(), "buildings");
+    let bar = output.progress_bar(scenes.len(), "buildings");
     let known = scenes.into_par_iter().map(|scene| {
-        let building = Building::new(&survey(platform, scene)?);
+        let building = LabelledBuilding::new(&survey_scene(platform, scene)?);
         bar.inc(1);
-        Ok::<_, Error>((scene.clone(), building))
+        Ok::<_, CommandError>((scene.clone(), building))
     });
     let known = known.collect();
     bar.finish_and_clear();
@@ -116,38 +116,42 @@ fn buildings(
 /// The corrupted texts, each as an item of its own, and the changes in each.
 ///
 /// For each kind, all texts are tried in a random order until `count` of them could be corrupted.
-fn corrupted(
+fn corrupt_texts(
     episodes: &[Episode],
-    buildings: &BTreeMap<SceneId, Building>,
-    kinds: &[Kind],
+    buildings: &BTreeMap<SceneId, LabelledBuilding>,
+    kinds: &[PeopleCorruptionKind],
     count: usize,
     seed: u64,
-) -> (Vec<Episode>, Vec<Corruption>) {
+) -> (Vec<Episode>, Vec<TextCorruption>) {
     let texts = episodes.iter().flat_map(|episode| (0..episode.instructions.len()).map(move |place| (episode, place)));
     let texts: Vec<(&Episode, usize)> = texts.collect();
     let (mut items, mut corruptions) = (Vec::new(), Vec::new());
     for kind in kinds.iter().copied() {
         let mut drawn = texts.clone();
-        drawn.shuffle(&mut rng(seed, &["corrupt people", kind.name()]));
+        drawn.shuffle(&mut seeded_rng(seed, &["corrupt people", kind.name()]));
         let mut made = 0;
         for (episode, place) in drawn {
             if made == count {
                 break;
             }
             let Some(building) = buildings.get(&episode.scene) else { continue };
-            let others = if kind == Kind::OtherPath { others(episode, episodes, building) } else { Vec::new() };
+            let others = if kind == PeopleCorruptionKind::OtherPath {
+                texts_of_other_paths(episode, episodes, building)
+            } else {
+                Vec::new()
+            };
             let text = episode.instructions[place].as_str();
-            let path = building.places(&episode.viewpoints);
-            let told = Told { text, words: words(text), path, building, others: &others };
+            let path = building.viewpoint_positions(&episode.viewpoints);
+            let told = CorruptibleText { text, words: split_words(text), path, building, others: &others };
             let purpose = ["corrupt people", kind.name(), &episode.id, &place.to_string()];
-            let edits = kind.edits(&told, &mut rng(seed, &purpose));
-            let Some((text, changes)) = edits.and_then(|edits| edited(text, edits)) else { continue };
-            let item = item(items.len(), episode, &text);
-            corruptions.push(Corruption {
+            let edits = kind.draw_edits(&told, &mut seeded_rng(seed, &purpose));
+            let Some((text, changes)) = edits.and_then(|edits| apply_edits(text, edits)) else { continue };
+            let item = text_item(items.len(), episode, &text);
+            corruptions.push(TextCorruption {
                 item: item.target_object.as_ref().map_or(item.id.clone(), |object| format!("{}_{object}", item.id)),
                 of: episode.id.clone(),
                 instruction: place,
-                path: cluster(episode),
+                path: episode_path_name(episode),
                 kind: kind.name().to_owned(),
                 changes,
             });
@@ -159,8 +163,10 @@ fn corrupted(
 }
 
 /// The texts of all paths of the same building with another goal.
-fn others<'e>(of: &Episode, episodes: &'e [Episode], building: &Building) -> Vec<&'e str> {
-    let goal = |episode: &Episode| building.places(&episode.viewpoints[episode.viewpoints.len().saturating_sub(1)..]);
+fn texts_of_other_paths<'e>(of: &Episode, episodes: &'e [Episode], building: &LabelledBuilding) -> Vec<&'e str> {
+    let goal = |episode: &Episode| {
+        building.viewpoint_positions(&episode.viewpoints[episode.viewpoints.len().saturating_sub(1)..])
+    };
     let own = goal(of);
     let is_other = |episode: &&Episode| {
         episode.scene == of.scene && nearest_m(&own, &goal(episode)).is_some_and(|off_m| off_m >= OTHER_GOAL_M)
@@ -169,8 +175,9 @@ fn others<'e>(of: &Episode, episodes: &'e [Episode], building: &Building) -> Vec
     others.flat_map(|episode| episode.instructions.iter().map(String::as_str)).collect()
 }
 
-fn table(kinds: &[Kind], corruptions: &[Corruption]) -> Vec<String> {
-    let count = |kind: &Kind| corruptions.iter().filter(|corruption| corruption.kind == kind.name()).count();
+fn kind_count_lines(kinds: &[PeopleCorruptionKind], corruptions: &[TextCorruption]) -> Vec<String> {
+    let count =
+        |kind: &PeopleCorruptionKind| corruptions.iter().filter(|corruption| corruption.kind == kind.name()).count();
     kinds.iter().map(|kind| format!("{:<18} {:>5}", kind.name(), count(kind))).collect()
 }
 

@@ -1,9 +1,9 @@
 //! Finds the rooms and objects that a text names, by this generator's own word lists and the building's labels.
 
 use super::{
-    building::{Building, parts, singular},
-    lists::{OBJECTS, ROOMS, SMALL_WORDS, has},
-    text::Word,
+    building::{LabelledBuilding, singular_words, to_singular},
+    lists::{OBJECT_WORDS, ROOM_WORDS, SMALL_WORDS, has_word},
+    text::PlainWord,
 };
 use wayword_core::DVec3;
 
@@ -12,7 +12,7 @@ const LONGEST_NAME: usize = 3;
 
 /// A room or an object that a text names.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Named {
+pub(super) struct BuildingMention {
     /// Byte range of the name, with the adjectives that belong to it, without its article.
     pub(super) span: [usize; 2],
     /// The article "a" or "an" before it.
@@ -26,15 +26,18 @@ pub(super) struct Named {
 }
 
 /// The names in a text, in its order. At each word the longest name counts.
-pub(super) fn names(words: &[Word], building: &Building) -> Vec<Named> {
+pub(super) fn find_mentions(words: &[PlainWord], building: &LabelledBuilding) -> Vec<BuildingMention> {
     let mut names = Vec::new();
     let mut at = 0;
     while at < words.len() {
         let longest = (1..=LONGEST_NAME).rev().find_map(|count| {
             let part = words.get(at..at + count)?;
             let is_one = part[1..].iter().all(|word| word.is_joined) && ends_name(words, at + count);
-            let named =
-                if is_one { room(words, at, count).or_else(|| object(words, at, count, building)) } else { None };
+            let named = if is_one {
+                room_mention(words, at, count).or_else(|| object_mention(words, at, count, building))
+            } else {
+                None
+            };
             named.map(|named| (count, named))
         });
         names.extend(longest.clone().map(|(_, named)| named));
@@ -44,49 +47,66 @@ pub(super) fn names(words: &[Word], building: &Building) -> Vec<Named> {
 }
 
 /// Whether a name may end before this word: another noun would make it a part of a longer name.
-fn ends_name(words: &[Word], next: usize) -> bool {
-    words.get(next).is_none_or(|word| !word.is_joined || has(&SMALL_WORDS, "after a name", &word.low))
+fn ends_name(words: &[PlainWord], next: usize) -> bool {
+    words.get(next).is_none_or(|word| !word.is_joined || has_word(&SMALL_WORDS, "after a name", &word.low))
 }
 
-fn joined_name(words: &[Word]) -> String {
+fn joined_name(words: &[PlainWord]) -> String {
     words.iter().map(|word| word.low.as_str()).collect::<Vec<_>>().join(" ")
 }
 
 /// The kind of room that a name means: its key in the list of rooms.
 fn kind_of(name: &str) -> Option<&'static str> {
     // A toilet is a thing where a text names one, and a room where a platform does.
-    let mut kinds = ROOMS.iter().filter(|(kind, _)| !kind.ends_with("stairs"));
+    let mut kinds = ROOM_WORDS.iter().filter(|(kind, _)| !kind.ends_with("stairs"));
     kinds.find(|(_, names)| name != "toilet" && names.contains(&name)).map(|(kind, _)| *kind)
 }
 
-fn room(words: &[Word], at: usize, count: usize) -> Option<Named> {
+fn room_mention(words: &[PlainWord], at: usize, count: usize) -> Option<BuildingMention> {
     let kind = kind_of(&joined_name(&words[at..at + count]))?;
     let mut first = at;
-    while words[first].is_joined && has(&SMALL_WORDS, "room modifiers", &words[first - 1].low) {
+    while words[first].is_joined && has_word(&SMALL_WORDS, "room modifiers", &words[first - 1].low) {
         first -= 1;
     }
     let span = [words[first].span[0], words[at + count - 1].span[1]];
-    Some(Named { span, article: article(words, first), is_room: true, name: kind.to_owned(), is_plural: false })
+    Some(BuildingMention {
+        span,
+        article: article_before(words, first),
+        is_room: true,
+        name: kind.to_owned(),
+        is_plural: false,
+    })
 }
 
-fn object(words: &[Word], at: usize, count: usize, building: &Building) -> Option<Named> {
+fn object_mention(
+    words: &[PlainWord],
+    at: usize,
+    count: usize,
+    building: &LabelledBuilding,
+) -> Option<BuildingMention> {
     let name = joined_name(&words[at..at + count]);
-    let one = parts(&name);
+    let one = singular_words(&name);
     let named = one.join(" ");
-    let in_list = OBJECTS.keys().find(|object| **object == named).map(|object| (*object).to_owned());
+    let in_list = OBJECT_WORDS.keys().find(|object| **object == named).map(|object| (*object).to_owned());
     let is_known = in_list.is_some() || building.has_label(&one);
-    let is_ignored = has(&SMALL_WORDS, "ignored", &named) || has(&SMALL_WORDS, "ignored", &name);
+    let is_ignored = has_word(&SMALL_WORDS, "ignored", &named) || has_word(&SMALL_WORDS, "ignored", &name);
     if !is_known || is_ignored || kind_of(&named).is_some() || !is_determined(words, at) {
         return None;
     }
     let last = &words[at + count - 1];
     let span = [words[at].span[0], last.span[1]];
-    let is_plural = singular(&last.low) != last.low;
-    Some(Named { span, article: article(words, at), is_room: false, name: in_list.unwrap_or(named), is_plural })
+    let is_plural = to_singular(&last.low) != last.low;
+    Some(BuildingMention {
+        span,
+        article: article_before(words, at),
+        is_room: false,
+        name: in_list.unwrap_or(named),
+        is_plural,
+    })
 }
 
 /// Whether a determiner comes before a name, with at most two adjectives between them.
-fn is_determined(words: &[Word], at: usize) -> bool {
+fn is_determined(words: &[PlainWord], at: usize) -> bool {
     let mut at = at;
     for _ in 0..3 {
         if at == 0 || !words[at].is_joined {
@@ -94,38 +114,38 @@ fn is_determined(words: &[Word], at: usize) -> bool {
         }
         at -= 1;
         let word = words[at].low.as_str();
-        if has(&SMALL_WORDS, "determiners", word) {
+        if has_word(&SMALL_WORDS, "determiners", word) {
             return true;
         }
         // "The kitchen table" is not any table.
-        if kind_of(word).is_some() || has(&SMALL_WORDS, "after a name", word) {
+        if kind_of(word).is_some() || has_word(&SMALL_WORDS, "after a name", word) {
             return false;
         }
     }
     false
 }
 
-fn article(words: &[Word], at: usize) -> Option<[usize; 2]> {
+fn article_before(words: &[PlainWord], at: usize) -> Option<[usize; 2]> {
     let before = words.get(at.checked_sub(1)?).filter(|_| words[at].is_joined)?;
     matches!(before.low.as_str(), "a" | "an").then_some(before.span)
 }
 
-impl Named {
+impl BuildingMention {
     /// The positions of all rooms or objects of the building that the name may mean, metres.
-    pub(super) fn places(&self, building: &Building) -> Vec<DVec3> {
-        if self.is_room { building.rooms(&self.name) } else { building.objects(&self.name) }
+    pub(super) fn possible_positions(&self, building: &LabelledBuilding) -> Vec<DVec3> {
+        if self.is_room { building.room_positions(&self.name) } else { building.object_positions(&self.name) }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::{
-        super::{building::tests::made_up_building, text::words},
+        super::{building::tests::made_up_building, text::split_words},
         *,
     };
 
     fn told(text: &str) -> Vec<(String, String)> {
-        let names = names(&words(text), &made_up_building());
+        let names = find_mentions(&split_words(text), &made_up_building());
         names.into_iter().map(|named| (text[named.span[0]..named.span[1]].to_owned(), named.name)).collect()
     }
 
@@ -159,7 +179,7 @@ mod tests {
     #[test]
     fn names_have_their_article_and_their_number() {
         let text = "Pass an old mirror, the towels and a bench";
-        let names = names(&words(text), &made_up_building());
+        let names = find_mentions(&split_words(text), &made_up_building());
         let told: Vec<_> = names.iter().map(|named| (named.article.is_some(), named.is_plural)).collect();
         assert_eq!(told, [(false, false), (false, true), (true, false)]);
     }

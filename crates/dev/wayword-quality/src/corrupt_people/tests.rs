@@ -1,34 +1,37 @@
 use super::*;
-use crate::{key::undone, made_up};
+use crate::{key::undo_changes, made_up};
 use clap::Parser;
 use wayword_testkit::SCAN;
 
 #[derive(Parser)]
 struct Line {
     #[command(flatten)]
-    flags: Flags,
+    flags: CorruptPeopleArgs,
 }
 
 /// The corrupted texts of the test kit's building, with their key.
-fn written(building: &made_up::Building, more: &[&str]) -> (Vec<Episode>, Key) {
+fn written(building: &made_up::TestBuildingFolder, more: &[&str]) -> (Vec<Episode>, CorruptionKey) {
     let out = write_for(building, more).unwrap();
-    (wayword_formats::read(&out).unwrap(), Key::read(&Key::beside(&out)).unwrap())
+    (
+        wayword_formats::read_any_format(&out).unwrap(),
+        CorruptionKey::read(&CorruptionKey::path_for_texts(&out)).unwrap(),
+    )
 }
 
-fn write_for(building: &made_up::Building, more: &[&str]) -> Result<PathBuf, Error> {
-    let out = building.data().join("corrupted.json");
-    let (data, episodes) = (building.data(), building.data().join("r2r/R2R_val_seen.json"));
+fn write_for(building: &made_up::TestBuildingFolder, more: &[&str]) -> Result<PathBuf, CommandError> {
+    let out = building.data_folder().join("corrupted.json");
+    let (data, episodes) = (building.data_folder(), building.data_folder().join("r2r/R2R_val_seen.json"));
     let mut words = vec!["corrupt-people".into(), "--data".into(), data, "--episodes".into(), episodes];
     words.extend(["--out".into(), out.clone()]);
     words.extend(more.iter().map(PathBuf::from));
-    write(&Line::try_parse_from(words).unwrap().flags, &Output::new(true, true)).map(|()| out)
+    write_corruptions(&Line::try_parse_from(words).unwrap().flags, &CommandOutput::new(true, true)).map(|()| out)
 }
 
 #[test]
 fn the_key_turns_every_corrupted_text_back_into_its_original() {
-    let building = made_up::Building::new();
+    let building = made_up::TestBuildingFolder::new();
     let (items, key) = written(&building, &["--count", "6"]);
-    let originals = wayword_formats::read(&building.data().join("r2r/R2R_val_seen.json")).unwrap();
+    let originals = wayword_formats::read_any_format(&building.data_folder().join("r2r/R2R_val_seen.json")).unwrap();
     assert_eq!(items.len(), key.corruptions.len());
     let kinds: BTreeSet<&str> = key.corruptions.iter().map(|corruption| corruption.kind.as_str()).collect();
     assert!(kinds.len() >= 10, "{kinds:?}");
@@ -36,7 +39,7 @@ fn the_key_turns_every_corrupted_text_back_into_its_original() {
         assert_eq!(item.id, corruption.item);
         let original = originals.iter().find(|original| original.id == corruption.of).unwrap();
         assert_eq!((&item.viewpoints, item.start_heading), (&original.viewpoints, original.start_heading));
-        let (was, _) = undone(&item.instructions[0], &corruption.changes).unwrap();
+        let (was, _) = undo_changes(&item.instructions[0], &corruption.changes).unwrap();
         assert_eq!(was, original.instructions[corruption.instruction]);
         assert_ne!(was, item.instructions[0], "{corruption:?}");
         assert_eq!(corruption.path, format!("{SCAN}/{}", original.path_id));
@@ -45,7 +48,7 @@ fn the_key_turns_every_corrupted_text_back_into_its_original() {
 
 #[test]
 fn a_kind_has_the_same_texts_whichever_other_kinds_are_asked_for() {
-    let building = made_up::Building::new();
+    let building = made_up::TestBuildingFolder::new();
     let texts = |more: &[&str]| -> Vec<String> {
         let (items, key) = written(&building, more);
         let of_kind =
@@ -60,8 +63,8 @@ fn a_kind_has_the_same_texts_whichever_other_kinds_are_asked_for() {
 
 #[test]
 fn a_file_without_texts_is_not_written() {
-    let building = made_up::Building::new();
+    let building = made_up::TestBuildingFolder::new();
     let refusal = write_for(&building, &["--scan", "otherHouse"]).unwrap_err().to_string();
     assert!(refusal.contains("no text of these buildings"), "{refusal}");
-    assert!(!building.data().join("corrupted.json").exists());
+    assert!(!building.data_folder().join("corrupted.json").exists());
 }

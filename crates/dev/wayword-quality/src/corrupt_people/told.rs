@@ -1,15 +1,15 @@
 //! The text of a person, together with what the generator needs to corrupt it: its words, its path and its building.
 
-use super::{building::Building, text::Word};
+use super::{building::LabelledBuilding, text::PlainWord};
 use wayword_core::DVec3;
 
 /// A text with its words, its path and its building.
-pub(super) struct Told<'a> {
+pub(super) struct CorruptibleText<'a> {
     pub(super) text: &'a str,
-    pub(super) words: Vec<Word>,
+    pub(super) words: Vec<PlainWord>,
     /// Positions of the path's viewpoints, metres, in the scene's coordinates.
     pub(super) path: Vec<DVec3>,
-    pub(super) building: &'a Building,
+    pub(super) building: &'a LabelledBuilding,
     /// Texts of other paths of the building.
     pub(super) others: &'a [&'a str],
 }

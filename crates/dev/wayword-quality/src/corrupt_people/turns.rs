@@ -1,54 +1,54 @@
 //! Finds the turns and climbs that a text commands, and flips them: left to right, up to down.
 
 use super::{
-    lists::{MOTIONS, has},
-    text::Word,
+    lists::{MOTION_WORDS, has_word},
+    text::PlainWord,
 };
-use crate::key::Edit;
+use crate::key::WordEdit;
 
 /// Most words between a verb and its side.
-const BETWEEN: usize = 4;
+const MAX_WORDS_BEFORE_SIDE: usize = 4;
 
 /// An edit for every turn of a text that flips its side. A side of a thing ("the door on the left") is no turn.
-pub(super) fn turns(text: &str, words: &[Word]) -> Vec<Edit> {
+pub(super) fn flipped_turns(text: &str, words: &[PlainWord]) -> Vec<WordEdit> {
     let sides = words.iter().enumerate().filter(|(at, _)| is_turn(words, *at));
-    sides.filter_map(|(_, word)| flipped(text, word, &[("left", "right")])).collect()
+    sides.filter_map(|(_, word)| flip_word(text, word, &[("left", "right")])).collect()
 }
 
-fn is_turn(words: &[Word], at: usize) -> bool {
+fn is_turn(words: &[PlainWord], at: usize) -> bool {
     let word = &words[at];
     if !matches!(word.low.as_str(), "left" | "right") {
         return false;
     }
     let next = words.get(at + 1).filter(|next| next.is_joined).map(|next| next.low.as_str());
-    let may_follow = |list: &str| next.is_none_or(|next| has(&MOTIONS, list, next));
-    let verb = before(words, at, "between", BETWEEN);
-    let is = |list: &str| verb.is_some_and(|verb| has(&MOTIONS, list, verb));
+    let may_follow = |list: &str| next.is_none_or(|next| has_word(&MOTION_WORDS, list, next));
+    let verb = word_before(words, at, "between", MAX_WORDS_BEFORE_SIDE);
+    let is = |list: &str| verb.is_some_and(|verb| has_word(&MOTION_WORDS, list, verb));
     // "Left at the sofa."
-    let is_bare = || starts_clause(words, at) && next.is_some_and(|next| has(&MOTIONS, "after turn", next));
+    let is_bare = || starts_clause(words, at) && next.is_some_and(|next| has_word(&MOTION_WORDS, "after turn", next));
     let turns = is("turn verbs") || is("take verbs");
     turns && may_follow("after turn") || is("walk verbs") && may_follow("after walk") || is_bare()
 }
 
 /// The nearest word before `at` that is not in `list`, at most `most` words of the list further back. A mark ends the search.
-fn before<'w>(words: &'w [Word], at: usize, list: &str, most: usize) -> Option<&'w str> {
+fn word_before<'w>(words: &'w [PlainWord], at: usize, list: &str, most: usize) -> Option<&'w str> {
     let mut at = at;
     for _ in 0..=most {
         let previous = words.get(at.checked_sub(1)?).filter(|_| words[at].is_joined)?;
         at -= 1;
-        if !has(&MOTIONS, list, &previous.low) {
+        if !has_word(&MOTION_WORDS, list, &previous.low) {
             return Some(&previous.low);
         }
     }
     None
 }
 
-fn starts_clause(words: &[Word], at: usize) -> bool {
+fn starts_clause(words: &[PlainWord], at: usize) -> bool {
     !words[at].is_joined || matches!(words[at - 1].low.as_str(), "then" | "and")
 }
 
 /// An edit for every climb of a text that flips its direction. "The stairs leading down" is no climb.
-pub(super) fn climbs(text: &str, words: &[Word]) -> Vec<Edit> {
+pub(super) fn flipped_climbs(text: &str, words: &[PlainWord]) -> Vec<WordEdit> {
     let climbing = words.iter().enumerate().filter(|(at, _)| is_climb(words, *at)).map(|(_, word)| word);
     let pairs = [
         ("up", "down"),
@@ -57,37 +57,38 @@ pub(super) fn climbs(text: &str, words: &[Word]) -> Vec<Edit> {
         ("ascending", "descending"),
         ("climb", "descend"),
     ];
-    climbing.filter_map(|word| flipped(text, word, &pairs)).collect()
+    climbing.filter_map(|word| flip_word(text, word, &pairs)).collect()
 }
 
-fn is_climb(words: &[Word], at: usize) -> bool {
-    let is_verb = |before: Option<&str>| before.is_some_and(|word| has(&MOTIONS, "climb verbs", word));
+fn is_climb(words: &[PlainWord], at: usize) -> bool {
+    let is_verb = |before: Option<&str>| before.is_some_and(|word| has_word(&MOTION_WORDS, "climb verbs", word));
     match words[at].low.as_str() {
         "up" | "down" => {
-            let leads = is_verb(before(words, at, "climb adverbs", 3)) && stairs_after(words, at);
+            let leads = is_verb(word_before(words, at, "climb adverbs", 3)) && stairs_after(words, at);
             // "Take the stairs up."
             let joined = |at: usize| words.get(at).filter(|word| word.is_joined);
             let ends = at >= 1
                 && joined(at).is_some()
-                && has(&MOTIONS, "stairs", &words[at - 1].low)
-                && before(words, at - 1, "before stairs", 3).is_some_and(|word| has(&MOTIONS, "use verbs", word));
+                && has_word(&MOTION_WORDS, "stairs", &words[at - 1].low)
+                && word_before(words, at - 1, "before stairs", 3)
+                    .is_some_and(|word| has_word(&MOTION_WORDS, "use verbs", word));
             leads || ends
         }
-        "upstairs" | "downstairs" => is_verb(before(words, at, "climb adverbs", 3)),
+        "upstairs" | "downstairs" => is_verb(word_before(words, at, "climb adverbs", 3)),
         "ascend" | "descend" | "ascending" | "descending" | "climb" => stairs_after(words, at),
         _ => false,
     }
 }
 
 /// Whether stairs follow, with only words before them that describe stairs.
-fn stairs_after(words: &[Word], at: usize) -> bool {
+fn stairs_after(words: &[PlainWord], at: usize) -> bool {
     let joined = words[at + 1..].iter().take_while(|word| word.is_joined);
-    let mut rest = joined.skip_while(|word| has(&MOTIONS, "before stairs", &word.low));
-    rest.next().is_some_and(|word| has(&MOTIONS, "stairs", &word.low))
+    let mut rest = joined.skip_while(|word| has_word(&MOTION_WORDS, "before stairs", &word.low));
+    rest.next().is_some_and(|word| has_word(&MOTION_WORDS, "stairs", &word.low))
 }
 
 /// The edit that replaces a word by the other one of its pair, with the same capitals.
-fn flipped(text: &str, word: &Word, pairs: &[(&str, &str)]) -> Option<Edit> {
+fn flip_word(text: &str, word: &PlainWord, pairs: &[(&str, &str)]) -> Option<WordEdit> {
     let other = pairs.iter().find_map(|(a, b)| match word.low.as_str() {
         low if low == *a => Some(*b),
         low if low == *b => Some(*a),
@@ -102,15 +103,15 @@ fn flipped(text: &str, word: &Word, pairs: &[(&str, &str)]) -> Option<Edit> {
     } else {
         other.to_owned()
     };
-    Some(Edit { span: word.span, now })
+    Some(WordEdit { span: word.span, now })
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{super::text::words, *};
+    use super::{super::text::split_words, *};
 
-    fn flips(find: fn(&str, &[Word]) -> Vec<Edit>, text: &str) -> Vec<String> {
-        let edits = find(text, &words(text));
+    fn flips(find: fn(&str, &[PlainWord]) -> Vec<WordEdit>, text: &str) -> Vec<String> {
+        let edits = find(text, &split_words(text));
         edits
             .into_iter()
             .map(|edit| format!("{}{}{}", &text[..edit.span[0]], edit.now, &text[edit.span[1]..]))
@@ -129,7 +130,7 @@ mod tests {
             ("TURN RIGHT", "TURN LEFT"),
             ("make a left turn", "make a right turn"),
         ] {
-            assert_eq!(flips(turns, text), [expected]);
+            assert_eq!(flips(flipped_turns, text), [expected]);
         }
     }
 
@@ -145,7 +146,7 @@ mod tests {
             "Stop right there",
             "Pass the sofa on your right and stop",
         ] {
-            assert!(flips(turns, text).is_empty(), "{text}");
+            assert!(flips(flipped_turns, text).is_empty(), "{text}");
         }
     }
 
@@ -159,11 +160,11 @@ mod tests {
             ("take the stairs down to the hall", "take the stairs up to the hall"),
             ("Descend the wooden staircase", "Ascend the wooden staircase"),
         ] {
-            assert_eq!(flips(climbs, text), [expected]);
+            assert_eq!(flips(flipped_climbs, text), [expected]);
         }
         for text in ["Walk down the hall", "Pass the stairs leading down", "walk up to the stairs", "the room upstairs"]
         {
-            assert!(flips(climbs, text).is_empty(), "{text}");
+            assert!(flips(flipped_climbs, text).is_empty(), "{text}");
         }
     }
 }

@@ -1,17 +1,17 @@
 //! Reads the texts of a comparison, and which agents reached the goal by each, from a folder of `wayword compare`.
 
-use super::{Material, Outcomes, Told};
+use super::{CriticMaterial, OutcomeText, TextOutcomes};
 use serde::Deserialize;
 use std::{collections::BTreeMap, path::Path};
-use wayword_robustness::sets::Followed;
-use wayword_run::{error::Error, run_folder::read_lines};
+use wayword_robustness::sets::FollowResult;
+use wayword_run::{error::CommandError, run_folder::read_lines};
 
 /// The file with the success of every walk.
-pub(super) const FOLLOWED: &str = "followed.jsonl";
+pub(super) const FOLLOWED_FILE: &str = "followed.jsonl";
 
 /// The fields of a walk that are read.
 #[derive(Debug, Deserialize)]
-struct Walked {
+struct ComparedWalk {
     set: String,
     item: String,
     text_index: usize,
@@ -19,12 +19,12 @@ struct Walked {
 }
 
 /// The texts of a comparison, and the success of each agent.
-pub(super) fn read(folder: &Path) -> Result<Material, Error> {
-    let followed: Vec<Followed> = read_lines(&folder.join(FOLLOWED))?;
-    let walked: Vec<Walked> = read_lines(&folder.join("walks.jsonl"))?;
+pub(super) fn read_comparison(folder: &Path) -> Result<CriticMaterial, CommandError> {
+    let followed: Vec<FollowResult> = read_lines(&folder.join(FOLLOWED_FILE))?;
+    let walked: Vec<ComparedWalk> = read_lines(&folder.join("walks.jsonl"))?;
     if followed.is_empty() {
         let problem = format!("{}: no agent walked by a text there", folder.display());
-        return Err(Error::usage(problem, "give a folder that `wayword compare` has finished"));
+        return Err(CommandError::usage(problem, "give a folder that `wayword compare` has finished"));
     }
     let said: BTreeMap<(&str, &str, usize), &str> =
         walked.iter().map(|one| ((&*one.set, &*one.item, one.text_index), &*one.text)).collect();
@@ -36,7 +36,7 @@ pub(super) fn read(folder: &Path) -> Result<Material, Error> {
         let Some(text) = said.get(&key) else { continue };
         // Every agent walks by the same text: it counts once.
         let number = *numbers.entry(key).or_insert_with(|| {
-            texts.push(Told {
+            texts.push(OutcomeText {
                 item: Some(one.item.clone()),
                 path: one.path.clone(),
                 scene: one.scene.clone(),
@@ -46,11 +46,11 @@ pub(super) fn read(folder: &Path) -> Result<Material, Error> {
         });
         agents.entry(&one.agent).or_default().push((number, one.success));
     }
-    let outcomes = agents.into_iter().map(|(agent, of_texts)| Outcomes {
+    let outcomes = agents.into_iter().map(|(agent, of_texts)| TextOutcomes {
         who: agent.to_owned(),
         outcome: "success".to_owned(),
         answers: of_texts.len(),
         of_texts,
     });
-    Ok(Material { outcomes: outcomes.collect(), texts })
+    Ok(CriticMaterial { outcomes: outcomes.collect(), texts })
 }

@@ -1,19 +1,19 @@
 //! Rank correlations of critics with outcomes of texts. The intervals come from a bootstrap that resamples whole scenes, because texts
 //! about one scene are not independent.
 
-use super::{Flags, Outcomes, Told, figures::Critic};
+use super::{CriticsArgs, OutcomeText, TextOutcomes, figures::CriticFigures};
 use rand::Rng;
 use serde::Serialize;
 use std::collections::BTreeMap;
-use wayword_core::rng;
-use wayword_metrics::{kendall_tau_b, percentile_interval, spearman};
+use wayword_core::seeded_rng;
+use wayword_metrics::{kendall_tau_b, percentile_interval, spearman_correlation};
 
 /// Confidence level of the intervals.
-const LEVEL: f64 = 0.95;
+const CONFIDENCE_LEVEL: f64 = 0.95;
 
 /// How well a critic agrees with an outcome of texts. A correlation is given as value, low end and high end of its 95 % interval.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub(super) struct Found {
+pub(super) struct CriticCorrelation {
     /// The agent, or the group of people, that walked or rated.
     pub(super) who: String,
     /// The measure of success or quality.
@@ -30,7 +30,12 @@ pub(super) struct Found {
 }
 
 /// Correlates one critic with one outcome. The intervals resample whole scenes.
-pub(super) fn correlate(texts: &[Told], outcomes: &Outcomes, critic: &Critic, flags: &Flags) -> Found {
+pub(super) fn correlate_critic(
+    texts: &[OutcomeText],
+    outcomes: &TextOutcomes,
+    critic: &CriticFigures,
+    flags: &CriticsArgs,
+) -> CriticCorrelation {
     let mut scenes: BTreeMap<&str, Vec<(f64, f64)>> = BTreeMap::new();
     for (at, outcome) in &outcomes.of_texts {
         if let Some(figure) = critic.figures[*at] {
@@ -39,7 +44,7 @@ pub(super) fn correlate(texts: &[Told], outcomes: &Outcomes, critic: &Critic, fl
     }
     let scenes: Vec<Vec<(f64, f64)>> = scenes.into_values().collect();
     // The same draws for each critic of one outcome.
-    let mut dice = rng(flags.seed, &["critics", &outcomes.who]);
+    let mut dice = seeded_rng(flags.seed, &["critics", &outcomes.who]);
     let draw = |_| (0..scenes.len()).map(|_| dice.random_range(0..scenes.len())).collect::<Vec<usize>>();
     let drawn: Vec<Vec<usize>> = (0..flags.resamples).map(draw).collect();
     let whole: Vec<usize> = (0..scenes.len()).collect();
@@ -49,10 +54,10 @@ pub(super) fn correlate(texts: &[Told], outcomes: &Outcomes, critic: &Critic, fl
             correlation(&figures, &came)
         };
         let value = of(&whole)?;
-        let [low, high] = percentile_interval(drawn.iter().filter_map(of).collect(), LEVEL)?;
+        let [low, high] = percentile_interval(drawn.iter().filter_map(of).collect(), CONFIDENCE_LEVEL)?;
         Some([value, low, high])
     };
-    Found {
+    CriticCorrelation {
         who: outcomes.who.clone(),
         outcome: outcomes.outcome.clone(),
         critic: critic.name,
@@ -60,12 +65,12 @@ pub(super) fn correlate(texts: &[Told], outcomes: &Outcomes, critic: &Critic, fl
         answers: outcomes.answers,
         scenes: scenes.len(),
         tau_b: with_interval(kendall_tau_b),
-        spearman: with_interval(spearman),
+        spearman: with_interval(spearman_correlation),
     }
 }
 
 /// The lines of the table that is printed.
-pub(super) fn lines(found: &[Found]) -> Vec<String> {
+pub(super) fn table_lines(found: &[CriticCorrelation]) -> Vec<String> {
     let cell = |of: Option<[f64; 3]>| match of {
         Some([value, low, high]) => format!("{value:+.2} [{low:+.2}, {high:+.2}]"),
         None => "- (it never varies)".to_owned(),
@@ -74,8 +79,8 @@ pub(super) fn lines(found: &[Found]) -> Vec<String> {
         "{:<20} {:<11} {:<15} {:>22} {:>22} {:>6} {:>7} {:>6}",
         "who", "outcome", "critic", "Kendall's tau-b", "Spearman", "texts", "answers", "scenes"
     );
-    let row = |one: &Found| {
-        let Found { who, outcome, critic, texts, answers, scenes, .. } = one;
+    let row = |one: &CriticCorrelation| {
+        let CriticCorrelation { who, outcome, critic, texts, answers, scenes, .. } = one;
         let (tau_b, spearman) = (cell(one.tau_b), cell(one.spearman));
         format!("{who:<20} {outcome:<11} {critic:<15} {tau_b:>22} {spearman:>22} {texts:>6} {answers:>7} {scenes:>6}")
     };

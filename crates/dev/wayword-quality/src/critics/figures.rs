@@ -1,35 +1,38 @@
 //! Computes the figure of each critic for each text.
 
-use super::{People, Told};
-use wayword_experiments::by_pictures::Critic as ByPictures;
+use super::{OutcomeText, PeopleTexts};
+use wayword_experiments::by_pictures::PictureCritic as ByPictures;
 use wayword_language::text::word_count;
-use wayword_metrics::captions::{Row, Text, Vocabulary, collapsed, ptb, scores};
-use wayword_run::{error::Error, interrupt, output::Output};
+use wayword_metrics::captions::{
+    CaptionRow, CaptionVocabulary, NumberedText, collapse_white_space, ptb_tokens, score_rows,
+};
+use wayword_run::{error::CommandError, interrupt, output::CommandOutput};
 
 /// A critic with a figure for each text; `None` for a text that it cannot judge.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Critic {
+pub(super) struct CriticFigures {
     pub(super) name: &'static str,
     pub(super) figures: Vec<Option<f64>>,
 }
 
 /// The length of the texts in words. A critic that correlates with success no better than the length is of little use.
-pub(super) fn words(texts: &[Told]) -> Critic {
-    Critic { name: "words", figures: texts.iter().map(|told| Some(word_count(&told.text) as f64)).collect() }
+pub(super) fn word_counts(texts: &[OutcomeText]) -> CriticFigures {
+    CriticFigures { name: "words", figures: texts.iter().map(|told| Some(word_count(&told.text) as f64)).collect() }
 }
 
 /// BLEU-4, ROUGE-L and CIDEr-D of each text, with other people's texts about its item or path as references.
-pub(super) fn by_people(texts: &[Told], people: &People) -> [Critic; 3] {
-    let mut vocabulary = Vocabulary::default();
-    let mut text = |said: &str| vocabulary.text(&ptb(&collapsed(said)));
-    let tokens: Vec<(Text, Vec<Text>)> =
-        texts.iter().map(|told| (text(&told.text), people.others(told).map(&mut text).collect())).collect();
+pub(super) fn by_people(texts: &[OutcomeText], people: &PeopleTexts) -> [CriticFigures; 3] {
+    let mut vocabulary = CaptionVocabulary::default();
+    let mut text = |said: &str| vocabulary.number_text(&ptb_tokens(&collapse_white_space(said)));
+    let tokens: Vec<(NumberedText, Vec<NumberedText>)> =
+        texts.iter().map(|told| (text(&told.text), people.others_about(told).map(&mut text).collect())).collect();
     let judged: Vec<usize> = (0..tokens.len()).filter(|at| !tokens[*at].1.is_empty()).collect();
-    let row = |at: &usize| Row { text: &tokens[*at].0, references: tokens[*at].1.iter().collect() };
-    let rows: Vec<Row<'_>> = judged.iter().map(row).collect();
-    let mut found = ["BLEU-4", "ROUGE-L", "CIDEr-D"].map(|name| Critic { name, figures: vec![None; texts.len()] });
-    for (at, score) in judged.iter().zip(scores(&rows)) {
-        for (critic, figure) in found.iter_mut().zip([score.counts.bleu()[3], score.rouge_l, score.cider_d]) {
+    let row = |at: &usize| CaptionRow { text: &tokens[*at].0, references: tokens[*at].1.iter().collect() };
+    let rows: Vec<CaptionRow<'_>> = judged.iter().map(row).collect();
+    let mut found =
+        ["BLEU-4", "ROUGE-L", "CIDEr-D"].map(|name| CriticFigures { name, figures: vec![None; texts.len()] });
+    for (at, score) in judged.iter().zip(score_rows(&rows)) {
+        for (critic, figure) in found.iter_mut().zip([score.counts.bleu_scores()[3], score.rouge_l, score.cider_d]) {
             critic.figures[*at] = Some(figure);
         }
     }
@@ -40,14 +43,18 @@ pub(super) fn by_people(texts: &[Told], people: &People) -> [Critic; 3] {
 ///
 /// # Errors
 /// When no text has pictures, or the model or the pictures cannot be read.
-pub(super) fn by_pictures(texts: &[Told], critic: &ByPictures, output: &Output) -> Result<[Critic; 2], Error> {
+pub(super) fn by_pictures(
+    texts: &[OutcomeText],
+    critic: &ByPictures,
+    output: &CommandOutput,
+) -> Result<[CriticFigures; 2], CommandError> {
     let mut found =
-        ["CLIP, sentences", "CLIP, whole"].map(|name| Critic { name, figures: Vec::with_capacity(texts.len()) });
-    let bar = output.progress(texts.len(), "texts");
+        ["CLIP, sentences", "CLIP, whole"].map(|name| CriticFigures { name, figures: Vec::with_capacity(texts.len()) });
+    let bar = output.progress_bar(texts.len(), "texts");
     for told in texts {
-        interrupt::check()?;
-        let pictures = critic.frames.of(told.item.as_deref().unwrap_or_default(), &told.path)?;
-        let agreed = critic.agreed(&pictures, &[&told.text])?.into_iter().next().flatten();
+        interrupt::check_interrupt()?;
+        let pictures = critic.frames.views_for_item(told.item.as_deref().unwrap_or_default(), &told.path)?;
+        let agreed = critic.score_texts(&pictures, &[&told.text])?.into_iter().next().flatten();
         let [parts, whole] = &mut found;
         parts.figures.push(agreed.map(|agreed| agreed.parts));
         whole.figures.push(agreed.map(|agreed| agreed.whole));
@@ -55,7 +62,7 @@ pub(super) fn by_pictures(texts: &[Told], critic: &ByPictures, output: &Output) 
     }
     bar.finish_and_clear();
     if found[0].figures.iter().all(Option::is_none) {
-        return Err(Error::usage(
+        return Err(CommandError::usage(
             "--clip: there is no picture of any path that the texts are about",
             "give a run of the same items or paths, or a platform that has pictures (`wayword platforms`)",
         ));

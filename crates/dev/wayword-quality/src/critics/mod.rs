@@ -8,20 +8,20 @@ mod study;
 #[cfg(test)]
 mod tests;
 
-use correlate::{Found, correlate};
+use correlate::{CriticCorrelation, correlate_critic};
 use std::{
     collections::BTreeMap,
     path::{Path, PathBuf},
 };
 use wayword_experiments::{
-    by_pictures::{Critic, args::Pictured},
+    by_pictures::{PictureCritic, args::PictureCriticArgs},
     episodes,
 };
-use wayword_run::{error::Error, output::Output};
+use wayword_run::{error::CommandError, output::CommandOutput};
 
 /// The flags of `critics`.
 #[derive(Debug, Clone, clap::Args)]
-pub struct Flags {
+pub struct CriticsArgs {
     /// A folder that `wayword compare` made, or one that `wayword study results` wrote.
     folder: PathBuf,
     /// People's texts of the same items or paths, in any format. Without them there are no BLEU-4, ROUGE-L and CIDEr-D.
@@ -29,7 +29,7 @@ pub struct Flags {
     references: Option<PathBuf>,
     /// The pictures that texts are compared with.
     #[command(flatten)]
-    pictured: Pictured,
+    pictured: PictureCriticArgs,
     /// Of a study, take only the answers of those who finished and passed the attention checks.
     #[arg(long)]
     finished: bool,
@@ -46,7 +46,7 @@ pub struct Flags {
 
 /// A text that an agent or a person walked by or rated.
 #[derive(Debug, Clone, PartialEq)]
-struct Told {
+struct OutcomeText {
     /// The item that it was written for, if known.
     item: Option<String>,
     /// The path that it was given for ([`episodes::path_name`]).
@@ -57,7 +57,7 @@ struct Told {
 
 /// The outcomes of texts by one measure, such as the success of one agent.
 #[derive(Debug, Clone, PartialEq)]
-struct Outcomes {
+struct TextOutcomes {
     /// The agent, or the group of people, that walked or rated.
     who: String,
     /// The measure.
@@ -70,23 +70,23 @@ struct Outcomes {
 
 /// The texts of a folder, and their outcomes.
 #[derive(Debug, Clone, PartialEq)]
-struct Material {
-    texts: Vec<Told>,
-    outcomes: Vec<Outcomes>,
+struct CriticMaterial {
+    texts: Vec<OutcomeText>,
+    outcomes: Vec<TextOutcomes>,
 }
 
 /// People's texts, by item and by path.
 #[derive(Debug, Default)]
-struct People {
+struct PeopleTexts {
     items: BTreeMap<String, Vec<String>>,
     paths: BTreeMap<String, Vec<String>>,
 }
 
-impl People {
-    fn read(file: &Path) -> Result<Self, Error> {
+impl PeopleTexts {
+    fn read_episodes(file: &Path) -> Result<Self, CommandError> {
         let mut people = Self::default();
-        for episode in wayword_formats::read(file)? {
-            let path = people.paths.entry(episodes::cluster(&episode)).or_default();
+        for episode in wayword_formats::read_any_format(file)? {
+            let path = people.paths.entry(episodes::episode_path_name(&episode)).or_default();
             path.extend(episode.instructions.iter().cloned());
             people.items.entry(episode.id).or_default().extend(episode.instructions);
         }
@@ -94,7 +94,7 @@ impl People {
     }
 
     /// Other people's texts about the same item, or else the same path.
-    fn others<'a>(&'a self, told: &'a Told) -> impl Iterator<Item = &'a str> {
+    fn others_about<'a>(&'a self, told: &'a OutcomeText) -> impl Iterator<Item = &'a str> {
         let of_item = told.item.as_ref().and_then(|item| self.items.get(item));
         let said = of_item.or_else(|| self.paths.get(&told.path));
         // A person's text is not compared with itself.
@@ -102,51 +102,51 @@ impl People {
     }
 }
 
-pub fn show(flags: &Flags, output: &Output) -> Result<(), Error> {
-    let found = found(flags, output)?;
-    output.data(&found, correlate::lines(&found).join("\n"));
+pub fn show_correlations(flags: &CriticsArgs, output: &CommandOutput) -> Result<(), CommandError> {
+    let found = find_correlations(flags, output)?;
+    output.print_result(&found, correlate::table_lines(&found).join("\n"));
     Ok(())
 }
 
-fn found(flags: &Flags, output: &Output) -> Result<Vec<Found>, Error> {
-    let material = material(flags)?;
-    let mut critics = vec![figures::words(&material.texts)];
+fn find_correlations(flags: &CriticsArgs, output: &CommandOutput) -> Result<Vec<CriticCorrelation>, CommandError> {
+    let material = read_material(flags)?;
+    let mut critics = vec![figures::word_counts(&material.texts)];
     if let Some(file) = &flags.references {
-        critics.extend(figures::by_people(&material.texts, &People::read(file)?));
+        critics.extend(figures::by_people(&material.texts, &PeopleTexts::read_episodes(file)?));
         if critics.iter().skip(1).all(|critic| critic.figures.iter().all(Option::is_none)) {
             let problem = format!("{}: it has no text of what the texts are about", file.display());
-            return Err(Error::usage(problem, "give the file of the episodes that were compared or studied"));
+            return Err(CommandError::usage(problem, "give the file of the episodes that were compared or studied"));
         }
     }
     let file = flags.references.as_deref().unwrap_or(Path::new(""));
     if flags.pictured.clip.is_some() && flags.pictured.pictures.is_none() && flags.references.is_none() {
-        return Err(Error::usage(
+        return Err(CommandError::usage(
             "--clip: it is not known where the pictures are",
             "give a run of the same paths with --pictures, or a platform with --platform and the paths with --references",
         ));
     }
-    if let Some(critic) = Critic::open(&flags.pictured, &[], file, output)? {
+    if let Some(critic) = PictureCritic::open(&flags.pictured, &[], file, output)? {
         critics.extend(figures::by_pictures(&material.texts, &critic, output)?);
     }
     let texts = &material.texts;
-    let of = |outcomes| critics.iter().map(move |critic| correlate(texts, outcomes, critic, flags));
+    let of = |outcomes| critics.iter().map(move |critic| correlate_critic(texts, outcomes, critic, flags));
     Ok(material.outcomes.iter().flat_map(of).collect())
 }
 
-fn material(flags: &Flags) -> Result<Material, Error> {
+fn read_material(flags: &CriticsArgs) -> Result<CriticMaterial, CommandError> {
     let folder = &flags.folder;
     let has = |name: &str| folder.join(name).is_file();
-    if has(compared::FOLLOWED) {
-        compared::read(folder)
-    } else if has(study::RESULTS) {
-        study::read(folder, flags.finished)
+    if has(compared::FOLLOWED_FILE) {
+        compared::read_comparison(folder)
+    } else if has(study::RESULTS_FILE) {
+        study::read_results(folder, flags.finished)
     } else if has("plan.json") && has("items.jsonl") {
-        Err(Error::usage(
+        Err(CommandError::usage(
             format!("{}: this is a study, and not what it gave", folder.display()),
             "write its results with `wayword study results STUDY --out RESULTS`, and give that folder",
         ))
     } else {
-        Err(Error::usage(
+        Err(CommandError::usage(
             format!("{}: there is neither a comparison nor the results of a study in it", folder.display()),
             "give a folder that `wayword compare` has finished, or one that `wayword study results` wrote",
         ))

@@ -1,20 +1,20 @@
 //! Reads the texts of a study with people and their outcomes from the files that `wayword study results` wrote.
 
-use super::{Material, Outcomes, Told};
+use super::{CriticMaterial, OutcomeText, TextOutcomes};
 use serde::Deserialize;
 use std::{
     collections::{BTreeMap, BTreeSet},
     fs,
     path::{Path, PathBuf},
 };
-use wayword_run::error::Error;
+use wayword_run::error::CommandError;
 
 /// The file with the format, the mode and the questions of the study.
-pub(super) const RESULTS: &str = "results.json";
-const ITEMS: &str = "items.csv";
-const ANSWERS: &str = "answers.csv";
+pub(super) const RESULTS_FILE: &str = "results.json";
+const ITEMS_FILE: &str = "items.csv";
+const ANSWERS_FILE: &str = "answers.csv";
 /// The format of `results.json` that is read.
-const FORMAT: &str = "wayword-study-results/1";
+const RESULTS_FORMAT: &str = "wayword-study-results/1";
 /// The figures of walks that are correlated. The ratings are correlated too; `results.json` names their questions and statements.
 const OF_WALKS: [&str; 3] = ["success", "spl", "ndtw"];
 /// The kind of items with a text that was written for another path.
@@ -22,27 +22,27 @@ const OTHER_PATH: &str = "other-path";
 
 /// The fields of `results.json` that are read.
 #[derive(Debug, Deserialize)]
-struct About {
+struct StudyResultsHead {
     format: String,
     mode: String,
-    scales: Vec<Scale>,
+    scales: Vec<ResultsScale>,
 }
 
 /// A question, or a statement.
 #[derive(Debug, Deserialize)]
-struct Scale {
+struct ResultsScale {
     name: String,
 }
 
 /// The texts of a study in mode follow or rate, and the outcomes of their walks and ratings.
 ///
 /// `finished` takes only the answers of people who finished and passed the attention checks.
-pub(super) fn read(folder: &Path, finished: bool) -> Result<Material, Error> {
-    let about = about(folder)?;
-    let (texts, numbers, elsewhere) = texts(folder)?;
+pub(super) fn read_results(folder: &Path, finished: bool) -> Result<CriticMaterial, CommandError> {
+    let about = read_head(folder)?;
+    let (texts, numbers, elsewhere) = read_texts(folder)?;
     let walks: &[&str] = if about.mode == "follow" { &OF_WALKS } else { &[] };
     let measures: Vec<&str> = walks.iter().copied().chain(about.scales.iter().map(|scale| &*scale.name)).collect();
-    let answers = Table::read(folder.join(ANSWERS))?;
+    let answers = ResultsTable::read_csv(folder.join(ANSWERS_FILE))?;
     let taken = if finished { "in_finished" } else { "in_everybody" };
     let mut outcomes = Vec::new();
     for measure in measures {
@@ -51,13 +51,13 @@ pub(super) fn read(folder: &Path, finished: bool) -> Result<Material, Error> {
             let Some(number) = numbers.get(answers.cell(row, "item")?) else { continue };
             // A walk without figures has an empty cell.
             if answers.cell(row, taken)? == "1" && !answers.cell(row, measure)?.is_empty() {
-                given.entry(*number).or_default().push(answers.number(row, measure)?);
+                given.entry(*number).or_default().push(answers.number_cell(row, measure)?);
             }
         }
         let of = |who: &str, takes: &dyn Fn(usize) -> bool| {
             let given = given.iter().filter(|(number, _)| takes(**number));
             let mean = |values: &Vec<f64>| values.iter().sum::<f64>() / values.len() as f64;
-            Outcomes {
+            TextOutcomes {
                 who: who.to_owned(),
                 outcome: measure.to_owned(),
                 answers: given.clone().map(|(_, values)| values.len()).sum(),
@@ -71,27 +71,27 @@ pub(super) fn read(folder: &Path, finished: bool) -> Result<Material, Error> {
         }
     }
     if outcomes.iter().all(|one| one.answers == 0) {
-        let problem = format!("{}: it has no answer that counts", folder.join(ANSWERS).display());
-        return Err(Error::usage(problem, "wait until people have answered, and write the results again"));
+        let problem = format!("{}: it has no answer that counts", folder.join(ANSWERS_FILE).display());
+        return Err(CommandError::usage(problem, "wait until people have answered, and write the results again"));
     }
-    Ok(Material { texts, outcomes })
+    Ok(CriticMaterial { texts, outcomes })
 }
 
-fn about(folder: &Path) -> Result<About, Error> {
-    let file = folder.join(RESULTS);
-    let bytes = fs::read(&file).map_err(Error::io(&file, "read"))?;
+fn read_head(folder: &Path) -> Result<StudyResultsHead, CommandError> {
+    let file = folder.join(RESULTS_FILE);
+    let bytes = fs::read(&file).map_err(CommandError::io(&file, "read"))?;
     let wrong = |problem: String| {
-        Error::usage(
+        CommandError::usage(
             format!("{}: {problem}", file.display()),
             "give a folder that this version's `wayword study results` wrote",
         )
     };
-    let about: About = serde_json::from_slice(&bytes).map_err(|error| wrong(error.to_string()))?;
-    if about.format != FORMAT {
-        return Err(wrong(format!("its format is {:?}, and not {FORMAT:?}", about.format)));
+    let about: StudyResultsHead = serde_json::from_slice(&bytes).map_err(|error| wrong(error.to_string()))?;
+    if about.format != RESULTS_FORMAT {
+        return Err(wrong(format!("its format is {:?}, and not {RESULTS_FORMAT:?}", about.format)));
     }
     if about.mode == "pair" {
-        return Err(Error::usage(
+        return Err(CommandError::usage(
             format!("{}: people chose between two texts here, so no text has a figure of its own", folder.display()),
             "give the results of a study with --mode follow or --mode rate",
         ));
@@ -100,36 +100,36 @@ fn about(folder: &Path) -> Result<About, Error> {
 }
 
 /// The texts, their numbers by item, and the numbers of those that were written for another path.
-type Texts = (Vec<Told>, BTreeMap<String, usize>, BTreeSet<usize>);
+type ResultsTexts = (Vec<OutcomeText>, BTreeMap<String, usize>, BTreeSet<usize>);
 
-fn texts(folder: &Path) -> Result<Texts, Error> {
-    let items = Table::read(folder.join(ITEMS))?;
+fn read_texts(folder: &Path) -> Result<ResultsTexts, CommandError> {
+    let items = ResultsTable::read_csv(folder.join(ITEMS_FILE))?;
     let (mut texts, mut numbers, mut elsewhere) = (Vec::new(), BTreeMap::new(), BTreeSet::new());
     for row in 0..items.rows.len() {
         if items.cell(row, "kind")? == OTHER_PATH {
             elsewhere.insert(texts.len());
         }
         numbers.insert(items.cell(row, "item")?.to_owned(), texts.len());
-        texts.push(Told {
+        texts.push(OutcomeText {
             item: None,
-            path: items.text(row, "route")?,
-            scene: items.text(row, "scene")?,
-            text: items.text(row, "text")?,
+            path: items.text_cell(row, "route")?,
+            scene: items.text_cell(row, "scene")?,
+            text: items.text_cell(row, "text")?,
         });
     }
     Ok((texts, numbers, elsewhere))
 }
 
 /// A CSV file of results.
-struct Table {
+struct ResultsTable {
     file: PathBuf,
     columns: BTreeMap<String, usize>,
     rows: Vec<csv::StringRecord>,
 }
 
-impl Table {
-    fn read(file: PathBuf) -> Result<Self, Error> {
-        let wrong = |error: csv::Error| broken(&file, &error.to_string());
+impl ResultsTable {
+    fn read_csv(file: PathBuf) -> Result<Self, CommandError> {
+        let wrong = |error: csv::Error| broken_file(&file, &error.to_string());
         let mut reader = csv::Reader::from_path(&file).map_err(wrong)?;
         let columns = reader.headers().map_err(wrong)?.iter().enumerate();
         let columns = columns.map(|(at, name)| (name.to_owned(), at)).collect();
@@ -137,25 +137,29 @@ impl Table {
         Ok(Self { file, columns, rows })
     }
 
-    fn cell(&self, row: usize, column: &str) -> Result<&str, Error> {
-        let at = self.columns.get(column).ok_or_else(|| broken(&self.file, &format!("it has no column {column}")))?;
+    fn cell(&self, row: usize, column: &str) -> Result<&str, CommandError> {
+        let at =
+            self.columns.get(column).ok_or_else(|| broken_file(&self.file, &format!("it has no column {column}")))?;
         Ok(self.rows.get(row).and_then(|row| row.get(*at)).unwrap_or_default())
     }
 
     /// A cell without the apostrophe that keeps spreadsheets from reading a text as a formula.
-    fn text(&self, row: usize, column: &str) -> Result<String, Error> {
+    fn text_cell(&self, row: usize, column: &str) -> Result<String, CommandError> {
         let cell = self.cell(row, column)?;
         Ok(cell.strip_prefix('\'').unwrap_or(cell).to_owned())
     }
 
-    fn number(&self, row: usize, column: &str) -> Result<f64, Error> {
+    fn number_cell(&self, row: usize, column: &str) -> Result<f64, CommandError> {
         let cell = self.cell(row, column)?;
         let number = cell.parse().ok().filter(|number: &f64| number.is_finite());
         // The first line has the names of the columns.
-        number.ok_or_else(|| broken(&self.file, &format!("row {}: {column}: {cell:?} is no number", row + 2)))
+        number.ok_or_else(|| broken_file(&self.file, &format!("row {}: {column}: {cell:?} is no number", row + 2)))
     }
 }
 
-fn broken(file: &Path, problem: &str) -> Error {
-    Error::usage(format!("{}: {problem}", file.display()), "write the results again: wayword study results STUDY")
+fn broken_file(file: &Path, problem: &str) -> CommandError {
+    CommandError::usage(
+        format!("{}: {problem}", file.display()),
+        "write the results again: wayword study results STUDY",
+    )
 }

@@ -1,17 +1,19 @@
 use super::*;
-use correlate::lines;
-use figures::Critic as Figures;
+use correlate::table_lines;
+use figures::CriticFigures as Figures;
 use serde_json::{Value, json};
 use std::{fs, sync::Arc};
-use wayword_core::{DVec3, Frame, Gaze, Grounder, Heading, Image, ModelError, Motion, Pose, SceneId, View};
-use wayword_experiments::by_pictures::{Eye, Frames};
+use wayword_core::{
+    DVec3, Frame, Heading, Image, ModelError, PathMotion, PhraseGrounder, Pose, SceneId, View, ViewGaze,
+};
+use wayword_experiments::by_pictures::{CosineGrounder, PathPictures};
 use wayword_run::pictures;
 
-fn flags(folder: &Path) -> Flags {
-    Flags {
+fn flags(folder: &Path) -> CriticsArgs {
+    CriticsArgs {
         folder: folder.to_owned(),
         references: None,
-        pictured: Pictured::default(),
+        pictured: PictureCriticArgs::default(),
         finished: false,
         resamples: 50,
         seed: 0,
@@ -19,12 +21,12 @@ fn flags(folder: &Path) -> Flags {
     }
 }
 
-fn quiet() -> Output {
-    Output::new(false, true)
+fn quiet() -> CommandOutput {
+    CommandOutput::new(false, true)
 }
 
-fn told(item: &str, scene: &str, text: &str) -> Told {
-    Told {
+fn told(item: &str, scene: &str, text: &str) -> OutcomeText {
+    OutcomeText {
         item: Some(item.to_owned()),
         path: format!("{scene}/{item}"),
         scene: scene.to_owned(),
@@ -34,10 +36,10 @@ fn told(item: &str, scene: &str, text: &str) -> Told {
 
 #[test]
 fn correlate_separates_a_critic_of_success_from_an_independent_one() {
-    let texts: Vec<Told> = (0..80).map(|at| told(&at.to_string(), &(at % 8).to_string(), "")).collect();
+    let texts: Vec<OutcomeText> = (0..80).map(|at| told(&at.to_string(), &(at % 8).to_string(), "")).collect();
     // Every scene has as many texts of each kind.
     let success = |at: usize| f64::from(u8::from(at / 8 % 2 == 1));
-    let outcomes = Outcomes {
+    let outcomes = TextOutcomes {
         who: "reader".to_owned(),
         outcome: "success".to_owned(),
         of_texts: (0..80).map(|at| (at, success(at))).collect(),
@@ -45,7 +47,7 @@ fn correlate_separates_a_critic_of_success_from_an_independent_one() {
     };
     let found = |figure: &dyn Fn(usize) -> Option<f64>| {
         let critic = Figures { name: "any", figures: (0..80).map(figure).collect() };
-        correlate(&texts, &outcomes, &critic, &flags(Path::new("")))
+        correlate_critic(&texts, &outcomes, &critic, &flags(Path::new("")))
     };
     let good = found(&|at| Some(success(at) + at as f64 / 1e6));
     assert!(good.spearman.unwrap()[0] > 0.8 && good.tau_b.unwrap()[1] > 0.6, "{good:?}");
@@ -53,7 +55,7 @@ fn correlate_separates_a_critic_of_success_from_an_independent_one() {
     assert!(found(&|at| Some(f64::from(u8::from(at / 16 % 2 == 1)))).spearman.unwrap()[0].abs() < 1e-9);
     let constant = found(&|_| Some(0.5));
     assert_eq!(constant.tau_b, None);
-    assert!(lines(&[constant])[1].contains("it never varies"));
+    assert!(table_lines(&[constant])[1].contains("it never varies"));
     // A text that a critic cannot judge is in none of its figures.
     assert_eq!(found(&|at| (at % 8 != 0).then_some(at as f64)).texts, 70);
 }
@@ -62,7 +64,7 @@ fn correlate_separates_a_critic_of_success_from_an_independent_one() {
 fn references_are_other_peoples_texts_alone() {
     let texts = [told("1", "s", "Turn left at the sofa."), told("2", "s", "Turn left at the sofa.")];
     let said = ["Turn left at the sofa.".to_owned(), "Wait here.".to_owned()];
-    let people = People { items: BTreeMap::from([("1".to_owned(), said.to_vec())]), ..People::default() };
+    let people = PeopleTexts { items: BTreeMap::from([("1".to_owned(), said.to_vec())]), ..PeopleTexts::default() };
     let [bleu, rouge, _] = figures::by_people(&texts, &people);
     assert!(rouge.figures[0].unwrap() < 0.5, "{rouge:?}");
     assert_eq!((bleu.figures[1], rouge.figures[1]), (None, None));
@@ -88,7 +90,7 @@ fn agents_of_a_comparison_are_read_with_their_texts() {
     }
     fs::write(folder.path().join("followed.jsonl"), followed).unwrap();
     fs::write(folder.path().join("walks.jsonl"), walks).unwrap();
-    let found = found(&flags(folder.path()), &quiet()).unwrap();
+    let found = find_correlations(&flags(folder.path()), &quiet()).unwrap();
     assert_eq!(
         found.iter().map(|one| (&*one.who, one.critic)).collect::<Vec<_>>(),
         [("clip-nav", "words"), ("reader", "words")]
@@ -138,12 +140,13 @@ const RATE: [&str; 4] = ["similar", "accurate", "ghosts", "reachable"];
 #[test]
 fn people_who_follow_are_correlated_with_and_without_texts_of_other_paths() {
     let folder = results("follow", &FOLLOW);
-    let mut flags = Flags { finished: true, ..flags(folder.path()) };
-    let found = |flags: &Flags| found(flags, &quiet()).unwrap();
+    let mut flags = CriticsArgs { finished: true, ..flags(folder.path()) };
+    let found = |flags: &CriticsArgs| find_correlations(flags, &quiet()).unwrap();
     let all = found(&flags);
     assert_eq!(all.len(), 2 * FOLLOW.len(), "one critic, and two groups for each measure");
-    let of =
-        |all: &[Found], who: &str| all.iter().find(|one| one.who == who && one.outcome == "success").cloned().unwrap();
+    let of = |all: &[CriticCorrelation], who: &str| {
+        all.iter().find(|one| one.who == who && one.outcome == "success").cloned().unwrap()
+    };
     let (with, without) = (of(&all, "people"), of(&all, "people, own path"));
     assert_eq!((with.texts, with.answers, with.scenes), (24, 24, 3));
     assert_eq!((without.texts, without.answers), (12, 12));
@@ -168,8 +171,8 @@ fn people_who_rate_are_correlated_by_each_question() {
         .collect();
     let file = folder.path().join("R2R.json");
     fs::write(&file, Value::from(people).to_string()).unwrap();
-    let flags = Flags { references: Some(file.clone()), finished: true, ..flags(folder.path()) };
-    let found = found(&flags, &quiet()).unwrap();
+    let flags = CriticsArgs { references: Some(file.clone()), finished: true, ..flags(folder.path()) };
+    let found = find_correlations(&flags, &quiet()).unwrap();
     let outcomes: Vec<&str> = found.iter().step_by(8).map(|one| &*one.outcome).collect();
     assert_eq!(outcomes, RATE);
     let critics: Vec<&str> = found.iter().take(4).map(|one| one.critic).collect();
@@ -178,14 +181,14 @@ fn people_who_rate_are_correlated_by_each_question() {
     assert!(rouge.texts == 24 && rouge.spearman.unwrap()[0] > 0.7, "{rouge:?}");
     let elsewhere = fs::read_to_string(&file).unwrap().replace(":\"s", ":\"t");
     fs::write(&file, elsewhere).unwrap();
-    let refused = super::found(&flags, &quiet()).unwrap_err().to_string();
+    let refused = super::find_correlations(&flags, &quiet()).unwrap_err().to_string();
     assert!(refused.contains("R2R.json") && refused.contains("hint:"), "{refused}");
 }
 
 #[test]
 fn folders_without_outcomes_are_refused_with_advice() {
     let empty = tempfile::tempdir().unwrap();
-    let refused = |folder: &Path| found(&flags(folder), &quiet()).unwrap_err().to_string();
+    let refused = |folder: &Path| find_correlations(&flags(folder), &quiet()).unwrap_err().to_string();
     assert!(refused(empty.path()).contains("wayword compare"));
     for name in ["plan.json", "items.jsonl"] {
         fs::write(empty.path().join(name), "{}").unwrap();
@@ -213,13 +216,13 @@ fn folders_without_outcomes_are_refused_with_advice() {
 /// A picture model that gives a picture's redness to texts about red.
 struct Red;
 
-impl Grounder for Red {
+impl PhraseGrounder for Red {
     fn name(&self) -> &str {
         "red"
     }
 
-    fn ground(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<f32>, ModelError>> {
-        let red = |view: &&View| f32::from(view.image.as_ref().unwrap().rgb()[0]) / 255.0;
+    fn score_phrases(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<f32>, ModelError>> {
+        let red = |view: &&View| f32::from(view.image.as_ref().unwrap().rgb_bytes()[0]) / 255.0;
         let of = |view: &&View| {
             let red = red(view);
             Ok(phrases.iter().map(|phrase| if phrase.contains("red") { red } else { -0.5 }).collect())
@@ -228,8 +231,8 @@ impl Grounder for Red {
     }
 }
 
-impl Eye for Red {
-    fn holds(&self, _: &str) -> Result<bool, ModelError> {
+impl CosineGrounder for Red {
+    fn reads_whole_phrase(&self, _: &str) -> Result<bool, ModelError> {
         Ok(true)
     }
 }
@@ -237,28 +240,28 @@ impl Eye for Red {
 #[test]
 fn by_pictures_finds_the_pictures_of_a_run_by_item_or_path() {
     let run = tempfile::tempdir().unwrap();
-    let frame = Frame { pose: Pose::level(DVec3::ZERO, Heading::NORTH), viewpoint: None, level: None };
+    let frame = Frame { pose: Pose::looking_level(DVec3::ZERO, Heading::NORTH), viewpoint: None, level: None };
     let path = wayword_core::Path {
         id: "7_3".to_owned(),
         scene: SceneId::new("s").unwrap(),
         frames: vec![frame.clone(), frame.clone()],
-        motion: Motion::Known,
+        motion: PathMotion::Known,
         target: None,
     };
     let flat = |red| {
         let image = Image::new(16, 16, [red, 0, 0].repeat(256)).unwrap();
-        View::new(frame.pose, Gaze::quarter(Heading::NORTH).horizontal_fov_rad, Some(Arc::new(image)), None)
+        View::new(frame.pose, ViewGaze::quarter_view(Heading::NORTH).horizontal_fov_rad, Some(Arc::new(image)), None)
     };
-    let encoded = pictures::encode(&[flat(51), flat(102)]).unwrap();
-    pictures::keep(&run.path().join("frames"), &path.id, &encoded).unwrap();
+    let encoded = pictures::encode_pictures(&[flat(51), flat(102)]).unwrap();
+    pictures::write_pictures(&run.path().join("frames"), &path.id, &encoded).unwrap();
     let walk = json!({ "path": path, "has_pictures": true });
     fs::write(run.path().join("walks.jsonl"), format!("{walk}\n")).unwrap();
     let written = json!({ "path": { "id": "7_3", "scene": "s" }, "path_id": "7" });
     fs::write(run.path().join("instructions.jsonl"), format!("{written}\n")).unwrap();
 
-    let critic = Critic::new(Box::new(Red), Frames::of_run(run.path()).unwrap());
+    let critic = PictureCritic::new(Box::new(Red), PathPictures::from_run(run.path()).unwrap());
     let text = "Pass the red door. Stop.";
-    let of_path = Told { item: None, path: "s/7".to_owned(), ..told("", "s", text) };
+    let of_path = OutcomeText { item: None, path: "s/7".to_owned(), ..told("", "s", text) };
     let texts = [told("7_3", "s", text), of_path, told("8", "s", text)];
     let [parts, whole] = figures::by_pictures(&texts, &critic, &quiet()).unwrap();
     let near = |figure: Option<f64>, expected: f64| (figure.unwrap() - expected).abs() < 0.02;
@@ -275,7 +278,7 @@ fn missing_pictures_and_missing_models_are_reported() {
     let folder = results("rate", &RATE);
     let mut flags = flags(folder.path());
     flags.pictured.clip = Some("hf/org/clip".to_owned());
-    let refused = |flags: &Flags| found(flags, &quiet()).unwrap_err().to_string();
+    let refused = |flags: &CriticsArgs| find_correlations(flags, &quiet()).unwrap_err().to_string();
     assert!(refused(&flags).contains("--pictures"));
     flags.pictured.pictures = Some(folder.path().to_owned());
     assert!(refused(&flags).contains("there is no run in it"));

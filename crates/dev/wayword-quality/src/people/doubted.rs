@@ -1,59 +1,66 @@
 //! Compares the words that `check` calls doubtful with spans that people labelled and corrected.
 
-use crate::share::{Share, cell, table};
+use crate::share::{ClusteredShare, aligned_table, share_cell};
 use serde::Serialize;
-use wayword_core::{Cause, Doubt, Grade, doubt::overlap};
+use wayword_core::{DoubtCause, DoubtGrade, TextDoubt, doubt::spans_overlap};
 use wayword_formats::hear::{LabelledSpan, LabelledText};
-use wayword_language::text::pieces;
+use wayword_language::text::split_blanks;
 
 /// A labelled text with the doubts of `check`.
-pub(super) struct Doubted<'a> {
+pub(super) struct LabelledDoubts<'a> {
     pub(super) text: &'a LabelledText,
-    pub(super) doubts: &'a [Doubt],
+    pub(super) doubts: &'a [TextDoubt],
 }
 
 /// The figures of the doubts of one grade, of both, or of one cause.
 #[derive(Debug, PartialEq, Serialize)]
-pub(super) struct Row {
+pub(super) struct DoubtedSpanRow {
     pub(super) name: &'static str,
     /// Of the wrong spans, those that a doubt overlaps.
-    pub(super) wrong: Option<Share>,
+    pub(super) wrong: Option<ClusteredShare>,
     /// Of the right spans, those that a doubt overlaps.
-    pub(super) right: Option<Share>,
+    pub(super) right: Option<ClusteredShare>,
     /// Of the doubts that overlap a labelled span, those that overlap a wrong one.
-    pub(super) precision: Option<Share>,
+    pub(super) precision: Option<ClusteredShare>,
     /// Of the wrong spans that a doubt overlaps, those for which it offers the correction that people made.
-    pub(super) corrected: Option<Share>,
+    pub(super) corrected: Option<ClusteredShare>,
     /// Of all words, those that are doubted.
-    pub(super) words: Option<Share>,
+    pub(super) words: Option<ClusteredShare>,
 }
 
-pub(super) fn rows(held: &[Doubted<'_>], seed: u64) -> Vec<Row> {
-    let of_grade = Grade::ALL.map(|grade| row(grade.name(), held, &|doubt| doubt.grade == grade, seed));
-    let of_cause = Cause::ALL.map(|cause| row(cause.name(), held, &|doubt| doubt.cause == cause, seed));
-    of_grade.into_iter().chain([row("both", held, &|_| true, seed)]).chain(of_cause).collect()
+pub(super) fn doubt_rows(held: &[LabelledDoubts<'_>], seed: u64) -> Vec<DoubtedSpanRow> {
+    let of_grade = DoubtGrade::ALL.map(|grade| doubt_row(grade.name(), held, &|doubt| doubt.grade == grade, seed));
+    let of_cause = DoubtCause::ALL.map(|cause| doubt_row(cause.name(), held, &|doubt| doubt.cause == cause, seed));
+    of_grade.into_iter().chain([doubt_row("both", held, &|_| true, seed)]).chain(of_cause).collect()
 }
 
-fn row(name: &'static str, held: &[Doubted<'_>], is: &dyn Fn(&Doubt) -> bool, seed: u64) -> Row {
-    let about = |held: &Doubted<'_>, span: [usize; 2]| -> Vec<Doubt> {
-        held.doubts.iter().filter(|doubt| is(doubt) && overlap(doubt.span, span)).cloned().collect()
+fn doubt_row(
+    name: &'static str,
+    held: &[LabelledDoubts<'_>],
+    is: &dyn Fn(&TextDoubt) -> bool,
+    seed: u64,
+) -> DoubtedSpanRow {
+    let about = |held: &LabelledDoubts<'_>, span: [usize; 2]| -> Vec<TextDoubt> {
+        held.doubts.iter().filter(|doubt| is(doubt) && spans_overlap(doubt.span, span)).cloned().collect()
     };
     let spans = |right: bool| {
-        let of_text = move |held: &Doubted<'_>| -> Vec<(String, bool)> {
+        let of_text = move |held: &LabelledDoubts<'_>| -> Vec<(String, bool)> {
             let spans = held.text.spans.iter().filter(move |span| span.is_right == right);
             spans.map(|span| (held.text.name.clone(), !about(held, span.span).is_empty())).collect()
         };
-        Share::of(held.iter().flat_map(of_text), seed)
+        ClusteredShare::from_cases(held.iter().flat_map(of_text), seed)
     };
     let corrected = held.iter().flat_map(|held| {
         let wrong = held.text.spans.iter().filter(|span| !span.is_right);
         let doubted = wrong.map(|span| (span, about(held, span.span))).filter(|(_, doubts)| !doubts.is_empty());
-        let offered = |doubts: &[Doubt], span: &LabelledSpan| doubts.iter().any(|doubt| offers(held.text, doubt, span));
+        let offered = |doubts: &[TextDoubt], span: &LabelledSpan| {
+            doubts.iter().any(|doubt| offers_correction(held.text, doubt, span))
+        };
         doubted.map(|(span, doubts)| (held.text.name.clone(), offered(&doubts, span))).collect::<Vec<_>>()
     });
     let judged = held.iter().flat_map(|held| {
-        let labels = |doubt: &&Doubt| -> Vec<bool> {
-            let here = held.text.spans.iter().filter(|span| overlap(span.span, doubt.span));
+        let labels = |doubt: &&TextDoubt| -> Vec<bool> {
+            let here = held.text.spans.iter().filter(|span| spans_overlap(span.span, doubt.span));
             here.map(|span| span.is_right).collect()
         };
         let doubts = held.doubts.iter().filter(|doubt| is(doubt));
@@ -62,21 +69,21 @@ fn row(name: &'static str, held: &[Doubted<'_>], is: &dyn Fn(&Doubt) -> bool, se
     });
     let words = held.iter().flat_map(|held| {
         let text = held.text.text.as_str();
-        let words = pieces(text).filter(|place| text[place[0]..place[1]].contains(char::is_alphanumeric));
+        let words = split_blanks(text).filter(|place| text[place[0]..place[1]].contains(char::is_alphanumeric));
         words.map(|word| (held.text.name.clone(), !about(held, word).is_empty())).collect::<Vec<_>>()
     });
-    Row {
+    DoubtedSpanRow {
         name,
         wrong: spans(false),
         right: spans(true),
-        precision: Share::of(judged, seed),
-        corrected: Share::of(corrected, seed),
-        words: Share::of(words, seed),
+        precision: ClusteredShare::from_cases(judged, seed),
+        corrected: ClusteredShare::from_cases(corrected, seed),
+        words: ClusteredShare::from_cases(words, seed),
     }
 }
 
 /// Whether a doubt offers people's correction of a span: a change to the same text, or to leave out the whole span.
-fn offers(text: &LabelledText, doubt: &Doubt, span: &LabelledSpan) -> bool {
+fn offers_correction(text: &LabelledText, doubt: &TextDoubt, span: &LabelledSpan) -> bool {
     let covers = doubt.span[0] <= span.span[0] && span.span[1] <= doubt.span[1];
     let with = |span: [usize; 2], words: &str| {
         let (before, after) = (text.text.get(..span[0])?, text.text.get(span[1]..)?);
@@ -93,21 +100,21 @@ fn offers(text: &LabelledText, doubt: &Doubt, span: &LabelledSpan) -> bool {
     span.corrections.iter().any(is_offered)
 }
 
-pub(super) fn shown(rows: &[Row]) -> String {
+pub(super) fn doubt_table(rows: &[DoubtedSpanRow]) -> String {
     let head = ["doubtful", "wrong spans", "right spans", "precision of doubts", "offers people's words", "words"];
-    let line = |row: &Row| {
+    let line = |row: &DoubtedSpanRow| {
         let shares = [&row.wrong, &row.right, &row.precision, &row.corrected, &row.words];
-        let shares = shares.into_iter().map(|share| cell(share.as_ref()));
+        let shares = shares.into_iter().map(|share| share_cell(share.as_ref()));
         [row.name.to_owned()].into_iter().chain(shares).collect()
     };
     let lines: Vec<Vec<String>> = [head.map(str::to_owned).to_vec()].into_iter().chain(rows.iter().map(line)).collect();
-    table(&lines)
+    aligned_table(&lines)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use wayword_core::{Alternative, SceneId};
+    use wayword_core::{DoubtAlternative, SceneId};
     use wayword_formats::Episode;
 
     fn text() -> LabelledText {
@@ -125,28 +132,28 @@ mod tests {
         }
     }
 
-    fn doubt(span: [usize; 2], words: Option<&str>) -> Doubt {
-        let alternatives = vec![Alternative { words: words.map(str::to_owned), gain: None }];
-        Doubt { span, grade: Grade::Likely, cause: Cause::Change, reason: String::new(), alternatives }
+    fn doubt(span: [usize; 2], words: Option<&str>) -> TextDoubt {
+        let alternatives = vec![DoubtAlternative { words: words.map(str::to_owned), gain: None }];
+        TextDoubt { span, grade: DoubtGrade::Likely, cause: DoubtCause::Change, reason: String::new(), alternatives }
     }
 
     #[test]
     fn a_doubt_offers_people_s_words_whatever_the_ends_of_its_span() {
         let text = text();
-        assert!(offers(&text, &doubt([5, 9], Some("Right")), &text.spans[0]));
-        assert!(!offers(&text, &doubt([5, 9], Some("around")), &text.spans[0]));
-        assert!(!offers(&text, &doubt([0, 9], None), &text.spans[0]));
+        assert!(offers_correction(&text, &doubt([5, 9], Some("Right")), &text.spans[0]));
+        assert!(!offers_correction(&text, &doubt([5, 9], Some("around")), &text.spans[0]));
+        assert!(!offers_correction(&text, &doubt([0, 9], None), &text.spans[0]));
         let left_out = LabelledSpan { corrections: vec![None], ..text.spans[0].clone() };
-        assert!(offers(&text, &doubt([0, 9], None), &left_out));
-        assert!(!offers(&text, &doubt([5, 9], None), &left_out), "it leaves out only a part");
+        assert!(offers_correction(&text, &doubt([0, 9], None), &left_out));
+        assert!(!offers_correction(&text, &doubt([5, 9], None), &left_out), "it leaves out only a part");
     }
 
     #[test]
     fn spans_words_and_corrections_are_counted_by_grade() {
         let text = text();
         let doubts = [doubt([5, 9], Some("right"))];
-        let rows = rows(&[Doubted { text: &text, doubts: &doubts }], 0);
-        let count = |share: &Option<Share>| share.map(|share| (share.count, share.of));
+        let rows = doubt_rows(&[LabelledDoubts { text: &text, doubts: &doubts }], 0);
+        let count = |share: &Option<ClusteredShare>| share.map(|share| (share.count, share.of));
         let likely = &rows[0];
         assert_eq!((count(&likely.wrong), count(&likely.right)), (Some((1, 1)), Some((0, 1))));
         assert_eq!((count(&likely.precision), count(&likely.corrected)), (Some((1, 1)), Some((1, 1))));

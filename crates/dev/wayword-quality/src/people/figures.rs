@@ -1,121 +1,123 @@
 //! Recall, false alarms and precision of the findings of `check`, by spans that people labelled.
 
-use super::kinds::Kind;
-use crate::{judged::is_about, share::Share};
+use super::kinds::SpanTopic;
+use crate::{judged::is_about, share::ClusteredShare};
 use serde::Serialize;
-use wayword_core::{Check, Finding, Verdict};
+use wayword_core::{CheckFinding, CheckKind, Verdict};
 use wayword_formats::hear::{LabelledSpan, LabelledText};
 
 /// A labelled text with the findings of `check`.
-pub(super) struct Held<'a> {
+pub(super) struct LabelledFindings<'a> {
     pub(super) text: &'a LabelledText,
-    pub(super) findings: &'a [Finding],
+    pub(super) findings: &'a [CheckFinding],
 }
 
 /// The figures of one check, of one kind of span, or of all.
 #[derive(Debug, PartialEq, Serialize)]
-pub(super) struct Row {
+pub(super) struct CheckedSpanRow {
     pub(super) name: String,
     /// Of the wrong spans, those that a "fail" overlaps.
-    pub(super) recall: Option<Share>,
+    pub(super) recall: Option<ClusteredShare>,
     /// Of the right spans, those that a "fail" overlaps.
-    pub(super) false_alarms: Option<Share>,
+    pub(super) false_alarms: Option<ClusteredShare>,
     /// Of the findings "fail" that overlap a labelled span, those that overlap a wrong one.
-    pub(super) precision: Option<Share>,
+    pub(super) precision: Option<ClusteredShare>,
     /// Of the wrong spans, those that an "unverified" overlaps, and no "fail".
-    pub(super) unverified_wrong: Option<Share>,
+    pub(super) unverified_wrong: Option<ClusteredShare>,
     /// Of the right spans, those that an "unverified" overlaps, and no "fail".
-    pub(super) unverified_right: Option<Share>,
+    pub(super) unverified_right: Option<ClusteredShare>,
     /// Findings "fail" that overlap no labelled span, or name no words.
     pub(super) elsewhere: usize,
 }
 
 /// All figures.
 #[derive(Debug, PartialEq, Serialize)]
-pub(super) struct Figures {
-    pub(super) all: Row,
+pub(super) struct SpanFigures {
+    pub(super) all: CheckedSpanRow,
     /// A row for each check: all spans, with only the findings of that check.
-    pub(super) by_check: Vec<Row>,
+    pub(super) by_check: Vec<CheckedSpanRow>,
     /// A row for each kind of span: all findings, with only the spans of that kind.
-    pub(super) by_kind: Vec<Row>,
+    pub(super) by_kind: Vec<CheckedSpanRow>,
     /// Of the texts with a wrong span, those that fail.
-    pub(super) wrong_texts_that_fail: Option<Share>,
+    pub(super) wrong_texts_that_fail: Option<ClusteredShare>,
     /// Of the texts without one, those that fail.
-    pub(super) right_texts_that_fail: Option<Share>,
+    pub(super) right_texts_that_fail: Option<ClusteredShare>,
 }
 
 /// The findings and spans that a row counts: `None` takes all of them.
 #[derive(Clone, Copy)]
-struct Part {
-    check: Option<Check>,
-    kind: Option<Kind>,
+struct SpanSelection {
+    check: Option<CheckKind>,
+    kind: Option<SpanTopic>,
 }
 
-pub(super) fn figures(held: &[Held<'_>], seed: u64) -> Figures {
-    let used = |check: &Check| held.iter().any(|held| held.findings.iter().any(|finding| finding.check == *check));
-    let row = |name: &str, check, kind| row(name, held, Part { check, kind }, seed);
+pub(super) fn span_figures(held: &[LabelledFindings<'_>], seed: u64) -> SpanFigures {
+    let used = |check: &CheckKind| held.iter().any(|held| held.findings.iter().any(|finding| finding.check == *check));
+    let row = |name: &str, check, kind| span_row(name, held, SpanSelection { check, kind }, seed);
     let fails = |wrong: bool| {
         let texts = held.iter().filter(|held| held.text.spans.iter().any(|span| !span.is_right) == wrong);
-        Share::of(texts.map(|held| (&held.text.name, held.findings.iter().any(is_fail))), seed)
+        ClusteredShare::from_cases(texts.map(|held| (&held.text.name, held.findings.iter().any(is_fail))), seed)
     };
-    Figures {
+    SpanFigures {
         all: row("all", None, None),
-        by_check: Check::ALL.into_iter().filter(used).map(|check| row(check.name(), Some(check), None)).collect(),
-        by_kind: Kind::ALL.into_iter().map(|kind| row(kind.name(), None, Some(kind))).collect(),
+        by_check: CheckKind::ALL.into_iter().filter(used).map(|check| row(check.name(), Some(check), None)).collect(),
+        by_kind: SpanTopic::ALL.into_iter().map(|kind| row(kind.name(), None, Some(kind))).collect(),
         wrong_texts_that_fail: fails(true),
         right_texts_that_fail: fails(false),
     }
 }
 
-fn row(name: &str, held: &[Held<'_>], part: Part, seed: u64) -> Row {
+fn span_row(name: &str, held: &[LabelledFindings<'_>], part: SpanSelection, seed: u64) -> CheckedSpanRow {
     let spans = |right: bool, verdict: Verdict| {
         let cases = held.iter().flat_map(|held| {
-            let spans = part.spans(held).filter(move |span| span.is_right == right);
-            spans.map(|span| (&held.text.name, part.verdict(held, span) == Some(verdict)))
+            let spans = part.selected_spans(held).filter(move |span| span.is_right == right);
+            spans.map(|span| (&held.text.name, part.worst_verdict(held, span) == Some(verdict)))
         });
-        Share::of(cases, seed)
+        ClusteredShare::from_cases(cases, seed)
     };
     let fails = || {
-        held.iter().flat_map(|held| part.findings(held).filter(|found| is_fail(found)).map(move |found| (held, found)))
+        held.iter().flat_map(|held| {
+            part.selected_findings(held).filter(|found| is_fail(found)).map(move |found| (held, found))
+        })
     };
-    let labels = |held: &Held<'_>, found: &Finding| -> Vec<bool> {
+    let labels = |held: &LabelledFindings<'_>, found: &CheckFinding| -> Vec<bool> {
         let overlapped = |span: &&LabelledSpan| is_about(found, span.span);
         // A finding belongs to a kind if it overlaps a span of that kind. All spans that it overlaps then decide whether it is right.
-        let is_here = part.spans(held).any(|span| overlapped(&span));
+        let is_here = part.selected_spans(held).any(|span| overlapped(&span));
         held.text.spans.iter().filter(|_| is_here).filter(overlapped).map(|span| span.is_right).collect()
     };
     let judged = fails().map(|(held, found)| (&held.text.name, labels(held, found)));
     let on_labels = judged.filter(|(_, labels)| !labels.is_empty());
-    Row {
+    CheckedSpanRow {
         name: name.to_owned(),
         recall: spans(false, Verdict::Fail),
         false_alarms: spans(true, Verdict::Fail),
-        precision: Share::of(on_labels.map(|(text, labels)| (text, labels.contains(&false))), seed),
+        precision: ClusteredShare::from_cases(on_labels.map(|(text, labels)| (text, labels.contains(&false))), seed),
         unverified_wrong: spans(false, Verdict::Unverified),
         unverified_right: spans(true, Verdict::Unverified),
         elsewhere: fails().filter(|(held, found)| labels(held, found).is_empty()).count(),
     }
 }
 
-impl Part {
-    fn spans<'h>(self, held: &'h Held<'_>) -> impl Iterator<Item = &'h LabelledSpan> {
+impl SpanSelection {
+    fn selected_spans<'h>(self, held: &'h LabelledFindings<'_>) -> impl Iterator<Item = &'h LabelledSpan> {
         let is_of = move |span: &&LabelledSpan| {
             let words = held.text.text.get(span.span[0]..span.span[1]).unwrap_or_default();
-            self.kind.is_none_or(|kind| kind == Kind::of(words))
+            self.kind.is_none_or(|kind| kind == SpanTopic::for_span(words))
         };
         held.text.spans.iter().filter(is_of)
     }
 
-    fn findings<'h>(self, held: &'h Held<'_>) -> impl Iterator<Item = &'h Finding> {
+    fn selected_findings<'h>(self, held: &'h LabelledFindings<'_>) -> impl Iterator<Item = &'h CheckFinding> {
         held.findings.iter().filter(move |finding| self.check.is_none_or(|check| check == finding.check))
     }
 
     /// The worst verdict on a span; `None` where no finding is about it.
-    fn verdict(self, held: &Held<'_>, span: &LabelledSpan) -> Option<Verdict> {
-        self.findings(held).filter(|finding| is_about(finding, span.span)).map(|finding| finding.verdict).max()
+    fn worst_verdict(self, held: &LabelledFindings<'_>, span: &LabelledSpan) -> Option<Verdict> {
+        self.selected_findings(held).filter(|finding| is_about(finding, span.span)).map(|finding| finding.verdict).max()
     }
 }
 
-pub(super) fn is_fail(finding: &Finding) -> bool {
+pub(super) fn is_fail(finding: &CheckFinding) -> bool {
     finding.verdict == Verdict::Fail
 }

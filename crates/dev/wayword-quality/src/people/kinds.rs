@@ -2,21 +2,21 @@
 
 /// The topic of a span.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum SpanTopic {
     Turn,
     Floor,
     Room,
     Other,
 }
 
-const TURNS: [&str; 5] = ["left", "right", "straight", "around", "turn"];
-const FLOORS: [&str; 4] = ["up", "down", "stairs", "steps"];
-const ROOMS: [&str; 22] = [
+const TURN_WORDS: [&str; 5] = ["left", "right", "straight", "around", "turn"];
+const FLOOR_WORDS: [&str; 4] = ["up", "down", "stairs", "steps"];
+const ROOM_WORDS: [&str; 22] = [
     "room", "bedroom", "bathroom", "kitchen", "hall", "hallway", "corridor", "office", "closet", "lounge", "foyer",
     "entryway", "balcony", "patio", "deck", "porch", "outside", "garage", "library", "laundry", "gym", "spa",
 ];
 
-impl Kind {
+impl SpanTopic {
     pub(super) const ALL: [Self; 4] = [Self::Turn, Self::Floor, Self::Room, Self::Other];
 
     pub(super) fn name(self) -> &'static str {
@@ -29,14 +29,14 @@ impl Kind {
     }
 
     /// The first kind in [`Self::ALL`] of which the span has a word. "Down the hall" is a room.
-    pub(super) fn of(span: &str) -> Self {
+    pub(super) fn for_span(span: &str) -> Self {
         let span = span.to_lowercase();
         let has = |list: &[&str]| span.split(|c: char| !c.is_alphanumeric()).any(|word| list.contains(&word));
-        if has(&TURNS) {
+        if has(&TURN_WORDS) {
             Self::Turn
-        } else if has(&FLOORS) && !span.contains("hall") {
+        } else if has(&FLOOR_WORDS) && !span.contains("hall") {
             Self::Floor
-        } else if has(&ROOMS) {
+        } else if has(&ROOM_WORDS) {
             Self::Room
         } else {
             Self::Other
@@ -51,16 +51,16 @@ mod tests {
     #[test]
     fn a_span_is_of_the_kind_of_its_words() {
         for (span, kind) in [
-            ("turn left", Kind::Turn),
-            ("on the right", Kind::Turn),
-            ("walk up", Kind::Floor),
-            ("the stairs", Kind::Floor),
-            ("down the hallway", Kind::Room),
-            ("Kitchen", Kind::Room),
-            ("walk past", Kind::Other),
-            ("upright lamp", Kind::Other),
+            ("turn left", SpanTopic::Turn),
+            ("on the right", SpanTopic::Turn),
+            ("walk up", SpanTopic::Floor),
+            ("the stairs", SpanTopic::Floor),
+            ("down the hallway", SpanTopic::Room),
+            ("Kitchen", SpanTopic::Room),
+            ("walk past", SpanTopic::Other),
+            ("upright lamp", SpanTopic::Other),
         ] {
-            assert_eq!(Kind::of(span), kind, "{span}");
+            assert_eq!(SpanTopic::for_span(span), kind, "{span}");
         }
     }
 }

@@ -1,9 +1,9 @@
 use super::*;
-use crate::made_up::Building;
+use crate::made_up::TestBuildingFolder;
 use clap::Parser;
 use serde_json::Value;
 use std::path::PathBuf;
-use wayword_core::{Check, Finding, Verdict};
+use wayword_core::{CheckFinding, CheckKind, Verdict};
 use wayword_testkit::{SCAN, viewpoint_id};
 
 /// A made-up text in HEAR's format, in which single spaces separate the tokens.
@@ -18,31 +18,32 @@ fn labelled(path: &[usize], text: &str, labels: &Value) -> Value {
 #[derive(Parser)]
 struct Line {
     #[command(flatten)]
-    flags: Judging,
+    flags: JudgingArgs,
 }
 
-fn flags(file: &Path, data: &Path) -> Judging {
+fn flags(file: &Path, data: &Path) -> JudgingArgs {
     let words =
         ["people".into(), file.to_owned(), "--platform".into(), "matterport".into(), "--data".into(), data.to_owned()];
     Line::try_parse_from(words).unwrap().flags
 }
 
 /// The figures of texts on the made-up building.
-fn measured(texts: &Value) -> Result<Figures, Error> {
-    let building = Building::new();
-    let file = building.data().join("hear.json");
+fn measured(texts: &Value) -> Result<SpanFigures, CommandError> {
+    let building = TestBuildingFolder::new();
+    let file = building.data_folder().join("hear.json");
     std::fs::write(&file, texts.to_string()).unwrap();
-    held(&file, &building.data())
+    held(&file, &building.data_folder())
 }
 
-fn held(file: &Path, data: &Path) -> Result<Figures, Error> {
-    let quiet = Output::new(true, true);
-    let (texts, Judged { findings, .. }) = found(flags(file, data), &quiet)?;
-    let held: Vec<Held<'_>> = texts.iter().zip(&findings).map(|(text, findings)| Held { text, findings }).collect();
-    Ok(figures(&held, 0))
+fn held(file: &Path, data: &Path) -> Result<SpanFigures, CommandError> {
+    let quiet = CommandOutput::new(true, true);
+    let (texts, CheckedTexts { findings, .. }) = check_labelled_texts(flags(file, data), &quiet)?;
+    let held: Vec<LabelledFindings<'_>> =
+        texts.iter().zip(&findings).map(|(text, findings)| LabelledFindings { text, findings }).collect();
+    Ok(span_figures(&held, 0))
 }
 
-fn count(share: Option<&crate::share::Share>) -> (usize, usize) {
+fn count(share: Option<&crate::share::ClusteredShare>) -> (usize, usize) {
     share.map_or((0, 0), |share| (share.count, share.of))
 }
 
@@ -84,31 +85,31 @@ fn texts_on_unknown_paths_are_refused_by_their_names() {
 }
 
 /// "turn left . walk past the sofa in the hall": three spans are right, "past the sofa" is wrong.
-fn by_hand(findings: &[(Check, Verdict, &str)]) -> Figures {
+fn by_hand(findings: &[(CheckKind, Verdict, &str)]) -> SpanFigures {
     let text = "turn left . walk past the sofa in the hall";
     let span = |words: &str| text.find(words).map(|from| [from, from + words.len()]);
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("hear.json");
     let item = labelled(&[0], text, &json!({"0-1": 1, "3": 1, "4-6": 0, "9": 1}));
     std::fs::write(&file, json!({ "a": item }).to_string()).unwrap();
-    let texts = hear::read(&file).unwrap();
-    let findings = findings.iter().map(|(check, verdict, words)| Finding {
+    let texts = hear::read_hear_file(&file).unwrap();
+    let findings = findings.iter().map(|(check, verdict, words)| CheckFinding {
         check: *check,
         verdict: *verdict,
         reason: String::new(),
         span: span(words),
     });
-    let findings: Vec<Finding> = findings.collect();
-    figures(&[Held { text: &texts[0], findings: &findings }], 0)
+    let findings: Vec<CheckFinding> = findings.collect();
+    span_figures(&[LabelledFindings { text: &texts[0], findings: &findings }], 0)
 }
 
 #[test]
 fn a_finding_counts_for_every_span_that_it_overlaps_and_only_for_its_check() {
     let figures = by_hand(&[
-        (Check::Landmarks, Verdict::Fail, "walk past the sofa"),
-        (Check::Turns, Verdict::Fail, "left"),
-        (Check::Turns, Verdict::Fail, "in"),
-        (Check::Form, Verdict::Fail, "no such words"),
+        (CheckKind::Landmarks, Verdict::Fail, "walk past the sofa"),
+        (CheckKind::Turns, Verdict::Fail, "left"),
+        (CheckKind::Turns, Verdict::Fail, "in"),
+        (CheckKind::Form, Verdict::Fail, "no such words"),
     ]);
     assert_eq!(count(figures.all.recall.as_ref()), (1, 1));
     assert_eq!(count(figures.all.false_alarms.as_ref()), (2, 3), "turn left, and walk");
@@ -125,9 +126,9 @@ fn a_finding_counts_for_every_span_that_it_overlaps_and_only_for_its_check() {
 #[test]
 fn a_span_is_unverified_where_nothing_there_fails() {
     let figures = by_hand(&[
-        (Check::Landmarks, Verdict::Unverified, "sofa in the hall"),
-        (Check::Turns, Verdict::Unverified, "turn"),
-        (Check::Order, Verdict::Fail, "left"),
+        (CheckKind::Landmarks, Verdict::Unverified, "sofa in the hall"),
+        (CheckKind::Turns, Verdict::Unverified, "turn"),
+        (CheckKind::Order, Verdict::Fail, "left"),
     ]);
     assert_eq!(count(figures.all.unverified_wrong.as_ref()), (1, 1));
     assert_eq!(count(figures.all.unverified_right.as_ref()), (1, 3));
@@ -136,8 +137,8 @@ fn a_span_is_unverified_where_nothing_there_fails() {
 
 #[test]
 fn the_table_has_a_line_for_each_check_each_kind_and_all() {
-    let figures = by_hand(&[(Check::Turns, Verdict::Fail, "left")]);
-    let shown = shown(&figures, 1, &["checked against: labels".to_owned()]);
+    let figures = by_hand(&[(CheckKind::Turns, Verdict::Fail, "left")]);
+    let shown = figures_table(&figures, 1, &["checked against: labels".to_owned()]);
     let firsts: Vec<&str> = shown.lines().map(|line| line.split("  ").next().unwrap()).collect();
     assert_eq!(firsts[1..7], ["turns", "turns and sides", "stairs and floors", "rooms", "landmarks and verbs", "all"]);
     assert!(shown.contains("33.3 % [33.3, 33.3] (1/3)") && shown.ends_with("checked against: labels"), "{shown}");

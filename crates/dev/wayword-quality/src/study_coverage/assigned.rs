@@ -5,16 +5,16 @@ use serde::Serialize;
 use std::fmt;
 
 /// Items of a simulated study.
-pub(super) const ITEMS: usize = 60;
+pub(super) const STUDY_ITEM_COUNT: usize = 60;
 
 /// How many people give how many answers each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-pub(super) struct Design {
+pub(super) struct SimulatedDesign {
     pub(super) persons: usize,
     pub(super) each: usize,
 }
 
-impl fmt::Display for Design {
+impl fmt::Display for SimulatedDesign {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} x {}", self.persons, self.each)
     }
@@ -23,17 +23,17 @@ impl fmt::Display for Design {
 /// How much persons differ from each other, and items as well.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub(super) enum Effects {
+pub(super) enum EffectSize {
     None,
     Middle,
     Large,
 }
 
-impl Effects {
+impl EffectSize {
     pub(super) const ALL: [Self; 3] = [Self::None, Self::Middle, Self::Large];
 
     /// The standard deviation of persons, and also of items, on the logit scale.
-    pub(super) fn sd(self) -> f64 {
+    pub(super) fn sd_logits(self) -> f64 {
         match self {
             Self::None => 0.0,
             Self::Middle => 0.75,
@@ -52,7 +52,7 @@ impl Effects {
 
 /// An answer that a person is to give.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Slot {
+pub(super) struct AnswerSlot {
     pub(super) person: usize,
     pub(super) item: usize,
     /// Which condition of a comparison it is about.
@@ -61,12 +61,12 @@ pub(super) struct Slot {
 
 /// Assigns items as a real study does: each person gets the items with the fewest answers, at random among equals, and none twice. Half of
 /// a person's answers and about half of an item's answers are about the second condition.
-pub(super) fn assigned(design: Design, rng: &mut impl Rng) -> Vec<Slot> {
-    let mut filled = [0_usize; ITEMS];
-    let mut seconds = [0_usize; ITEMS];
+pub(super) fn assign_slots(design: SimulatedDesign, rng: &mut impl Rng) -> Vec<AnswerSlot> {
+    let mut filled = [0_usize; STUDY_ITEM_COUNT];
+    let mut seconds = [0_usize; STUDY_ITEM_COUNT];
     let mut slots = Vec::with_capacity(design.persons * design.each);
     for person in 0..design.persons {
-        let mut items: Vec<usize> = (0..ITEMS).collect();
+        let mut items: Vec<usize> = (0..STUDY_ITEM_COUNT).collect();
         items.shuffle(rng);
         items.sort_by_key(|item| filled[*item]);
         items.truncate(design.each);
@@ -78,7 +78,7 @@ pub(super) fn assigned(design: Design, rng: &mut impl Rng) -> Vec<Slot> {
             let is_second = at < half;
             filled[item] += 1;
             seconds[item] += usize::from(is_second);
-            slots.push(Slot { person, item, is_second });
+            slots.push(AnswerSlot { person, item, is_second });
         }
     }
     slots
@@ -92,11 +92,11 @@ mod tests {
     #[test]
     fn assigned_gives_no_person_an_item_twice_and_fills_items_evenly() {
         for (persons, each) in [(30, 1), (30, 10), (60, 5)] {
-            let slots = assigned(Design { persons, each }, &mut wayword_core::rng(1, &["test"]));
+            let slots = assign_slots(SimulatedDesign { persons, each }, &mut wayword_core::seeded_rng(1, &["test"]));
             let places: BTreeSet<(usize, usize)> = slots.iter().map(|slot| (slot.person, slot.item)).collect();
             assert_eq!((slots.len(), places.len()), (persons * each, persons * each));
             let answers = |item: usize| slots.iter().filter(|slot| slot.item == item).count();
-            let (fewest, most) = ((0..ITEMS).map(answers).min(), (0..ITEMS).map(answers).max());
+            let (fewest, most) = ((0..STUDY_ITEM_COUNT).map(answers).min(), (0..STUDY_ITEM_COUNT).map(answers).max());
             assert!(most <= fewest.map(|fewest| fewest + 1), "{fewest:?} {most:?}");
             let seconds = slots.iter().filter(|slot| slot.is_second).count();
             assert_eq!(seconds, slots.len() / 2);

@@ -1,19 +1,19 @@
 //! The figures of a study that are simulated: their true values, and the intervals that one simulated study gives.
 
-use super::assigned::{Design, Effects, assigned};
+use super::assigned::{EffectSize, SimulatedDesign, assign_slots};
 use super::{choices, ratings, walks};
 use rand::Rng;
 use serde::Serialize;
 use std::fmt;
-use wayword_metrics::{Interval, mean, mean_difference, share, share_difference};
+use wayword_metrics::{ConfidenceInterval, answer_mean, answer_share, mean_difference, share_difference};
 
 /// The share that an interval should cover.
-pub(super) const LEVEL: f64 = 0.95;
+pub(super) const CONFIDENCE_LEVEL: f64 = 0.95;
 
 /// A figure of a study. Shares and means have a base: the share of success in the first condition.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub(super) enum Figure {
+pub(super) enum SimulatedFigure {
     /// A share.
     Share(f64),
     /// The difference between two shares.
@@ -28,7 +28,7 @@ pub(super) enum Figure {
     Strengths,
 }
 
-impl Figure {
+impl SimulatedFigure {
     pub(super) const ALL: [Self; 10] = [
         Self::Share(0.5),
         Self::Share(0.8),
@@ -43,46 +43,49 @@ impl Figure {
     ];
 
     /// The true values that the intervals should cover: one, or three for three systems.
-    pub(super) fn truth(self, effects: Effects) -> Vec<f64> {
-        let sd = effects.sd();
+    pub(super) fn true_values(self, effects: EffectSize) -> Vec<f64> {
+        let sd = effects.sd_logits();
         let between = |[first, second]: [f64; 2]| first - second;
         match self {
             Self::Share(base) => vec![base],
-            Self::ShareDifference(base) => vec![between(walks::shares(base, sd))],
-            Self::Mean(base) => vec![walks::means(base, sd)[0]],
-            Self::MeanDifference(base) => vec![between(walks::means(base, sd))],
-            Self::Alpha => vec![ratings::alpha(sd)],
-            Self::Strengths => choices::strengths(sd),
+            Self::ShareDifference(base) => vec![between(walks::true_shares(base, sd))],
+            Self::Mean(base) => vec![walks::true_means(base, sd)[0]],
+            Self::MeanDifference(base) => vec![between(walks::true_means(base, sd))],
+            Self::Alpha => vec![ratings::true_alpha(sd)],
+            Self::Strengths => choices::true_strengths(sd),
         }
     }
 
     /// The intervals that one simulated study gives, in the order of the truth; none where it gives none.
-    pub(super) fn intervals(self, design: Design, effects: Effects, rng: &mut impl Rng) -> Vec<Interval> {
-        let (slots, sd) = (assigned(design, rng), effects.sd());
-        let all = |slots: &[_], base, rng: &mut _| walks::drawn(slots, base, sd, rng);
+    pub(super) fn simulate_intervals(
+        self,
+        design: SimulatedDesign,
+        effects: EffectSize,
+        rng: &mut impl Rng,
+    ) -> Vec<ConfidenceInterval> {
+        let (slots, sd) = (assign_slots(design, rng), effects.sd_logits());
+        let all = |slots: &[_], base, rng: &mut _| walks::draw_walks(slots, base, sd, rng);
         let interval = match self {
-            Self::Share(base) => {
-                share(&all(&walks::of_one(&slots), base, rng).successes[0], LEVEL).and_then(|of| of.interval)
-            }
-            Self::Mean(base) => {
-                mean(&all(&walks::of_one(&slots), base, rng).values[0], LEVEL).and_then(|of| of.interval)
-            }
+            Self::Share(base) => answer_share(&all(&walks::of_one(&slots), base, rng).successes[0], CONFIDENCE_LEVEL)
+                .and_then(|of| of.interval),
+            Self::Mean(base) => answer_mean(&all(&walks::of_one(&slots), base, rng).values[0], CONFIDENCE_LEVEL)
+                .and_then(|of| of.interval),
             Self::ShareDifference(base) => {
                 let [first, second] = all(&slots, base, rng).successes;
-                share_difference(&first, &second, LEVEL).and_then(|of| of.interval)
+                share_difference(&first, &second, CONFIDENCE_LEVEL).and_then(|of| of.interval)
             }
             Self::MeanDifference(base) => {
                 let [first, second] = all(&slots, base, rng).values;
-                mean_difference(&first, &second, LEVEL).and_then(|of| of.interval)
+                mean_difference(&first, &second, CONFIDENCE_LEVEL).and_then(|of| of.interval)
             }
-            Self::Alpha => ratings::interval(&slots, sd, rng),
-            Self::Strengths => return choices::intervals(&slots, sd, rng),
+            Self::Alpha => ratings::alpha_interval(&slots, sd, rng),
+            Self::Strengths => return choices::strength_intervals(&slots, sd, rng),
         };
         interval.into_iter().collect()
     }
 }
 
-impl fmt::Display for Figure {
+impl fmt::Display for SimulatedFigure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Share(base) => write!(f, "share, {base}"),

@@ -3,11 +3,11 @@
 use rand::Rng;
 
 /// Draws normal numbers with mean 0 and standard deviation `sd`.
-pub(super) fn normals(count: usize, sd: f64, rng: &mut impl Rng) -> Vec<f64> {
-    (0..count).map(|_| sd * normal(rng)).collect()
+pub(super) fn draw_normals(count: usize, sd: f64, rng: &mut impl Rng) -> Vec<f64> {
+    (0..count).map(|_| sd * draw_normal(rng)).collect()
 }
 
-pub(super) fn normal(rng: &mut impl Rng) -> f64 {
+pub(super) fn draw_normal(rng: &mut impl Rng) -> f64 {
     let radius = (-2.0 * libm::log(1.0 - rng.random::<f64>())).sqrt();
     radius * libm::cos(std::f64::consts::TAU * rng.random::<f64>())
 }
@@ -17,7 +17,7 @@ pub(super) fn expit(logit: f64) -> f64 {
 }
 
 /// The mean of a function of a normal variable, by the trapezoid rule.
-pub(super) fn over(mean: f64, sd: f64, of: impl Fn(f64) -> f64) -> f64 {
+pub(super) fn mean_over_normal(mean: f64, sd: f64, of: impl Fn(f64) -> f64) -> f64 {
     let (mut sum, mut weights) = (0.0, 0.0);
     for step in -72..=72 {
         let at = f64::from(step) / 8.0;
@@ -30,11 +30,11 @@ pub(super) fn over(mean: f64, sd: f64, of: impl Fn(f64) -> f64) -> f64 {
 
 /// The logit at which the mean share over all persons and items is `share`, by bisection. With variation it is farther from 0 than the
 /// logit of `share` itself.
-pub(super) fn centre(share: f64, sd: f64) -> f64 {
+pub(super) fn centre_for_share(share: f64, sd: f64) -> f64 {
     let (mut low, mut high) = (-30.0, 30.0);
     for _ in 0..80 {
         let middle = f64::midpoint(low, high);
-        if over(middle, sd, expit) < share {
+        if mean_over_normal(middle, sd, expit) < share {
             low = middle;
         } else {
             high = middle;

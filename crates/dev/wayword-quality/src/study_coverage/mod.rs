@@ -9,9 +9,9 @@ mod ratings;
 mod tried;
 mod walks;
 
-use crate::share::table;
+use crate::share::aligned_table;
 use clap::Args;
-use wayword_run::{error::Error, output::Output};
+use wayword_run::{error::CommandError, output::CommandOutput};
 
 /// The flags of `study-coverage`.
 #[derive(Debug, Args)]
@@ -20,7 +20,7 @@ A column is a number of people, how many of 60 items each answers, and how much 
 none, middle (standard deviation 0.75 each), large (1.5). Two conditions have half of the answers each, and half of what
 people and items do to one of them they do to both. The truth is that of all people and items. A cell is the percentage of 95 % intervals that
 cover it; in brackets the percentage of studies that give an interval, where that is not all.")]
-pub struct Flags {
+pub struct StudyCoverageArgs {
     /// Simulated studies of each figure in each column.
     #[arg(long, default_value_t = 2000, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     studies: u64,
@@ -32,8 +32,8 @@ pub struct Flags {
     pub json: bool,
 }
 
-pub fn measure(flags: &Flags, output: &Output) -> Result<(), Error> {
-    let cells = tried::all(flags.studies, flags.seed);
-    output.data(&cells, table(&tried::rows(&cells)));
+pub fn measure_study_coverage(flags: &StudyCoverageArgs, output: &CommandOutput) -> Result<(), CommandError> {
+    let cells = tried::simulate_all(flags.studies, flags.seed);
+    output.print_result(&cells, aligned_table(&tried::coverage_rows(&cells)));
     Ok(())
 }

@@ -1,17 +1,17 @@
 //! Turns a text into features: which runs of one to three words it has, and its length.
 
-use super::logistic::Row;
+use super::logistic::SparseRow;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The longest run of words that is a feature.
-const LONGEST: usize = 3;
+const MAX_GRAM_WORDS: usize = 3;
 /// A run of words is a feature only if at least this many texts have it.
 const LEAST_TEXTS: usize = 2;
 /// A length is counted in this many words.
 const LENGTH_UNIT: f64 = 20.0;
 
 /// A text in lower case, with letters and digits of ASCII alone, and one space between words.
-pub(super) fn plain(text: &str) -> String {
+pub(super) fn to_plain(text: &str) -> String {
     let kept = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { ' ' };
     let lower = text.to_lowercase();
     let kept: String = lower.chars().map(kept).collect();
@@ -19,19 +19,19 @@ pub(super) fn plain(text: &str) -> String {
 }
 
 /// The runs of words of a plain text.
-pub(super) fn grams(plain: &str) -> BTreeSet<String> {
+pub(super) fn word_grams(plain: &str) -> BTreeSet<String> {
     let words: Vec<&str> = plain.split(' ').filter(|word| !word.is_empty()).collect();
-    (1..=LONGEST).flat_map(|length| words.windows(length).map(|run| run.join(" ")).collect::<Vec<_>>()).collect()
+    (1..=MAX_GRAM_WORDS).flat_map(|length| words.windows(length).map(|run| run.join(" ")).collect::<Vec<_>>()).collect()
 }
 
 /// The features that some texts have: their runs of words, a length, and a constant.
-pub(super) struct Features {
+pub(super) struct GramFeatures {
     places: BTreeMap<String, usize>,
 }
 
-impl Features {
+impl GramFeatures {
     /// The features of texts, each given by its runs of words.
-    pub(super) fn of<'a>(texts: impl Iterator<Item = &'a BTreeSet<String>>) -> Self {
+    pub(super) fn from_texts<'a>(texts: impl Iterator<Item = &'a BTreeSet<String>>) -> Self {
         let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
         texts.flatten().for_each(|gram| *counts.entry(gram).or_default() += 1);
         let frequent = counts.into_iter().filter(|(_, count)| *count >= LEAST_TEXTS);
@@ -44,12 +44,12 @@ impl Features {
     }
 
     /// The runs of words, each with its place.
-    pub(super) fn places(&self) -> impl Iterator<Item = (&str, usize)> {
+    pub(super) fn gram_places(&self) -> impl Iterator<Item = (&str, usize)> {
         self.places.iter().map(|(gram, at)| (gram.as_str(), *at))
     }
 
     /// The row of a text.
-    pub(super) fn row(&self, plain: &str, grams: &BTreeSet<String>) -> Row {
+    pub(super) fn feature_row(&self, plain: &str, grams: &BTreeSet<String>) -> SparseRow {
         let words = plain.split_whitespace().count() as f64;
         let known = grams.iter().filter_map(|gram| Some((*self.places.get(gram)?, 1.0)));
         known.chain([(self.places.len(), words / LENGTH_UNIT), (self.places.len() + 1, 1.0)]).collect()
@@ -62,16 +62,16 @@ mod tests {
 
     #[test]
     fn case_marks_and_white_space_are_no_features() {
-        assert_eq!(plain(" Walk\tto the\nTV-stand,  it's lit. "), "walk to the tv stand it s lit");
+        assert_eq!(to_plain(" Walk\tto the\nTV-stand,  it's lit. "), "walk to the tv stand it s lit");
     }
 
     #[test]
     fn runs_of_up_to_three_words_are_features_where_two_texts_have_them() {
-        let texts = ["go to the door", "go to it"].map(grams);
+        let texts = ["go to the door", "go to it"].map(word_grams);
         assert!(texts[0].contains("to the door") && !texts[0].contains("go to the door"));
-        let features = Features::of(texts.iter());
-        let names: Vec<&str> = features.places().map(|(gram, _)| gram).collect();
+        let features = GramFeatures::from_texts(texts.iter());
+        let names: Vec<&str> = features.gram_places().map(|(gram, _)| gram).collect();
         assert_eq!(names, ["go", "go to", "to"]);
-        assert_eq!(features.row("to it", &grams("to it")), [(2, 1.0), (3, 0.1), (4, 1.0)]);
+        assert_eq!(features.feature_row("to it", &word_grams("to it")), [(2, 1.0), (3, 0.1), (4, 1.0)]);
     }
 }

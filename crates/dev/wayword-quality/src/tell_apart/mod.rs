@@ -7,22 +7,22 @@
 mod grams;
 mod logistic;
 
-use crate::share::Share;
+use crate::share::ClusteredShare;
 use clap::Args;
-use grams::{Features, grams, plain};
-use logistic::{Model, Row};
+use grams::{GramFeatures, to_plain, word_grams};
+use logistic::{LogisticModel, SparseRow};
 use rand::seq::IndexedRandom;
 use serde::Serialize;
 use std::{
     collections::{BTreeMap, BTreeSet},
     path::PathBuf,
 };
-use wayword_core::rng;
+use wayword_core::seeded_rng;
 use wayword_formats::Episode;
-use wayword_run::{error::Error, output::Output};
+use wayword_run::{error::CommandError, output::CommandOutput};
 
 /// The cost of errors relative to the ridge penalty: scikit-learn's C.
-const COST: f64 = 0.3;
+const ERROR_COST: f64 = 0.3;
 
 /// The flags of `tell-apart`.
 #[derive(Debug, Args)]
@@ -30,7 +30,7 @@ const COST: f64 = 0.3;
 Accuracy 50 % means that the texts cannot be told apart. Read it beside a figure of content (`texts`, `wayword check`):
 a text about nothing cannot be told from a person's either. \"people\" compares the people's first texts with their
 second ones, by the same classifier.")]
-pub struct Flags {
+pub struct TellApartArgs {
     /// People's texts: a dataset file of any format.
     people: PathBuf,
     /// Generated texts of the same items.
@@ -51,27 +51,27 @@ pub struct Flags {
 
 /// How well the classifier separates two sides.
 #[derive(Debug, Serialize)]
-struct Apart {
+struct SideSeparation {
     items: usize,
     buildings: usize,
     /// The share of texts that the classifier puts on the right side, with an interval over buildings.
-    accuracy: Option<Share>,
+    accuracy: Option<ClusteredShare>,
     /// The chance that a generated text scores higher than a person's.
     auc: f64,
 }
 
 #[derive(Debug, Serialize)]
-struct Measured {
-    apart: Apart,
+struct TellApartReport {
+    apart: SideSeparation,
     /// People's first texts against their second ones, where items have two.
-    people: Option<Apart>,
+    people: Option<SideSeparation>,
     /// The runs of words that separate the sides best: those of generated texts first, then those of people's.
-    tells: Vec<Tell>,
+    tells: Vec<TellingGram>,
 }
 
 /// A run of words that is much more frequent on one side.
 #[derive(Debug, Clone, Serialize)]
-struct Tell {
+struct TellingGram {
     words: String,
     /// Its weight, above 0 for generated texts.
     weight: f64,
@@ -81,106 +81,107 @@ struct Tell {
     people: f64,
 }
 
-pub fn measure(flags: &Flags, output: &Output) -> Result<(), Error> {
-    let people = by_item(wayword_formats::read(&flags.people)?);
-    let generated = by_item(wayword_formats::read(&flags.generated)?);
-    let texts = drawn(&people, &generated, flags.seed);
+pub fn measure_tell_apart(flags: &TellApartArgs, output: &CommandOutput) -> Result<(), CommandError> {
+    let people = by_item(wayword_formats::read_any_format(&flags.people)?);
+    let generated = by_item(wayword_formats::read_any_format(&flags.generated)?);
+    let texts = draw_sides(&people, &generated, flags.seed);
     if texts.is_empty() {
-        return Err(Error::usage("no item has texts in both files", "give files of the same items"));
+        return Err(CommandError::usage("no item has texts in both files", "give files of the same items"));
     }
     let folds = flags.folds as usize;
     let pairs = first_and_second(&people);
-    let measured = Measured {
-        apart: apart(&texts, folds, flags.seed),
-        people: (!pairs.is_empty()).then(|| apart(&pairs, folds, flags.seed)),
-        tells: tells(&texts, flags.show),
+    let measured = TellApartReport {
+        apart: separate_sides(&texts, folds, flags.seed),
+        people: (!pairs.is_empty()).then(|| separate_sides(&pairs, folds, flags.seed)),
+        tells: telling_grams(&texts, flags.show),
     };
-    output.data(&measured, lines(&measured).join("\n"));
+    output.print_result(&measured, report_lines(&measured).join("\n"));
     Ok(())
 }
 
 /// The texts of an item, and its building.
-struct Item {
+struct SideItem {
     building: String,
     texts: Vec<String>,
 }
 
-fn by_item(episodes: Vec<Episode>) -> BTreeMap<String, Item> {
-    let mut items: BTreeMap<String, Item> = BTreeMap::new();
+fn by_item(episodes: Vec<Episode>) -> BTreeMap<String, SideItem> {
+    let mut items: BTreeMap<String, SideItem> = BTreeMap::new();
     for Episode { id, scene, instructions, .. } in episodes {
-        let item = items.entry(id).or_insert_with(|| Item { building: scene.to_string(), texts: Vec::new() });
-        item.texts.extend(instructions.iter().map(|text| plain(text)));
+        let item = items.entry(id).or_insert_with(|| SideItem { building: scene.to_string(), texts: Vec::new() });
+        item.texts.extend(instructions.iter().map(|text| to_plain(text)));
     }
     items
 }
 
 /// A text of one side.
 #[derive(Debug, Clone)]
-struct Text {
+struct SideText {
     plain: String,
     building: String,
     is_generated: bool,
 }
 
 /// One text of each side for each item that both have.
-fn drawn(people: &BTreeMap<String, Item>, generated: &BTreeMap<String, Item>, seed: u64) -> Vec<Text> {
-    let pair = |(id, item): (&String, &Item)| {
-        let one = |texts: &[String], side: &str| texts.choose(&mut rng(seed, &["tell-apart", side, id])).cloned();
+fn draw_sides(people: &BTreeMap<String, SideItem>, generated: &BTreeMap<String, SideItem>, seed: u64) -> Vec<SideText> {
+    let pair = |(id, item): (&String, &SideItem)| {
+        let one =
+            |texts: &[String], side: &str| texts.choose(&mut seeded_rng(seed, &["tell-apart", side, id])).cloned();
         let other = one(&generated.get(id)?.texts, "generated")?;
-        Some(sides(item, one(&item.texts, "people")?, other))
+        Some(pair_texts(item, one(&item.texts, "people")?, other))
     };
     people.iter().filter_map(pair).flatten().collect()
 }
 
 /// People's first texts, and their second ones in the place of generated texts.
-fn first_and_second(people: &BTreeMap<String, Item>) -> Vec<Text> {
-    let pair = |item: &Item| Some(sides(item, item.texts.first()?.clone(), item.texts.get(1)?.clone()));
+fn first_and_second(people: &BTreeMap<String, SideItem>) -> Vec<SideText> {
+    let pair = |item: &SideItem| Some(pair_texts(item, item.texts.first()?.clone(), item.texts.get(1)?.clone()));
     people.values().filter_map(pair).flatten().collect()
 }
 
-fn sides(item: &Item, person: String, other: String) -> [Text; 2] {
-    let text = |plain, is_generated| Text { plain, building: item.building.clone(), is_generated };
+fn pair_texts(item: &SideItem, person: String, other: String) -> [SideText; 2] {
+    let text = |plain, is_generated| SideText { plain, building: item.building.clone(), is_generated };
     [text(person, false), text(other, true)]
 }
 
-fn apart(texts: &[Text], folds: usize, seed: u64) -> Apart {
-    let scores = scores(texts, folds);
+fn separate_sides(texts: &[SideText], folds: usize, seed: u64) -> SideSeparation {
+    let scores = cross_validated_scores(texts, folds);
     let right = texts.iter().zip(&scores).map(|(text, score)| (&text.building, (*score > 0.0) == text.is_generated));
     let buildings: BTreeSet<&String> = texts.iter().map(|text| &text.building).collect();
-    Apart {
+    SideSeparation {
         items: texts.len() / 2,
         buildings: buildings.len(),
-        accuracy: Share::of(right, seed),
-        auc: auc(texts.iter().map(|text| text.is_generated).zip(scores.iter().copied()).collect()),
+        accuracy: ClusteredShare::from_cases(right, seed),
+        auc: area_under_curve(texts.iter().map(|text| text.is_generated).zip(scores.iter().copied()).collect()),
     }
 }
 
 /// The score of each text by a classifier that never saw its building.
-fn scores(texts: &[Text], folds: usize) -> Vec<f64> {
-    let runs: Vec<BTreeSet<String>> = texts.iter().map(|text| grams(&text.plain)).collect();
+fn cross_validated_scores(texts: &[SideText], folds: usize) -> Vec<f64> {
+    let runs: Vec<BTreeSet<String>> = texts.iter().map(|text| word_grams(&text.plain)).collect();
     let fold_of = fold_of(texts, folds);
     let mut scores = vec![0.0; texts.len()];
     for fold in 0..folds {
         let (out, rest): (Vec<usize>, Vec<usize>) =
             (0..texts.len()).partition(|at| fold_of[&texts[*at].building] == fold);
-        let (features, model) = fit(texts, &runs, &rest);
+        let (features, model) = fit_classifier(texts, &runs, &rest);
         for at in out {
-            scores[at] = model.score(&features.row(&texts[at].plain, &runs[at]));
+            scores[at] = model.score_row(&features.feature_row(&texts[at].plain, &runs[at]));
         }
     }
     scores
 }
 
-fn fit(texts: &[Text], runs: &[BTreeSet<String>], on: &[usize]) -> (Features, Model) {
-    let features = Features::of(on.iter().map(|at| &runs[*at]));
-    let rows: Vec<Row> = on.iter().map(|at| features.row(&texts[*at].plain, &runs[*at])).collect();
+fn fit_classifier(texts: &[SideText], runs: &[BTreeSet<String>], on: &[usize]) -> (GramFeatures, LogisticModel) {
+    let features = GramFeatures::from_texts(on.iter().map(|at| &runs[*at]));
+    let rows: Vec<SparseRow> = on.iter().map(|at| features.feature_row(&texts[*at].plain, &runs[*at])).collect();
     let classes: Vec<bool> = on.iter().map(|at| texts[*at].is_generated).collect();
-    let model = Model::fit(&rows.iter().collect::<Vec<_>>(), &classes, features.len(), COST);
+    let model = LogisticModel::fit_rows(&rows.iter().collect::<Vec<_>>(), &classes, features.len(), ERROR_COST);
     (features, model)
 }
 
 /// The part of each building: the largest buildings first, each into the part with the fewest texts.
-fn fold_of(texts: &[Text], folds: usize) -> BTreeMap<String, usize> {
+fn fold_of(texts: &[SideText], folds: usize) -> BTreeMap<String, usize> {
     let mut sizes: BTreeMap<&String, usize> = BTreeMap::new();
     texts.iter().for_each(|text| *sizes.entry(&text.building).or_default() += 1);
     let mut sizes: Vec<(&String, usize)> = sizes.into_iter().collect();
@@ -195,7 +196,7 @@ fn fold_of(texts: &[Text], folds: usize) -> BTreeMap<String, usize> {
 }
 
 /// The area under the curve of hits over false alarms; 0.5 where one side is empty.
-fn auc(mut scored: Vec<(bool, f64)>) -> f64 {
+fn area_under_curve(mut scored: Vec<(bool, f64)>) -> f64 {
     scored.sort_by(|a, b| a.1.total_cmp(&b.1));
     let (mut below, mut won) = (0.0, 0.0);
     for same in scored.chunk_by(|a, b| a.1 == b.1) {
@@ -209,19 +210,19 @@ fn auc(mut scored: Vec<(bool, f64)>) -> f64 {
 }
 
 /// The runs of words with the greatest weights, of a classifier that saw all texts.
-fn tells(texts: &[Text], show: usize) -> Vec<Tell> {
+fn telling_grams(texts: &[SideText], show: usize) -> Vec<TellingGram> {
     if show == 0 {
         return Vec::new();
     }
-    let runs: Vec<BTreeSet<String>> = texts.iter().map(|text| grams(&text.plain)).collect();
-    let (features, model) = fit(texts, &runs, &(0..texts.len()).collect::<Vec<_>>());
-    let mut places: Vec<(&str, f64)> = features.places().map(|(words, at)| (words, model.weights[at])).collect();
+    let runs: Vec<BTreeSet<String>> = texts.iter().map(|text| word_grams(&text.plain)).collect();
+    let (features, model) = fit_classifier(texts, &runs, &(0..texts.len()).collect::<Vec<_>>());
+    let mut places: Vec<(&str, f64)> = features.gram_places().map(|(words, at)| (words, model.weights[at])).collect();
     places.sort_by(|a, b| b.1.total_cmp(&a.1));
     let share = |words: &str, is_generated: bool| {
         let of_side = || texts.iter().zip(&runs).filter(|(text, _)| text.is_generated == is_generated);
         of_side().filter(|(_, runs)| runs.contains(words)).count() as f64 / of_side().count().max(1) as f64
     };
-    let tell = |(words, weight): &(&str, f64)| Tell {
+    let tell = |(words, weight): &(&str, f64)| TellingGram {
         words: (*words).to_owned(),
         weight: (weight * 1e3).round() / 1e3,
         generated: share(words, true),
@@ -231,13 +232,13 @@ fn tells(texts: &[Text], show: usize) -> Vec<Tell> {
     places.iter().take(show).chain(last).map(tell).collect()
 }
 
-fn lines(measured: &Measured) -> Vec<String> {
-    let line = |name: &str, apart: &Apart| {
-        let accuracy = apart.accuracy.as_ref().map(Share::to_string).unwrap_or_default();
-        let Apart { items, buildings, auc, .. } = apart;
+fn report_lines(measured: &TellApartReport) -> Vec<String> {
+    let line = |name: &str, apart: &SideSeparation| {
+        let accuracy = apart.accuracy.as_ref().map(ClusteredShare::to_string).unwrap_or_default();
+        let SideSeparation { items, buildings, auc, .. } = apart;
         format!("{name:<10} told apart {accuracy}, AUC {auc:.3}, {items} items in {buildings} buildings")
     };
-    let tell = |tell: &Tell| {
+    let tell = |tell: &TellingGram| {
         let [generated, people] = [tell.generated, tell.people].map(|share| 100.0 * share);
         format!("{:>7.3}  generated {generated:>5.1} %  people {people:>5.1} %  {}", tell.weight, tell.words)
     };

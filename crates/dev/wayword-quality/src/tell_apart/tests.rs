@@ -4,8 +4,8 @@ use super::*;
 use rand::Rng;
 
 /// Texts of two sides that differ in how often they use some words.
-fn made_up(items: usize, lean: f64) -> Vec<Text> {
-    let mut rng = rng(5, &["tell-apart test"]);
+fn made_up(items: usize, lean: f64) -> Vec<SideText> {
+    let mut rng = seeded_rng(5, &["tell-apart test"]);
     let mut texts = Vec::new();
     for item in 0..items {
         for is_generated in [false, true] {
@@ -19,7 +19,7 @@ fn made_up(items: usize, lean: f64) -> Vec<Text> {
                 either("turn left", "go left"),
                 either("at the lamp", "by the lamp near it"),
             ];
-            texts.push(Text { plain: words.join(" "), building: format!("b{}", item % 7), is_generated });
+            texts.push(SideText { plain: words.join(" "), building: format!("b{}", item % 7), is_generated });
         }
     }
     texts
@@ -29,7 +29,7 @@ fn made_up(items: usize, lean: f64) -> Vec<Text> {
 #[test]
 fn figures_agree_with_those_of_a_well_known_classifier() {
     let texts = made_up(150, 0.62);
-    let apart = apart(&texts, 5, 0);
+    let apart = separate_sides(&texts, 5, 0);
     let accuracy = 100.0 * apart.accuracy.unwrap().count as f64 / texts.len() as f64;
     assert!((accuracy - 70.7).abs() <= 1.0 && (apart.auc - 0.753).abs() <= 0.01, "{accuracy} {}", apart.auc);
 }
@@ -37,14 +37,14 @@ fn figures_agree_with_those_of_a_well_known_classifier() {
 #[test]
 fn apart_is_at_chance_for_like_texts_and_perfect_for_a_word_of_its_own() {
     let mut texts = made_up(200, 0.5);
-    let accuracy = |texts: &[Text]| {
-        let share = apart(texts, 5, 0).accuracy.unwrap();
+    let accuracy = |texts: &[SideText]| {
+        let share = separate_sides(texts, 5, 0).accuracy.unwrap();
         share.count as f64 / share.of as f64
     };
     assert!((0.4..0.6).contains(&accuracy(&texts)), "{}", accuracy(&texts));
     texts.iter_mut().filter(|text| text.is_generated).for_each(|text| text.plain.push_str(" softly"));
     assert_eq!(accuracy(&texts), 1.0);
-    let first = &tells(&texts, 3)[0];
+    let first = &telling_grams(&texts, 3)[0];
     assert!(first.words.ends_with("softly") && (first.generated, first.people) == (1.0, 0.0), "{first:?}");
 }
 
@@ -60,17 +60,18 @@ fn a_building_is_in_one_part_and_the_parts_are_of_like_size() {
 
 #[test]
 fn auc_counts_ties_half() {
-    assert_eq!(auc(vec![(true, 1.0), (false, 1.0)]), 0.5);
-    assert_eq!(auc(vec![(true, 2.0), (false, 1.0), (false, 2.0)]), 0.75);
-    assert_eq!(auc(vec![(true, 2.0)]), 0.5);
+    assert_eq!(area_under_curve(vec![(true, 1.0), (false, 1.0)]), 0.5);
+    assert_eq!(area_under_curve(vec![(true, 2.0), (false, 1.0), (false, 2.0)]), 0.75);
+    assert_eq!(area_under_curve(vec![(true, 2.0)]), 0.5);
 }
 
 #[test]
 fn one_text_of_each_side_is_drawn_for_items_that_both_have() {
-    let item = |texts: &[&str]| Item { building: "b".into(), texts: texts.iter().map(|&text| text.into()).collect() };
+    let item =
+        |texts: &[&str]| SideItem { building: "b".into(), texts: texts.iter().map(|&text| text.into()).collect() };
     let people = [("1".to_owned(), item(&["a", "b", "c"])), ("2".to_owned(), item(&["d"]))].into();
     let generated = [("1".to_owned(), item(&["x"])), ("3".to_owned(), item(&["y"]))].into();
-    let texts = drawn(&people, &generated, 0);
+    let texts = draw_sides(&people, &generated, 0);
     assert_eq!(texts.len(), 2);
     assert!(["a", "b", "c"].contains(&texts[0].plain.as_str()) && texts[1].plain == "x" && texts[1].is_generated);
     let pairs: Vec<String> = first_and_second(&people).into_iter().map(|text| text.plain).collect();

@@ -1,17 +1,17 @@
 //! Splits a text into clauses, and recognises bare turns: clauses such as "turn left" that name no place.
 
 /// Verbs of a turn.
-const VERBS: [&str; 9] = ["turn", "take", "make", "hang", "veer", "bear", "go", "head", "keep"];
+const TURN_VERBS: [&str; 9] = ["turn", "take", "make", "hang", "veer", "bear", "go", "head", "keep"];
 /// Words between the verb and the side.
-const BETWEEN: [&str; 12] =
+const WORDS_BEFORE_SIDE: [&str; 12] =
     ["back", "a", "an", "another", "again", "slight", "slightly", "sharp", "hard", "to", "the", "your"];
 /// The sides of a turn.
-const SIDES: [&str; 3] = ["left", "right", "around"];
+const TURN_SIDES: [&str; 3] = ["left", "right", "around"];
 /// Words that may come before the verb.
-const BEFORE: [&str; 3] = ["then", "and", "next"];
+const WORDS_BEFORE_VERB: [&str; 3] = ["then", "and", "next"];
 
 /// The clauses of a text in lower case: between marks, "and" and "then".
-pub(super) fn clauses(text: &str) -> Vec<String> {
+pub(super) fn split_clauses(text: &str) -> Vec<String> {
     let lower = text.to_lowercase().split_whitespace().collect::<Vec<_>>().join(" ");
     let parts = lower.split(['.', ',', ';', '!', '?']).map(|part| format!("{part} "));
     let split = |part: String| part.replace(" and then ", "\n").replace(" then ", "\n").replace(" and ", "\n");
@@ -22,18 +22,18 @@ pub(super) fn clauses(text: &str) -> Vec<String> {
 /// Whether a clause is only a turn: "hang a left", "make a slight right turn".
 pub(super) fn is_bare_turn(clause: &str) -> bool {
     let mut words: &[&str] = &clause.split(' ').collect::<Vec<_>>();
-    while words.first().is_some_and(|first| BEFORE.contains(first)) {
+    while words.first().is_some_and(|first| WORDS_BEFORE_VERB.contains(first)) {
         words = &words[1..];
     }
     let Some((verb, mut words)) = words.split_first() else { return false };
-    if !VERBS.contains(verb) {
+    if !TURN_VERBS.contains(verb) {
         return false;
     }
-    while words.first().is_some_and(|word| BETWEEN.contains(word)) {
+    while words.first().is_some_and(|word| WORDS_BEFORE_SIDE.contains(word)) {
         words = &words[1..];
     }
     let Some((side, rest)) = words.split_first() else { return false };
-    SIDES.contains(side) && matches!(rest, [] | ["turn"] | ["again"] | ["turn", "again"])
+    TURN_SIDES.contains(side) && matches!(rest, [] | ["turn"] | ["again"] | ["turn", "again"])
 }
 
 #[cfg(test)]
@@ -42,7 +42,10 @@ mod tests {
 
     #[test]
     fn clauses_end_at_marks_and_before_and_and_then() {
-        assert_eq!(clauses("Turn left and go on, then\nstop. And then wait"), ["turn left", "go on", "stop", "wait"]);
+        assert_eq!(
+            split_clauses("Turn left and go on, then\nstop. And then wait"),
+            ["turn left", "go on", "stop", "wait"]
+        );
     }
 
     #[test]

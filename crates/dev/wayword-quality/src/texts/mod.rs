@@ -10,28 +10,28 @@ mod rooms;
 mod row;
 mod surface;
 
-use crate::share::table;
+use crate::share::aligned_table;
 use clap::Args;
-use copies::Train;
-use row::Row;
+use copies::TrainingTexts;
+use row::TextFigureRow;
 use serde_json::json;
 use std::{
     collections::{BTreeMap, BTreeSet},
     path::{Path, PathBuf},
 };
-use wayword_core::{Platform, SceneId, Survey};
+use wayword_core::{Platform, SceneId, ViewpointSurvey};
 use wayword_formats::Episode;
 use wayword_run::{
-    error::Error,
-    output::Output,
+    error::CommandError,
+    output::CommandOutput,
     platforms,
-    settings::{Asked, AskedPlatform},
+    settings::{AskedPlatform, AskedSettings},
 };
-use wayword_world::survey;
+use wayword_world::survey_scene;
 
 /// The flags of `texts`.
 #[derive(Debug, Args)]
-pub struct Flags {
+pub struct TextFiguresArgs {
     /// Generated texts: a dataset file of any format.
     generated: PathBuf,
     /// People's texts of the same items, for a second column.
@@ -54,57 +54,60 @@ pub struct Flags {
     pub json: bool,
 }
 
-pub fn measure(flags: &Flags, output: &Output) -> Result<(), Error> {
-    let generated = wayword_formats::read(&flags.generated)?;
+pub fn measure_texts(flags: &TextFiguresArgs, output: &CommandOutput) -> Result<(), CommandError> {
+    let generated = wayword_formats::read_any_format(&flags.generated)?;
     let people = flags.people.as_deref().map(|file| of_items(file, &generated)).transpose()?;
-    let train = flags.train.as_deref().map(wayword_formats::read).transpose()?;
-    let train = train.map(|episodes| Train::of(&in_turn(&episodes)));
-    let platform = flags.platform.clone().map(|name| open(name, flags.data.clone())).transpose()?;
-    let mut sides: Vec<(&str, Vec<Row>)> = Vec::new();
+    let train = flags.train.as_deref().map(wayword_formats::read_any_format).transpose()?;
+    let train = train.map(|episodes| TrainingTexts::from_texts(&in_turn(&episodes)));
+    let platform = flags.platform.clone().map(|name| open_platform(name, flags.data.clone())).transpose()?;
+    let mut sides: Vec<(&str, Vec<TextFigureRow>)> = Vec::new();
     for (name, episodes) in [("generated", Some(&generated)), ("people", people.as_ref())] {
         let Some(episodes) = episodes else { continue };
-        let mut rows = rows(episodes, train.as_ref());
+        let mut rows = text_rows(episodes, train.as_ref());
         let surveys =
-            platform.as_deref().map_or_else(|| Ok(BTreeMap::new()), |platform| surveys(platform, episodes))?;
-        rows.extend(rooms::rows(episodes, &surveys));
+            platform.as_deref().map_or_else(|| Ok(BTreeMap::new()), |platform| survey_scenes(platform, episodes))?;
+        rows.extend(rooms::room_rows(episodes, &surveys));
         if let Some(platform) = &platform {
-            let heard = listener::hear(platform.as_ref(), &surveys, episodes)?;
-            rows.extend(listener::rows(&heard));
+            let heard = listener::hear_episodes(platform.as_ref(), &surveys, episodes)?;
+            rows.extend(listener::listener_rows(&heard));
             let wrong = heard.iter().filter(|heard| name == "generated" && !heard.is_pinned()).take(flags.show);
-            wrong.for_each(|heard| output.say(format!("{}: {}: {}", heard.item, heard.fault(), heard.text)));
+            wrong.for_each(|heard| output.say(format!("{}: {}: {}", heard.item, heard.describe_fault(), heard.text)));
         }
         sides.push((name, rows));
     }
     let value = sides.iter().map(|(name, rows)| ((*name).to_owned(), json!(rows))).collect::<serde_json::Map<_, _>>();
-    output.data(&value, side_by_side(&sides));
+    output.print_result(&value, side_by_side(&sides));
     Ok(())
 }
 
-fn open(platform: String, data: Option<PathBuf>) -> Result<Box<dyn Platform>, Error> {
+fn open_platform(platform: String, data: Option<PathBuf>) -> Result<Box<dyn Platform>, CommandError> {
     let asked = AskedPlatform { platform: Some(platform), data, ..AskedPlatform::default() };
-    platforms::open(&Asked::from(asked).resolve()?)
+    platforms::open_platform(&AskedSettings::from(asked).resolve()?)
 }
 
 /// The scenes of episodes, those that the platform has.
-fn surveys(platform: &dyn Platform, episodes: &[Episode]) -> Result<BTreeMap<SceneId, Survey>, Error> {
-    let there: BTreeSet<SceneId> = platform.scenes()?.into_iter().collect();
+fn survey_scenes(
+    platform: &dyn Platform,
+    episodes: &[Episode],
+) -> Result<BTreeMap<SceneId, ViewpointSurvey>, CommandError> {
+    let there: BTreeSet<SceneId> = platform.list_scenes()?.into_iter().collect();
     let scenes: BTreeSet<&SceneId> = episodes.iter().map(|episode| &episode.scene).collect();
-    let survey = |scene: &&SceneId| Ok(((*scene).clone(), survey(platform, scene)?));
+    let survey = |scene: &&SceneId| Ok(((*scene).clone(), survey_scene(platform, scene)?));
     scenes.iter().filter(|scene| there.contains(**scene)).map(survey).collect()
 }
 
 /// People's items that were generated too; all of them where there is none.
-fn of_items(file: &Path, generated: &[Episode]) -> Result<Vec<Episode>, Error> {
+fn of_items(file: &Path, generated: &[Episode]) -> Result<Vec<Episode>, CommandError> {
     let ids: BTreeSet<&str> = generated.iter().map(|episode| episode.id.as_str()).collect();
     let (same, others): (Vec<Episode>, Vec<Episode>) =
-        wayword_formats::read(file)?.into_iter().partition(|episode| ids.contains(episode.id.as_str()));
+        wayword_formats::read_any_format(file)?.into_iter().partition(|episode| ids.contains(episode.id.as_str()));
     Ok(if same.is_empty() { others } else { same })
 }
 
-fn rows(episodes: &[Episode], train: Option<&Train>) -> Vec<Row> {
+fn text_rows(episodes: &[Episode], train: Option<&TrainingTexts>) -> Vec<TextFigureRow> {
     let texts = in_turn(episodes);
-    let mut rows = surface::rows(&texts);
-    rows.extend(copies::rows(&texts, train));
+    let mut rows = surface::surface_rows(&texts);
+    rows.extend(copies::copy_rows(&texts, train));
     rows
 }
 
@@ -115,14 +118,14 @@ fn in_turn(episodes: &[Episode]) -> Vec<&str> {
     (0..most).flat_map(nth).map(String::as_str).collect()
 }
 
-fn side_by_side(sides: &[(&str, Vec<Row>)]) -> String {
+fn side_by_side(sides: &[(&str, Vec<TextFigureRow>)]) -> String {
     let head = std::iter::once(String::new()).chain(sides.iter().map(|(name, _)| (*name).to_owned()));
     let names = sides.first().map_or(&[][..], |(_, rows)| rows);
-    let line = |row: &Row| {
-        let of = |rows: &[Row]| {
-            rows.iter().find(|other| other.name == row.name).map_or("-".to_owned(), |row| row.value.cell())
+    let line = |row: &TextFigureRow| {
+        let of = |rows: &[TextFigureRow]| {
+            rows.iter().find(|other| other.name == row.name).map_or("-".to_owned(), |row| row.value.table_cell())
         };
         std::iter::once(row.name.clone()).chain(sides.iter().map(|(_, rows)| of(rows))).collect()
     };
-    table(&std::iter::once(head.collect()).chain(names.iter().map(line)).collect::<Vec<_>>())
+    aligned_table(&std::iter::once(head.collect()).chain(names.iter().map(line)).collect::<Vec<_>>())
 }

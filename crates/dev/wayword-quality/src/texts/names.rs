@@ -1,7 +1,7 @@
 //! Finds the objects and rooms that a text names. It uses only the names of the lexicon, and none of the reader's rules.
 
 use std::collections::BTreeSet;
-use wayword_language::lexicon::{Class, is_room, is_thing, longest_name, normal_word, thing};
+use wayword_language::lexicon::{ThingClass, find_thing, is_room, is_thing, longest_name, normal_word};
 
 /// Words that begin a phrase that names something.
 const DETERMINERS: [&str; 36] = [
@@ -10,14 +10,14 @@ const DETERMINERS: [&str; 36] = [
     "both", "past", "between", "above", "below", "under", "all", "nearest",
 ];
 /// How many words before a name a determiner may be.
-const REACH: usize = 4;
+const DETERMINER_REACH_WORDS: usize = 4;
 
 /// A room of any kind.
 const ANY_ROOM: &str = "room";
 
 /// A name in a text.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Named {
+pub(super) struct LexiconName {
     /// Its first word.
     pub(super) start: usize,
     /// The word after its last one.
@@ -28,16 +28,16 @@ pub(super) struct Named {
     pub(super) is_thing: bool,
 }
 
-impl Named {
+impl LexiconName {
     /// Whether it is a visible object: neither stairs, nor a door, nor a wall.
     pub(super) fn is_object(&self) -> bool {
-        self.is_seen() && !matches!(self.class(), Some(Class::Stairs | Class::Door))
+        self.is_seen() && !matches!(self.thing_class(), Some(ThingClass::Stairs | ThingClass::Door))
     }
 
     /// Whether it is visible and no room: an object, stairs or a door.
     pub(super) fn is_seen(&self) -> bool {
-        let is_stairs = self.class() == Some(Class::Stairs);
-        self.is_thing && (is_stairs || !self.is_room) && !matches!(self.class(), Some(Class::Fabric) | None)
+        let is_stairs = self.thing_class() == Some(ThingClass::Stairs);
+        self.is_thing && (is_stairs || !self.is_room) && !matches!(self.thing_class(), Some(ThingClass::Fabric) | None)
     }
 
     /// The name of a room; empty for "the room".
@@ -47,33 +47,33 @@ impl Named {
 
     /// Whether it is a wall, a floor, or another part of the building itself.
     pub(super) fn is_floor(&self) -> bool {
-        self.class() == Some(Class::Fabric)
+        self.thing_class() == Some(ThingClass::Fabric)
     }
 
-    fn class(&self) -> Option<Class> {
-        thing(&self.name).map(|thing| thing.class)
+    fn thing_class(&self) -> Option<ThingClass> {
+        find_thing(&self.name).map(|thing| thing.class)
     }
 }
 
 /// The words of a text, without marks, in lower case.
-pub(super) fn words(text: &str) -> Vec<String> {
+pub(super) fn split_words(text: &str) -> Vec<String> {
     let words = text.split(|c: char| !c.is_alphanumeric() && c != '\'').filter(|word| !word.is_empty());
     words.map(str::to_lowercase).collect()
 }
 
 /// The names among words: the longest at each place. A word that may be a verb is a name only after an article.
-pub(super) fn named(words: &[String]) -> Vec<Named> {
-    let mut found = all(words, &BTreeSet::new());
+pub(super) fn find_names(words: &[String]) -> Vec<LexiconName> {
+    let mut found = all_names(words, &BTreeSet::new());
     found.retain(|name| is_introduced(words, name));
     found
 }
 
 /// The names among words, also those without an article. `known` adds names of things in normal spelling; "room" alone counts too.
-pub(super) fn named_with(words: &[String], known: &BTreeSet<String>) -> Vec<Named> {
-    all(words, known)
+pub(super) fn named_with(words: &[String], known: &BTreeSet<String>) -> Vec<LexiconName> {
+    all_names(words, known)
 }
 
-fn all(words: &[String], known: &BTreeSet<String>) -> Vec<Named> {
+fn all_names(words: &[String], known: &BTreeSet<String>) -> Vec<LexiconName> {
     let normal: Vec<String> = words.iter().map(|word| normal_word(word)).collect();
     let (mut found, mut at) = (Vec::new(), 0);
     while at < words.len() {
@@ -82,7 +82,7 @@ fn all(words: &[String], known: &BTreeSet<String>) -> Vec<Named> {
             let name = normal[at..at + length].join(" ");
             let is_any_room = name == ANY_ROOM && !known.is_empty();
             let (is_room, is_thing) = (is_room(&name) || is_any_room, is_thing(&name) || known.contains(&name));
-            (is_room || is_thing).then_some(Named { start: at, end: at + length, name, is_room, is_thing })
+            (is_room || is_thing).then_some(LexiconName { start: at, end: at + length, name, is_room, is_thing })
         });
         match longest {
             Some(name) => {
@@ -95,8 +95,8 @@ fn all(words: &[String], known: &BTreeSet<String>) -> Vec<Named> {
     found
 }
 
-fn is_introduced(words: &[String], name: &Named) -> bool {
-    let before = &words[name.start.saturating_sub(REACH)..name.start];
+fn is_introduced(words: &[String], name: &LexiconName) -> bool {
+    let before = &words[name.start.saturating_sub(DETERMINER_REACH_WORDS)..name.start];
     name.end - name.start > 1 || before.iter().any(|word| DETERMINERS.contains(&word.as_str()))
 }
 
@@ -105,7 +105,7 @@ mod tests {
     use super::*;
 
     fn names(text: &str) -> Vec<(String, bool)> {
-        named(&words(text)).into_iter().map(|name| (name.name.clone(), name.is_object())).collect()
+        find_names(&split_words(text)).into_iter().map(|name| (name.name.clone(), name.is_object())).collect()
     }
 
     #[test]

@@ -2,40 +2,40 @@
 //! path passes them.
 
 use super::{
-    names::{named, words},
-    row::{Row, share},
+    names::{find_names, split_words},
+    row::{TextFigureRow, share_row},
 };
 use std::collections::BTreeMap;
-use wayword_core::{SceneId, Survey};
+use wayword_core::{SceneId, ViewpointSurvey};
 use wayword_formats::Episode;
 use wayword_language::lexicon::same_room;
 
 /// The words for entering, leaving or passing a room are at most this many words before its name.
-const REACH: usize = 4;
-const LEAVING: [&str; 7] = ["out of", "exit", "leave", "leaving", "exiting", "leaves", "exits"];
-const ENTERING: [&str; 10] =
+const PHRASE_REACH_WORDS: usize = 4;
+const LEAVING_PHRASES: [&str; 7] = ["out of", "exit", "leave", "leaving", "exiting", "leaves", "exits"];
+const ENTERING_PHRASES: [&str; 10] =
     ["into", "enter", "entering", "to", "toward", "towards", "in", "inside", "through", "reach"];
 /// Phrases for a room that the way passes but does not enter.
-const ASIDE: [&str; 5] = ["past", "next to", "near", "by", "beside"];
+const ASIDE_PHRASES: [&str; 5] = ["past", "next to", "near", "by", "beside"];
 
 /// A room that a text enters or leaves.
 #[derive(Debug, Clone, PartialEq)]
-struct Passage {
+struct TextRoomPassage {
     room: String,
     is_left: bool,
 }
 
 /// The rooms that a text enters, crosses and leaves, in its order.
-fn passages(text: &str) -> Vec<Passage> {
-    let words = words(text);
+fn room_passages(text: &str) -> Vec<TextRoomPassage> {
+    let words = split_words(text);
     let mut found = Vec::new();
-    for name in named(&words).into_iter().filter(|name| name.is_room && !name.is_thing) {
-        let before = format!(" {} ", words[name.start.saturating_sub(REACH)..name.start].join(" "));
+    for name in find_names(&words).into_iter().filter(|name| name.is_room && !name.is_thing) {
+        let before = format!(" {} ", words[name.start.saturating_sub(PHRASE_REACH_WORDS)..name.start].join(" "));
         // The phrase nearest to the name counts.
         let last = |phrases: &[&str]| phrases.iter().filter_map(|one| before.rfind(&format!(" {one} "))).max();
-        let (left, entered, aside) = (last(&LEAVING), last(&ENTERING), last(&ASIDE));
+        let (left, entered, aside) = (last(&LEAVING_PHRASES), last(&ENTERING_PHRASES), last(&ASIDE_PHRASES));
         if left.max(entered) > aside && left.max(entered).is_some() {
-            found.push(Passage { room: name.name, is_left: left > entered });
+            found.push(TextRoomPassage { room: name.name, is_left: left > entered });
         }
     }
     found
@@ -43,12 +43,12 @@ fn passages(text: &str) -> Vec<Passage> {
 
 /// The last room that a text goes to.
 pub(super) fn last_room(text: &str) -> Option<String> {
-    passages(text).into_iter().rfind(|passage| !passage.is_left).map(|passage| passage.room)
+    room_passages(text).into_iter().rfind(|passage| !passage.is_left).map(|passage| passage.room)
 }
 
 /// Whether a text leaves a room that it did not enter before and that is not the room of the start. Where the room of the start is not
 /// known, the first room of the text is taken for it.
-fn leaves_unentered(passages: &[Passage], start: Option<&str>) -> bool {
+fn leaves_unentered(passages: &[TextRoomPassage], start: Option<&str>) -> bool {
     passages.iter().enumerate().any(|(at, passage)| {
         let was_entered = passages[..at].iter().any(|before| same_room(&before.room, &passage.room));
         let is_start = start.map_or(at == 0, |start| same_room(start, &passage.room));
@@ -57,7 +57,7 @@ fn leaves_unentered(passages: &[Passage], start: Option<&str>) -> bool {
 }
 
 /// Whether the rooms of a text that the path passes come in another order on the path.
-fn is_out_of_order(passages: &[Passage], passed: &[&str]) -> bool {
+fn is_out_of_order(passages: &[TextRoomPassage], passed: &[&str]) -> bool {
     let mut from = 0;
     for passage in passages {
         let is_it = |room: &&str| same_room(room, &passage.room);
@@ -73,21 +73,21 @@ fn is_out_of_order(passages: &[Passage], passed: &[&str]) -> bool {
 }
 
 /// The rooms along an episode's path, where they are known.
-fn passed<'s>(episode: &Episode, surveys: &'s BTreeMap<SceneId, Survey>) -> Vec<&'s str> {
+fn rooms_on_path<'s>(episode: &Episode, surveys: &'s BTreeMap<SceneId, ViewpointSurvey>) -> Vec<&'s str> {
     let Some(survey) = surveys.get(&episode.scene) else { return Vec::new() };
-    let room = |id| survey.viewpoints()[survey.place(id)?].known.room.as_deref();
+    let room = |id| survey.viewpoints()[survey.viewpoint_index(id)?].known.room.as_deref();
     let mut rooms: Vec<&str> = episode.viewpoints.iter().map(|id| room(id).unwrap_or_default()).collect();
     rooms.dedup();
     rooms
 }
 
-pub(super) fn rows(episodes: &[Episode], surveys: &BTreeMap<SceneId, Survey>) -> Vec<Row> {
+pub(super) fn room_rows(episodes: &[Episode], surveys: &BTreeMap<SceneId, ViewpointSurvey>) -> Vec<TextFigureRow> {
     let (mut left, mut order) = (Vec::new(), Vec::new());
     for episode in episodes {
-        let passed = passed(episode, surveys);
+        let passed = rooms_on_path(episode, surveys);
         let start = passed.first().copied().filter(|room| !room.is_empty());
         for text in &episode.instructions {
-            let passages = passages(text);
+            let passages = room_passages(text);
             left.push(leaves_unentered(&passages, start));
             if !passed.is_empty() {
                 order.push(is_out_of_order(&passages, &passed));
@@ -95,8 +95,8 @@ pub(super) fn rows(episodes: &[Episode], surveys: &BTreeMap<SceneId, Survey>) ->
         }
     }
     vec![
-        share("a room left that was not entered", left.into_iter()),
-        share("rooms in another order than the path's", order.into_iter()),
+        share_row("a room left that was not entered", left.into_iter()),
+        share_row("rooms in another order than the path's", order.into_iter()),
     ]
 }
 
@@ -106,7 +106,7 @@ mod tests {
 
     #[test]
     fn a_room_is_left_only_after_it_was_entered_or_started_in() {
-        let leaves = |text: &str, start| leaves_unentered(&passages(text), start);
+        let leaves = |text: &str, start| leaves_unentered(&room_passages(text), start);
         assert!(!leaves("Walk out of the bedroom and into the hallway. Exit the hallway.", None));
         assert!(leaves("Go into the hallway, then exit the kitchen.", None));
         assert!(leaves("Exit the kitchen.", Some("bedroom")));
@@ -116,7 +116,7 @@ mod tests {
 
     #[test]
     fn rooms_come_in_the_order_of_the_path() {
-        let wrong = |text: &str| is_out_of_order(&passages(text), &["bedroom", "hallway", "kitchen"]);
+        let wrong = |text: &str| is_out_of_order(&room_passages(text), &["bedroom", "hallway", "kitchen"]);
         assert!(!wrong("Leave the bedroom, go through the hallway and stop in the kitchen."));
         assert!(wrong("Go into the kitchen, then into the bedroom."));
         assert!(!wrong("Go into the garage, then into the hallway."));

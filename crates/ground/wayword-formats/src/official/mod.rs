@@ -4,9 +4,9 @@
 use wayword_core::SceneId;
 
 /// Matterport3D's scenes, one a line: the split, and the scene.
-const MATTERPORT3D: &str = include_str!("matterport3d.txt");
+const MATTERPORT3D_SCENES: &str = include_str!("matterport3d.txt");
 /// Names of splits that are held out for validation; for Matterport3D the field's name is val_unseen.
-const VALIDATION: [&str; 4] = ["val_unseen", "val", "validation", "minival"];
+const VALIDATION_SPLITS: [&str; 4] = ["val_unseen", "val", "validation", "minival"];
 
 /// An official split of scenes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -25,7 +25,7 @@ impl OfficialSplit {
     /// The official split of a scene; `None` where it is neither Matterport3D's nor HM3D's. It goes by the scene's name alone,
     /// because several platforms show the same scenes.
     #[must_use]
-    pub fn of(scene: &SceneId) -> Option<Self> {
+    pub fn for_scene(scene: &SceneId) -> Option<Self> {
         of_matterport3d(scene.as_str()).or_else(|| of_hm3d(scene.as_str()))
     }
 
@@ -53,14 +53,14 @@ impl OfficialSplit {
         let is_part_of = |whole: &str| split.strip_prefix(whole).is_some_and(|rest| rest.starts_with('_'));
         match self {
             Self::Train => true,
-            Self::ValUnseen | Self::Val => VALIDATION.contains(&split) || is_part_of("val_unseen"),
+            Self::ValUnseen | Self::Val => VALIDATION_SPLITS.contains(&split) || is_part_of("val_unseen"),
             Self::Test => split == "test" || is_part_of("test"),
         }
     }
 }
 
 fn of_matterport3d(scene: &str) -> Option<OfficialSplit> {
-    let mut lines = MATTERPORT3D.lines().filter_map(|line| line.split_once(' '));
+    let mut lines = MATTERPORT3D_SCENES.lines().filter_map(|line| line.split_once(' '));
     let (split, _) = lines.find(|(_, name)| *name == scene)?;
     match split {
         "train" => Some(OfficialSplit::Train),
@@ -89,13 +89,13 @@ mod tests {
     use std::collections::BTreeMap;
 
     fn of(scene: &str) -> Option<OfficialSplit> {
-        OfficialSplit::of(&SceneId::new(scene).unwrap())
+        OfficialSplit::for_scene(&SceneId::new(scene).unwrap())
     }
 
     #[test]
     fn matterport3d_has_ninety_scenes_in_three_splits() {
         let mut counts: BTreeMap<Option<OfficialSplit>, usize> = BTreeMap::new();
-        let scenes = MATTERPORT3D.lines().filter(|line| !line.starts_with('#'));
+        let scenes = MATTERPORT3D_SCENES.lines().filter(|line| !line.starts_with('#'));
         for line in scenes {
             *counts.entry(of(line.split_once(' ').unwrap().1)).or_default() += 1;
         }

@@ -8,8 +8,8 @@
 mod problems;
 mod reading;
 
-pub use problems::Problems;
-pub use reading::{Reading, read};
+pub use problems::SubmissionProblems;
+pub use reading::{SubmissionReading, read_submission};
 
 use crate::{Episode, FormatError, item, output};
 use serde_json::{Value, json};
@@ -18,18 +18,18 @@ use wayword_core::{Heading, ObjectId, ViewpointId};
 
 /// One submitted trajectory, for one instruction.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Submitted {
+pub struct SubmittedTrajectory {
     /// The instruction's name, as [`instr_id`] makes it.
     pub instr_id: String,
     /// Where the agent stood and looked, from the start; never empty where it was read from a file.
-    pub trajectory: Vec<Posed>,
+    pub trajectory: Vec<TrajectoryPose>,
     /// The object that the agent takes for the target (`predObjId`).
     pub object: Option<ObjectId>,
 }
 
 /// A viewpoint, and which way the agent looked there.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Posed {
+pub struct TrajectoryPose {
     /// Where the agent stood.
     pub viewpoint: ViewpointId,
     /// Direction in the horizontal plane; north where the file gives none.
@@ -50,12 +50,12 @@ pub fn instr_id(episode: &Episode, place: usize) -> String {
 ///
 /// # Errors
 /// When the file cannot be written.
-pub fn write(file: &Path, submitted: &[Submitted]) -> Result<(), FormatError> {
-    output::write_file(file, |out| output::write_list(out, submitted.iter().map(fields)))
+pub fn write_submission(file: &Path, submitted: &[SubmittedTrajectory]) -> Result<(), FormatError> {
+    output::write_file(file, |out| output::write_list(out, submitted.iter().map(submission_fields)))
 }
 
-fn fields(submitted: &Submitted) -> Value {
-    let pose = |posed: &Posed| json!([posed.viewpoint.as_str(), posed.heading.rad(), posed.elevation_rad]);
+fn submission_fields(submitted: &SubmittedTrajectory) -> Value {
+    let pose = |posed: &TrajectoryPose| json!([posed.viewpoint.as_str(), posed.heading.rad(), posed.elevation_rad]);
     json!({
         "instr_id": submitted.instr_id,
         "trajectory": submitted.trajectory.iter().map(pose).collect::<Vec<_>>(),

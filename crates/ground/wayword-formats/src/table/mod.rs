@@ -6,7 +6,7 @@
 mod columns;
 mod shred;
 
-use crate::{FormatError, jsonl::Record, output};
+use crate::{FormatError, jsonl::InstructionRecord, output};
 use parquet::{
     basic::Compression,
     errors::ParquetError,
@@ -15,15 +15,15 @@ use parquet::{
 };
 use std::{path::Path, sync::Arc};
 
-const SCHEMA: &str = include_str!("schema.txt");
+const SCHEMA_TEXT: &str = include_str!("schema.txt");
 /// Rows of a group. Readers hold a group in memory.
 const GROUP_ROWS: usize = 10_000;
 
 /// A row: an instruction, and the split that it belongs to.
 #[derive(Debug, Clone, Copy)]
-pub struct Row<'r> {
+pub struct ParquetRow<'r> {
     /// The instruction with its path.
-    pub record: &'r Record,
+    pub record: &'r InstructionRecord,
     /// The name of its split.
     pub split: &'r str,
 }
@@ -32,15 +32,15 @@ pub struct Row<'r> {
 ///
 /// # Errors
 /// When the file cannot be written.
-pub fn write(file: &Path, rows: &[Row<'_>]) -> Result<(), FormatError> {
-    let bytes = encoded(rows).map_err(|error| {
-        FormatError::document(file, format!("it cannot be written as Parquet: {error}"), "write it as wayword")
+pub fn write_table(file: &Path, rows: &[ParquetRow<'_>]) -> Result<(), FormatError> {
+    let bytes = encode_table(rows).map_err(|error| {
+        FormatError::for_document(file, format!("it cannot be written as Parquet: {error}"), "write it as wayword")
     })?;
     output::write_file(file, |out| out.write_all(&bytes))
 }
 
-fn encoded(rows: &[Row<'_>]) -> Result<Vec<u8>, ParquetError> {
-    let schema = Arc::new(parse_message_type(SCHEMA)?);
+fn encode_table(rows: &[ParquetRow<'_>]) -> Result<Vec<u8>, ParquetError> {
+    let schema = Arc::new(parse_message_type(SCHEMA_TEXT)?);
     let properties = WriterProperties::builder()
         .set_compression(Compression::SNAPPY)
         .set_created_by(concat!("wayword version ", env!("CARGO_PKG_VERSION")).to_owned())
@@ -48,7 +48,7 @@ fn encoded(rows: &[Row<'_>]) -> Result<Vec<u8>, ParquetError> {
     let mut writer = SerializedFileWriter::new(Vec::new(), schema, Arc::new(properties))?;
     for rows in rows.chunks(GROUP_ROWS) {
         let mut group = writer.next_row_group()?;
-        columns::write(&mut group, rows)?;
+        columns::write_columns(&mut group, rows)?;
         group.close()?;
     }
     writer.into_inner()

@@ -2,11 +2,11 @@
 //! how many of the optional or repeated fields above it are present (`def`), and at which list a value continues
 //! rather than begins (`rep`). This is the record shredding of Dremel.
 
-use super::Row;
+use super::ParquetRow;
 
 /// The values of a leaf in some rows, and their levels.
 #[derive(Debug, PartialEq)]
-pub(super) struct Leaf<T> {
+pub(super) struct LeafColumn<T> {
     pub(super) values: Vec<T>,
     /// `None` where every row has one value.
     pub(super) def: Option<Vec<i16>>,
@@ -14,20 +14,23 @@ pub(super) struct Leaf<T> {
 }
 
 /// A value in each row.
-pub(super) fn required<'r, T>(rows: &[Row<'r>], of: impl Fn(&Row<'r>) -> T) -> Leaf<T> {
-    Leaf { values: rows.iter().map(of).collect(), def: None, rep: None }
+pub(super) fn required_column<'r, T>(rows: &[ParquetRow<'r>], of: impl Fn(&ParquetRow<'r>) -> T) -> LeafColumn<T> {
+    LeafColumn { values: rows.iter().map(of).collect(), def: None, rep: None }
 }
 
 /// A value, or null.
-pub(super) fn optional<'r, T>(rows: &[Row<'r>], of: impl Fn(&Row<'r>) -> Option<T>) -> Leaf<T> {
+pub(super) fn optional_column<'r, T>(
+    rows: &[ParquetRow<'r>],
+    of: impl Fn(&ParquetRow<'r>) -> Option<T>,
+) -> LeafColumn<T> {
     let cells: Vec<Option<T>> = rows.iter().map(of).collect();
     let def = cells.iter().map(|cell| i16::from(cell.is_some())).collect();
-    Leaf { values: cells.into_iter().flatten().collect(), def: Some(def), rep: None }
+    LeafColumn { values: cells.into_iter().flatten().collect(), def: Some(def), rep: None }
 }
 
 /// A list in each row, which may be empty.
-pub(super) fn list<'r, T>(rows: &[Row<'r>], of: impl Fn(&Row<'r>) -> Vec<T>) -> Leaf<T> {
-    let mut leaf = Leaf::nested();
+pub(super) fn list_column<'r, T>(rows: &[ParquetRow<'r>], of: impl Fn(&ParquetRow<'r>) -> Vec<T>) -> LeafColumn<T> {
+    let mut leaf = LeafColumn::empty_nested();
     for row in rows {
         leaf.add_list(of(row), 0);
     }
@@ -35,8 +38,11 @@ pub(super) fn list<'r, T>(rows: &[Row<'r>], of: impl Fn(&Row<'r>) -> Vec<T>) -> 
 }
 
 /// A list, or null.
-pub(super) fn optional_list<'r, T>(rows: &[Row<'r>], of: impl Fn(&Row<'r>) -> Option<Vec<T>>) -> Leaf<T> {
-    let mut leaf = Leaf::nested();
+pub(super) fn optional_list<'r, T>(
+    rows: &[ParquetRow<'r>],
+    of: impl Fn(&ParquetRow<'r>) -> Option<Vec<T>>,
+) -> LeafColumn<T> {
+    let mut leaf = LeafColumn::empty_nested();
     for row in rows {
         match of(row) {
             Some(list) => leaf.add_list(list, 1),
@@ -47,8 +53,11 @@ pub(super) fn optional_list<'r, T>(rows: &[Row<'r>], of: impl Fn(&Row<'r>) -> Op
 }
 
 /// A list of points, or null.
-pub(super) fn optional_points<'r>(rows: &[Row<'r>], of: impl Fn(&Row<'r>) -> Option<Vec<[f64; 3]>>) -> Leaf<f64> {
-    let mut leaf = Leaf::nested();
+pub(super) fn optional_points<'r>(
+    rows: &[ParquetRow<'r>],
+    of: impl Fn(&ParquetRow<'r>) -> Option<Vec<[f64; 3]>>,
+) -> LeafColumn<f64> {
+    let mut leaf = LeafColumn::empty_nested();
     for row in rows {
         match of(row) {
             Some(points) if !points.is_empty() => leaf.add_points(&points),
@@ -59,8 +68,8 @@ pub(super) fn optional_points<'r>(rows: &[Row<'r>], of: impl Fn(&Row<'r>) -> Opt
     leaf
 }
 
-impl<T> Leaf<T> {
-    fn nested() -> Self {
+impl<T> LeafColumn<T> {
+    fn empty_nested() -> Self {
         Self { values: Vec::new(), def: Some(Vec::new()), rep: Some(Vec::new()) }
     }
 
@@ -81,7 +90,7 @@ impl<T> Leaf<T> {
     }
 }
 
-impl Leaf<f64> {
+impl LeafColumn<f64> {
     fn add_points(&mut self, points: &[[f64; 3]]) {
         for (index, point) in points.iter().enumerate() {
             for (axis, value) in point.iter().enumerate() {

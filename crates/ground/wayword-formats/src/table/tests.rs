@@ -20,19 +20,19 @@ fn record(number: usize) -> Value {
     })
 }
 
-fn records(lines: &[Value]) -> Vec<Record> {
+fn records(lines: &[Value]) -> Vec<InstructionRecord> {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("records.jsonl");
     fs::write(&file, lines.iter().map(|line| format!("{line}\n")).collect::<String>()).unwrap();
-    jsonl::read(&file).unwrap()
+    jsonl::read_records(&file).unwrap()
 }
 
 /// The rows of a table, as JSON.
-fn table_of(records: &[Record]) -> Vec<Value> {
+fn table_of(records: &[InstructionRecord]) -> Vec<Value> {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("table.parquet");
-    let rows: Vec<Row<'_>> = records.iter().map(|record| Row { record, split: "train" }).collect();
-    write(&file, &rows).unwrap();
+    let rows: Vec<ParquetRow<'_>> = records.iter().map(|record| ParquetRow { record, split: "train" }).collect();
+    write_table(&file, &rows).unwrap();
     let reader = SerializedFileReader::new(File::open(&file).unwrap()).unwrap();
     let told = |row: parquet::record::Row| {
         let columns = row.get_column_iter().map(|(name, field)| (name.clone(), json!(field.to_string())));
@@ -108,8 +108,8 @@ fn rows_go_on_beyond_a_group() {
 #[test]
 fn equal_rows_give_equal_bytes() {
     let records = records(&[record(0), record(1)]);
-    let rows: Vec<Row<'_>> = records.iter().map(|record| Row { record, split: "train" }).collect();
-    assert_eq!(encoded(&rows).unwrap(), encoded(&rows).unwrap());
+    let rows: Vec<ParquetRow<'_>> = records.iter().map(|record| ParquetRow { record, split: "train" }).collect();
+    assert_eq!(encode_table(&rows).unwrap(), encode_table(&rows).unwrap());
     // A table without rows is one all the same.
-    assert!(!encoded(&[]).unwrap().is_empty());
+    assert!(!encode_table(&[]).unwrap().is_empty());
 }

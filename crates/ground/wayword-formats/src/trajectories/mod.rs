@@ -9,9 +9,9 @@ mod pictures;
 mod read;
 mod shard;
 
-pub use pictures::{Digest, picture_name, pictures};
-pub use read::read;
-pub use shard::Shard;
+pub use pictures::{PictureDigest, picture_name, read_pictures};
+pub use read::read_trajectories;
+pub use shard::ShardWriter;
 
 use crate::{
     FormatError,
@@ -21,17 +21,17 @@ use crate::{
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use std::path::Path;
-use wayword_core::{Action, DVec3, Heading, SceneId};
+use wayword_core::{AgentAction, DVec3, Heading, SceneId};
 
 /// The value of `format`.
-const FORMAT: &str = "wayword-trajectory/1";
+const TRAJECTORY_FORMAT: &str = "wayword-trajectory/1";
 /// Positions and headings are rounded to parts of a metre and of a radian, and the parts of rotations more finely.
-const PARTS: f64 = 1e6;
+const PARTS_PER_UNIT: f64 = 1e6;
 const ROTATION_PARTS: f64 = 1e9;
 
 /// A walk in single actions.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Trajectory {
+pub struct ActionTrajectory {
     /// Its name: that of its path.
     pub id: String,
     /// Name of the platform.
@@ -40,8 +40,8 @@ pub struct Trajectory {
     pub scene: SceneId,
     /// The split.
     pub split: String,
-    /// The agent's actions. The last action, and no other, is [`Action::Stop`].
-    pub actions: Vec<Action>,
+    /// The agent's actions. The last action, and no other, is [`AgentAction::Stop`].
+    pub actions: Vec<AgentAction>,
     /// Where the agent is before each action, on the floor, world frame, metres.
     pub positions: Vec<DVec3>,
     /// Which way it looks before each action.
@@ -51,17 +51,17 @@ pub struct Trajectory {
     /// How far from the end of the path it stops, metres.
     pub off_m: f64,
     /// Where its pictures are.
-    pub pictures: Place,
-    /// SHA-256 of its pictures, one after the other ([`Digest`]).
+    pub pictures: PictureLocation,
+    /// SHA-256 of its pictures, one after the other ([`PictureDigest`]).
     pub sha256: String,
     /// The instructions about it.
-    pub instructions: Vec<Told>,
+    pub instructions: Vec<TrajectoryInstruction>,
 }
 
 /// Where the pictures of a walk are, below the folder of `trajectories.jsonl`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Place {
+pub enum PictureLocation {
     /// A folder: `images/ID`.
     Folder(String),
     /// A sample of a shard.
@@ -75,7 +75,7 @@ pub enum Place {
 
 /// An instruction about a walk.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Told {
+pub struct TrajectoryInstruction {
     /// Its episode in the VLN-CE file next to the trajectories.
     pub episode_id: String,
     /// Its style.
@@ -103,35 +103,38 @@ pub struct SubInstruction {
 /// file can take the same.
 #[must_use]
 pub fn as_written(position: DVec3, heading: Heading) -> (DVec3, Heading) {
-    (rounded(position), rounded_heading(heading))
+    (round_position(position), rounded_heading(heading))
 }
 
-fn rounded(position: DVec3) -> DVec3 {
-    (position * PARTS).round() / PARTS
+fn round_position(position: DVec3) -> DVec3 {
+    (position * PARTS_PER_UNIT).round() / PARTS_PER_UNIT
 }
 
 fn rounded_heading(heading: Heading) -> Heading {
-    Heading::new((heading.rad() * PARTS).round() / PARTS).unwrap_or(heading)
+    Heading::new((heading.rad() * PARTS_PER_UNIT).round() / PARTS_PER_UNIT).unwrap_or(heading)
 }
 
-fn rotation(heading: Heading) -> [f64; 4] {
+fn rotation_from_heading(heading: Heading) -> [f64; 4] {
     habitat_from_heading(heading).map(|part| (part * ROTATION_PARTS).round() / ROTATION_PARTS)
 }
 
 /// The heading of a rotation that was written.
-fn heading(rotation: [f64; 4]) -> Option<Heading> {
+fn heading_from_rotation(rotation: [f64; 4]) -> Option<Heading> {
     heading_from_habitat(rotation).map(rounded_heading)
 }
 
 /// The line of a trajectory.
 #[must_use]
-pub fn line(trajectory: &Trajectory) -> Value {
-    let Trajectory { id, platform, scene, split, actions, .. } = trajectory;
-    let positions: Vec<_> =
-        trajectory.positions.iter().map(|position| habitat_from_wayword(rounded(*position)).to_array()).collect();
-    let rotations: Vec<_> = trajectory.headings.iter().map(|heading| rotation(*heading)).collect();
+pub fn trajectory_line(trajectory: &ActionTrajectory) -> Value {
+    let ActionTrajectory { id, platform, scene, split, actions, .. } = trajectory;
+    let positions: Vec<_> = trajectory
+        .positions
+        .iter()
+        .map(|position| habitat_from_wayword(round_position(*position)).to_array())
+        .collect();
+    let rotations: Vec<_> = trajectory.headings.iter().map(|heading| rotation_from_heading(*heading)).collect();
     json!({
-        "format": FORMAT,
+        "format": TRAJECTORY_FORMAT,
         "trajectory_id": id,
         "platform": platform,
         "scene": scene,
@@ -141,7 +144,7 @@ pub fn line(trajectory: &Trajectory) -> Value {
         "positions": positions,
         "rotations": rotations,
         "frame_steps": trajectory.frame_steps,
-        "off_m": (trajectory.off_m * PARTS).round() / PARTS,
+        "off_m": (trajectory.off_m * PARTS_PER_UNIT).round() / PARTS_PER_UNIT,
         "pictures": trajectory.pictures,
         "sha256": trajectory.sha256,
     })
@@ -151,8 +154,8 @@ pub fn line(trajectory: &Trajectory) -> Value {
 ///
 /// # Errors
 /// When it cannot be written.
-pub fn write(file: &Path, trajectories: &[Trajectory]) -> Result<(), FormatError> {
-    output::write_file(file, |out| output::write_lines(out, trajectories.iter().map(line)))
+pub fn write_trajectories(file: &Path, trajectories: &[ActionTrajectory]) -> Result<(), FormatError> {
+    output::write_file(file, |out| output::write_lines(out, trajectories.iter().map(trajectory_line)))
 }
 
 #[cfg(test)]

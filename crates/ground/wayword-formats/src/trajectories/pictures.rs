@@ -1,6 +1,6 @@
 //! Reads the pictures of walks from folders or shards, and checks their hash.
 
-use super::{Place, Trajectory};
+use super::{ActionTrajectory, PictureLocation};
 use crate::FormatError;
 use sha2::{Digest as _, Sha256};
 use std::{
@@ -13,7 +13,7 @@ use std::{
 const PICTURE_BYTES: u64 = 16 << 20;
 /// Most files of one shard.
 const SHARD_FILES: usize = 4_000_000;
-const HINT: &str = "write the trajectories again: the same command goes on where it stopped";
+const REWRITE_HINT: &str = "write the trajectories again: the same command goes on where it stopped";
 
 /// The name of the n-th picture of a walk, from 0.
 #[must_use]
@@ -23,19 +23,19 @@ pub fn picture_name(number: usize) -> String {
 
 /// The hash of a walk's pictures: of the length of each (8 bytes, little-endian) and its bytes, one after the other.
 #[derive(Debug, Clone, Default)]
-pub struct Digest(Sha256);
+pub struct PictureDigest(Sha256);
 
-impl Digest {
+impl PictureDigest {
     /// The hash of all pictures of a walk.
     #[must_use]
-    pub fn of(pictures: &[Vec<u8>]) -> String {
+    pub fn from_pictures(pictures: &[Vec<u8>]) -> String {
         let mut digest = Self::default();
-        pictures.iter().for_each(|picture| digest.take(picture));
+        pictures.iter().for_each(|picture| digest.take_picture(picture));
         digest.finish()
     }
 
     /// Takes the next picture.
-    fn take(&mut self, picture: &[u8]) {
+    fn take_picture(&mut self, picture: &[u8]) {
         self.0.update((picture.len() as u64).to_le_bytes());
         self.0.update(picture);
     }
@@ -50,31 +50,32 @@ impl Digest {
 ///
 /// # Errors
 /// When one is missing or cannot be read, or they are not those that were written.
-pub fn pictures(folder: &Path, trajectory: &Trajectory) -> Result<Vec<Vec<u8>>, FormatError> {
+pub fn read_pictures(folder: &Path, trajectory: &ActionTrajectory) -> Result<Vec<Vec<u8>>, FormatError> {
     let count = trajectory.actions.len();
     let (file, pictures) = match &trajectory.pictures {
-        Place::Folder(images) => {
+        PictureLocation::Folder(images) => {
             let place = folder.join(images);
             let each = (0..count).map(|number| {
                 let file = place.join(picture_name(number));
-                bytes(File::open(&file)).map_err(|source| FormatError::io(&file, "read", source))
+                picture_bytes(File::open(&file)).map_err(|source| FormatError::from_io(&file, "read", source))
             });
             (place.clone(), each.collect::<Result<Vec<_>, _>>()?)
         }
-        Place::Sample { shard, key } => {
+        PictureLocation::Sample { shard, key } => {
             let file = folder.join(shard);
-            let found = sample(&file, key, count).map_err(|source| FormatError::io(&file, "read", source))?;
+            let found =
+                sample_pictures(&file, key, count).map_err(|source| FormatError::from_io(&file, "read", source))?;
             (file, found)
         }
     };
-    if pictures.len() != count || Digest::of(&pictures) != trajectory.sha256 {
+    if pictures.len() != count || PictureDigest::from_pictures(&pictures) != trajectory.sha256 {
         let problem = format!("the pictures of walk {} are not those that were written", trajectory.id);
-        return Err(FormatError::document(&file, problem, HINT));
+        return Err(FormatError::for_document(&file, problem, REWRITE_HINT));
     }
     Ok(pictures)
 }
 
-fn bytes(file: io::Result<impl Read>) -> io::Result<Vec<u8>> {
+fn picture_bytes(file: io::Result<impl Read>) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     file?.take(PICTURE_BYTES + 1).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > PICTURE_BYTES {
@@ -84,7 +85,7 @@ fn bytes(file: io::Result<impl Read>) -> io::Result<Vec<u8>> {
 }
 
 /// The pictures of one sample of a shard.
-fn sample(file: &Path, key: &str, count: usize) -> io::Result<Vec<Vec<u8>>> {
+fn sample_pictures(file: &Path, key: &str, count: usize) -> io::Result<Vec<Vec<u8>>> {
     let mut archive = tar::Archive::new(io::BufReader::new(File::open(file)?));
     let mut found = Vec::new();
     for entry in archive.entries()?.take(SHARD_FILES) {
@@ -94,7 +95,7 @@ fn sample(file: &Path, key: &str, count: usize) -> io::Result<Vec<Vec<u8>>> {
             break;
         }
         if name == format!("{key}.{}", picture_name(found.len())) {
-            found.push(bytes(Ok(entry))?);
+            found.push(picture_bytes(Ok(entry))?);
         }
     }
     Ok(found)

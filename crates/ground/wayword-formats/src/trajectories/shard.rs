@@ -1,7 +1,7 @@
 //! Shards as WebDataset reads them: tar archives in which the files of a sample follow one another and share the part
 //! of their name before the first point.
 
-use super::{Trajectory, line, pictures::picture_name};
+use super::{ActionTrajectory, pictures::picture_name, trajectory_line};
 use std::{
     fmt,
     fs::{self, File},
@@ -10,19 +10,19 @@ use std::{
 };
 
 /// A shard that is being written, under another name until it is whole.
-pub struct Shard {
+pub struct ShardWriter {
     file: PathBuf,
     beside: PathBuf,
     tar: tar::Builder<BufWriter<File>>,
 }
 
-impl fmt::Debug for Shard {
+impl fmt::Debug for ShardWriter {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "Shard({})", self.file.display())
     }
 }
 
-impl Shard {
+impl ShardWriter {
     /// Begins a shard.
     ///
     /// # Errors
@@ -37,14 +37,14 @@ impl Shard {
     ///
     /// # Errors
     /// When it cannot be written.
-    pub fn add(&mut self, key: &str, trajectory: &Trajectory, pictures: &[Vec<u8>]) -> io::Result<()> {
-        self.append(&format!("{key}.json"), &serde_json::to_vec(&line(trajectory))?)?;
+    pub fn add_walk(&mut self, key: &str, trajectory: &ActionTrajectory, pictures: &[Vec<u8>]) -> io::Result<()> {
+        self.append_file(&format!("{key}.json"), &serde_json::to_vec(&trajectory_line(trajectory))?)?;
         let mut named = pictures.iter().enumerate();
-        named.try_for_each(|(number, picture)| self.append(&format!("{key}.{}", picture_name(number)), picture))
+        named.try_for_each(|(number, picture)| self.append_file(&format!("{key}.{}", picture_name(number)), picture))
     }
 
     /// The same bytes for the same walks: no time and no owner.
-    fn append(&mut self, name: &str, bytes: &[u8]) -> io::Result<()> {
+    fn append_file(&mut self, name: &str, bytes: &[u8]) -> io::Result<()> {
         let mut header = tar::Header::new_ustar();
         header.set_size(bytes.len() as u64);
         header.set_mode(0o644);

@@ -3,7 +3,7 @@
 use super::*;
 use proptest::prelude::*;
 
-fn trajectory(id: &str, pictures: Place) -> Trajectory {
+fn trajectory(id: &str, pictures: PictureLocation) -> ActionTrajectory {
     let text = "Turn left and walk to the sofa.".to_owned();
     let part = |span: [usize; 2], frames, steps| SubInstruction {
         text: text[span[0]..span[1]].to_owned(),
@@ -12,19 +12,24 @@ fn trajectory(id: &str, pictures: Place) -> Trajectory {
         steps,
     };
     let sub_instructions = vec![part([0, 9], [0, 1], [0, 2]), part([14, 30], [1, 1], [2, 2])];
-    let told = Told { episode_id: id.to_owned(), style: "r2r".to_owned(), text: text.clone(), sub_instructions };
-    Trajectory {
+    let told = TrajectoryInstruction {
+        episode_id: id.to_owned(),
+        style: "r2r".to_owned(),
+        text: text.clone(),
+        sub_instructions,
+    };
+    ActionTrajectory {
         id: id.to_owned(),
         platform: "house".to_owned(),
         scene: SceneId::new("house2-1").unwrap(),
         split: "train".to_owned(),
-        actions: vec![Action::Left, Action::Forward, Action::Stop],
+        actions: vec![AgentAction::Left, AgentAction::Forward, AgentAction::Stop],
         positions: [0.0, 0.0, 0.25].map(|y| DVec3::new(1.5, y, 0.0)).to_vec(),
         headings: vec![Heading::NORTH; 3],
         frame_steps: vec![0, 2],
         off_m: 0.125,
         pictures,
-        sha256: Digest::of(&views(id)),
+        sha256: PictureDigest::from_pictures(&views(id)),
         instructions: vec![told],
     }
 }
@@ -33,8 +38,8 @@ fn views(id: &str) -> Vec<Vec<u8>> {
     (0..3).map(|number| format!("picture {number} of {id}").into_bytes()).collect()
 }
 
-fn folder_of(id: &str) -> Trajectory {
-    trajectory(id, Place::Folder(format!("images/{id}")))
+fn folder_of(id: &str) -> ActionTrajectory {
+    trajectory(id, PictureLocation::Folder(format!("images/{id}")))
 }
 
 #[test]
@@ -42,16 +47,16 @@ fn trajectories_come_back_with_their_pictures() {
     let folder = tempfile::tempdir().unwrap();
     let apart = folder_of("a");
     let key = "000001".to_owned();
-    let packed = trajectory("b", Place::Sample { shard: "shards/000000.tar".to_owned(), key: key.clone() });
+    let packed = trajectory("b", PictureLocation::Sample { shard: "shards/000000.tar".to_owned(), key: key.clone() });
     let images = folder.path().join("images/a");
     std::fs::create_dir_all(&images).unwrap();
     std::fs::create_dir_all(folder.path().join("shards")).unwrap();
     for (number, picture) in views("a").iter().enumerate() {
         std::fs::write(images.join(picture_name(number)), picture).unwrap();
     }
-    let mut shard = Shard::begin(&folder.path().join("shards/000000.tar")).unwrap();
-    shard.add("000000", &trajectory("other", packed.pictures.clone()), &views("other")).unwrap();
-    shard.add(&key, &packed, &views("b")).unwrap();
+    let mut shard = ShardWriter::begin(&folder.path().join("shards/000000.tar")).unwrap();
+    shard.add_walk("000000", &trajectory("other", packed.pictures.clone()), &views("other")).unwrap();
+    shard.add_walk(&key, &packed, &views("b")).unwrap();
     shard.finish().unwrap();
     // As WebDataset finds them: the files of a sample together, named before the first point by its key.
     let mut tar = tar::Archive::new(std::fs::File::open(folder.path().join("shards/000000.tar")).unwrap());
@@ -60,17 +65,17 @@ fn trajectories_come_back_with_their_pictures() {
     let expected = ["000000", "000001"].iter().flat_map(|key| expected.map(|name| format!("{key}.{name}")));
     assert_eq!(names.collect::<Vec<_>>(), expected.collect::<Vec<_>>());
     let file = folder.path().join("trajectories.jsonl");
-    write(&file, &[apart.clone(), packed.clone()]).unwrap();
-    let found = read(&file).unwrap();
+    write_trajectories(&file, &[apart.clone(), packed.clone()]).unwrap();
+    let found = read_trajectories(&file).unwrap();
     assert_eq!(found, [apart, packed]);
     for (trajectory, id) in found.iter().zip(["a", "b"]) {
-        assert_eq!(pictures(folder.path(), trajectory).unwrap(), views(id));
+        assert_eq!(read_pictures(folder.path(), trajectory).unwrap(), views(id));
     }
     std::fs::write(images.join("0001.jpg"), "another picture").unwrap();
-    let error = pictures(folder.path(), &found[0]).unwrap_err().to_string();
+    let error = read_pictures(folder.path(), &found[0]).unwrap_err().to_string();
     assert!(error.contains("the pictures of walk a are not those that were written"), "{error}");
     std::fs::remove_file(images.join("0001.jpg")).unwrap();
-    assert!(pictures(folder.path(), &found[0]).unwrap_err().to_string().contains("0001.jpg"));
+    assert!(read_pictures(folder.path(), &found[0]).unwrap_err().to_string().contains("0001.jpg"));
 }
 
 #[test]
@@ -78,8 +83,8 @@ fn a_shard_is_the_same_bytes_each_time() {
     let folder = tempfile::tempdir().unwrap();
     let bytes = |name: &str| {
         let file = folder.path().join(name);
-        let mut shard = Shard::begin(&file).unwrap();
-        shard.add("000000", &folder_of("a"), &views("a")).unwrap();
+        let mut shard = ShardWriter::begin(&file).unwrap();
+        shard.add_walk("000000", &folder_of("a"), &views("a")).unwrap();
         shard.finish().unwrap();
         std::fs::read(file).unwrap()
     };
@@ -115,14 +120,14 @@ fn read_refuses_broken_rules_with_line_and_field() {
         ("/instructions/0/sub_instructions/0/steps", json!([0, 1]), "sub_instructions[0].steps\""),
         ("/off_m", json!("near"), "field \"off_m\""),
     ] {
-        let mut second = line(&folder_of("b"));
+        let mut second = trajectory_line(&folder_of("b"));
         *second.pointer_mut(field).unwrap() = value;
-        std::fs::write(&file, format!("{}\n{second}\n", line(&folder_of("a")))).unwrap();
-        let error = read(&file).unwrap_err().to_string();
+        std::fs::write(&file, format!("{}\n{second}\n", trajectory_line(&folder_of("a")))).unwrap();
+        let error = read_trajectories(&file).unwrap_err().to_string();
         assert!(error.contains("trajectories.jsonl: line 2") && error.contains(told), "{field}: {error}");
     }
-    std::fs::write(&file, format!("{0}\n{0}\n", line(&folder_of("a")))).unwrap();
-    assert!(read(&file).unwrap_err().to_string().contains("was given to an earlier line"));
+    std::fs::write(&file, format!("{0}\n{0}\n", trajectory_line(&folder_of("a")))).unwrap();
+    assert!(read_trajectories(&file).unwrap_err().to_string().contains("was given to an earlier line"));
 }
 
 proptest! {
@@ -130,17 +135,17 @@ proptest! {
     fn poses_are_read_as_they_were_written(x in -50.0..50.0f64, y in -50.0..50.0f64, z in -5.0..5.0f64, rad in 0.0..std::f64::consts::TAU) {
         let (position, heading) = as_written(DVec3::new(x, y, z), Heading::new(rad).unwrap());
         prop_assert!(position.distance(DVec3::new(x, y, z)) < 1e-5);
-        let written = Trajectory {
-            actions: vec![Action::Stop],
+        let written = ActionTrajectory {
+            actions: vec![AgentAction::Stop],
             positions: vec![position],
             headings: vec![heading],
             frame_steps: vec![0, 0],
-            instructions: vec![Told { episode_id: "a".into(), style: "r2r".into(), text: "Stop.".into(), sub_instructions: Vec::new() }],
+            instructions: vec![TrajectoryInstruction { episode_id: "a".into(), style: "r2r".into(), text: "Stop.".into(), sub_instructions: Vec::new() }],
             ..folder_of("a")
         };
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("trajectories.jsonl");
-        write(&file, std::slice::from_ref(&written)).unwrap();
-        prop_assert_eq!(read(&file).unwrap(), vec![written]);
+        write_trajectories(&file, std::slice::from_ref(&written)).unwrap();
+        prop_assert_eq!(read_trajectories(&file).unwrap(), vec![written]);
     }
 }

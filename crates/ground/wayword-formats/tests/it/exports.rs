@@ -5,13 +5,13 @@
 
 use serde_json::{Value, json};
 use std::{path::Path, process::Command};
-use wayword_core::{DVec3, Heading, Motion, ObjectId, SceneId, Target, ViewpointId, path::Stop};
-use wayword_formats::{Episode, Format, r2r, read, reverie, rxr, vlnce, write_sidecar};
+use wayword_core::{DVec3, Heading, ObjectId, PathMotion, PathTarget, SceneId, ViewpointId, path::PathStop};
+use wayword_formats::{DatasetFormat, Episode, r2r, read_any_format, reverie, rxr, vlnce, write_sidecar};
 
 const EYE_HEIGHT_M: f64 = 1.5;
 
 fn path(id: &str, object: Option<&str>) -> wayword_core::Path {
-    let stop = |(n, (x, y)): (usize, (f64, f64))| Stop {
+    let stop = |(n, (x, y)): (usize, (f64, f64))| PathStop {
         position: DVec3::new(x, y, EYE_HEIGHT_M),
         viewpoint: Some(ViewpointId::new(format!("v{n}")).unwrap()),
         level: Some(1),
@@ -22,8 +22,8 @@ fn path(id: &str, object: Option<&str>) -> wayword_core::Path {
         id: id.to_owned(),
         scene: SceneId::new("house1").unwrap(),
         frames: wayword_core::Path::frames_along(stops, Some(Heading::new(1.0).unwrap())),
-        motion: Motion::Known,
-        target: object.map(|object| Target {
+        motion: PathMotion::Known,
+        target: object.map(|object| PathTarget {
             object,
             name: "plant".into(),
             told_by: Vec::new(),
@@ -48,18 +48,18 @@ fn episodes() -> Vec<Episode> {
     vec![plain, episode("house2-3-17", Some("12"), &["Walk on."]), episode("house2-3-18", None, &["Stop."])]
 }
 
-fn write(format: Format, file: &Path, episodes: &[Episode]) {
+fn write(format: DatasetFormat, file: &Path, episodes: &[Episode]) {
     match format {
-        Format::R2r => r2r::write(file, episodes),
-        Format::Reverie => reverie::write(file, episodes),
-        Format::Rxr => rxr::write(file, episodes),
-        Format::Vlnce => vlnce::write(file, &vlnce::Dataset::of(episodes.to_vec())),
-        Format::Wayword => unreachable!("records are written by jsonl::write"),
+        DatasetFormat::R2r => r2r::write_r2r_file(file, episodes),
+        DatasetFormat::Reverie => reverie::write_reverie_file(file, episodes),
+        DatasetFormat::Rxr => rxr::write_rxr_file(file, episodes),
+        DatasetFormat::Vlnce => vlnce::write_vlnce_file(file, &vlnce::VlnceDataset::from_episodes(episodes.to_vec())),
+        DatasetFormat::Wayword => unreachable!("records are written by jsonl::write"),
     }
     .unwrap();
 }
 
-fn written(format: Format, episodes: &[Episode]) -> Value {
+fn written(format: DatasetFormat, episodes: &[Episode]) -> Value {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("export.json");
     write(format, &file, episodes);
@@ -76,9 +76,15 @@ fn the_fields_own_loaders_read_what_is_written() {
     }
     let loaders = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/field_loaders.py");
     let folder = tempfile::tempdir().unwrap();
-    let cases =
-        [(Format::R2r, "a.json"), (Format::Reverie, "b.json"), (Format::Rxr, "c.jsonl"), (Format::Rxr, "c.jsonl.gz")];
-    for (format, name) in cases.into_iter().chain([(Format::Vlnce, "d.json"), (Format::Vlnce, "d.json.gz")]) {
+    let cases = [
+        (DatasetFormat::R2r, "a.json"),
+        (DatasetFormat::Reverie, "b.json"),
+        (DatasetFormat::Rxr, "c.jsonl"),
+        (DatasetFormat::Rxr, "c.jsonl.gz"),
+    ];
+    for (format, name) in
+        cases.into_iter().chain([(DatasetFormat::Vlnce, "d.json"), (DatasetFormat::Vlnce, "d.json.gz")])
+    {
         let file = folder.path().join(name);
         write(format, &file, &episodes());
         let output = Command::new("python3").arg(&loaders).args([format.name()]).arg(&file).output().unwrap();
@@ -91,7 +97,7 @@ fn the_fields_own_loaders_read_what_is_written() {
 fn the_loader_check_crashes_on_an_unknown_key() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("d.json");
-    write(Format::Vlnce, &file, &episodes());
+    write(DatasetFormat::Vlnce, &file, &episodes());
     let text =
         std::fs::read_to_string(&file).unwrap().replacen("\"episode_id\"", "\"style\":\"r2r\",\"episode_id\"", 1);
     std::fs::write(&file, text).unwrap();
@@ -105,18 +111,19 @@ fn the_loader_check_crashes_on_an_unknown_key() {
 #[test]
 fn detect_recognises_every_export_by_its_content() {
     let folder = tempfile::tempdir().unwrap();
-    for format in [Format::R2r, Format::Reverie, Format::Rxr, Format::Vlnce] {
+    for format in [DatasetFormat::R2r, DatasetFormat::Reverie, DatasetFormat::Rxr, DatasetFormat::Vlnce] {
         let file = folder.path().join("export");
         write(format, &file, &episodes());
-        assert_eq!(wayword_formats::detect(&file).unwrap(), format);
-        let texts: Vec<_> = read(&file).unwrap().into_iter().flat_map(|episode| episode.instructions).collect();
+        assert_eq!(wayword_formats::detect_format(&file).unwrap(), format);
+        let texts: Vec<_> =
+            read_any_format(&file).unwrap().into_iter().flat_map(|episode| episode.instructions).collect();
         assert_eq!(texts, episodes().into_iter().flat_map(|episode| episode.instructions).collect::<Vec<_>>());
     }
 }
 
 #[test]
 fn a_path_whose_name_is_no_number_gets_one_and_keeps_its_name() {
-    let items = written(Format::Reverie, &episodes());
+    let items = written(DatasetFormat::Reverie, &episodes());
     assert_eq!(items[0]["id"], "0_66");
     assert_eq!(items[0]["objId"], 66);
     assert_eq!(items[0]["provenance"], json!({"writer": "rules"}));
@@ -131,7 +138,8 @@ fn a_path_whose_name_is_no_number_gets_one_and_keeps_its_name() {
 fn r2r_gets_one_item_per_path_and_heading() {
     let mut turned = episode("7", Some("3"), &["three"]);
     turned.start_heading = Some(Heading::new(2.0).unwrap());
-    let items = written(Format::R2r, &[episode("7", Some("1"), &["one"]), episode("7", Some("2"), &["two"]), turned]);
+    let items =
+        written(DatasetFormat::R2r, &[episode("7", Some("1"), &["one"]), episode("7", Some("2"), &["two"]), turned]);
     assert_eq!(items.as_array().unwrap().len(), 2);
     assert_eq!((&items[0]["path_id"], &items[0]["instructions"]), (&json!(7), &json!(["one", "two"])));
     assert_eq!((&items[1]["path_id"], &items[1]["path_name"]), (&json!(0), &json!("7")));
@@ -143,7 +151,12 @@ fn reverie_refuses_two_items_of_one_id() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("export.json");
     let twice = [episode("7", Some("1"), &["one"]), episode("7", Some("1"), &["two"])];
-    assert!(reverie::write(&file, &twice).unwrap_err().to_string().contains("has the same path and object as another"));
+    assert!(
+        reverie::write_reverie_file(&file, &twice)
+            .unwrap_err()
+            .to_string()
+            .contains("has the same path and object as another")
+    );
     assert!(!file.exists());
 }
 
@@ -155,10 +168,10 @@ fn rxr_drops_the_annotators_fields_of_a_replaced_text() {
         "scan": "house1", "path": ["a"], "heading": 0.5, "instruction": "as spoken", "edit_distance": 0.5,
         "timed_instruction": [{"word": "as", "start_time": 0.0, "end_time": 1.0}]});
     std::fs::write(&file, line.to_string()).unwrap();
-    let mut episodes = rxr::read(&file).unwrap();
-    assert_eq!(written(Format::Rxr, &episodes), line);
+    let mut episodes = rxr::read_rxr_file(&file).unwrap();
+    assert_eq!(written(DatasetFormat::Rxr, &episodes), line);
     episodes[0].instructions = vec!["Walk on.".into()];
-    let anew = written(Format::Rxr, &episodes);
+    let anew = written(DatasetFormat::Rxr, &episodes);
     assert_eq!(
         (&anew["annotator_id"], &anew["language"], &anew["edit_distance"]),
         (&json!(0), &json!("en-US"), &json!(0.0))
@@ -169,7 +182,7 @@ fn rxr_drops_the_annotators_fields_of_a_replaced_text() {
 
 #[test]
 fn vlnce_positions_are_on_the_floor_in_habitats_frame() {
-    let dataset = written(Format::Vlnce, &[episode("3", None, &["Walk on."])]);
+    let dataset = written(DatasetFormat::Vlnce, &[episode("3", None, &["Walk on."])]);
     let episode = &dataset["episodes"][0];
     assert_eq!(episode["reference_path"], json!([[0.0, 0.0, -0.0], [0.0, 0.0, -2.0], [3.0, 0.0, -2.0]]));
     assert_eq!(episode["start_position"], episode["reference_path"][0]);
@@ -185,9 +198,12 @@ fn vlnce_keeps_a_vocabulary_that_agents_know() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("d.json");
     let words = ["<pad>", "<unk>", "walk", "on", "."].map(str::to_owned).to_vec();
-    let vocabulary = wayword_formats::Vocabulary::new(words.clone());
-    vlnce::write(&file, &vlnce::Dataset { episodes: vec![episode("3", None, &["Walk past, on."])], vocabulary })
-        .unwrap();
+    let vocabulary = wayword_formats::TokenVocabulary::new(words.clone());
+    vlnce::write_vlnce_file(
+        &file,
+        &vlnce::VlnceDataset { episodes: vec![episode("3", None, &["Walk past, on."])], vocabulary },
+    )
+    .unwrap();
     let dataset: Value = serde_json::from_slice(&std::fs::read(&file).unwrap()).unwrap();
     assert_eq!(dataset["instruction_vocab"]["word_list"], json!(words));
     assert_eq!(
@@ -203,9 +219,10 @@ fn writers_refuse_paths_without_viewpoints_or_floors() {
     let scene = SceneId::new("house1").unwrap();
     let mut nowhere = Episode::new("1", "1", scene);
     nowhere.instructions.push("Go.".into());
-    let r2r = r2r::write(&file, std::slice::from_ref(&nowhere)).unwrap_err().to_string();
+    let r2r = r2r::write_r2r_file(&file, std::slice::from_ref(&nowhere)).unwrap_err().to_string();
     assert!(r2r.contains("names no viewpoints") && r2r.contains("vlnce"), "{r2r}");
-    let vlnce = vlnce::write(&file, &vlnce::Dataset::of(vec![nowhere])).unwrap_err().to_string();
+    let vlnce =
+        vlnce::write_vlnce_file(&file, &vlnce::VlnceDataset::from_episodes(vec![nowhere])).unwrap_err().to_string();
     assert!(vlnce.contains("no floor positions"), "{vlnce}");
 }
 
@@ -213,14 +230,18 @@ fn writers_refuse_paths_without_viewpoints_or_floors() {
 fn no_writer_invents_poses_for_a_path_without_them() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("export.json");
-    let video = wayword_core::Path { motion: Motion::Unknown, ..path("7", None) };
+    let video = wayword_core::Path { motion: PathMotion::Unknown, ..path("7", None) };
     let episode = Episode::from_path(&video, vec!["Go on.".into()]).on_floor_of(&video, EYE_HEIGHT_M);
     assert_eq!((episode.start_heading, episode.floor_length_m()), (None, None));
     let episode = std::slice::from_ref(&episode);
-    for refused in [r2r::write(&file, episode), reverie::write(&file, episode), rxr::write(&file, episode)] {
+    for refused in [
+        r2r::write_r2r_file(&file, episode),
+        reverie::write_reverie_file(&file, episode),
+        rxr::write_rxr_file(&file, episode),
+    ] {
         assert!(refused.unwrap_err().to_string().contains("names no viewpoints"));
     }
-    let refused = vlnce::write(&file, &vlnce::Dataset::of(episode.to_vec()));
+    let refused = vlnce::write_vlnce_file(&file, &vlnce::VlnceDataset::from_episodes(episode.to_vec()));
     assert!(refused.unwrap_err().to_string().contains("no floor positions"));
     assert!(!file.exists());
 }

@@ -5,7 +5,7 @@
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use serde_json::{Value, json};
-use wayword_formats::{Format, FormatError, read};
+use wayword_formats::{DatasetFormat, FormatError, read_any_format};
 
 /// Choices that are the same in every run.
 struct Dice(ChaCha8Rng);
@@ -48,12 +48,12 @@ const ALL: [Damage; 10] = [
 ];
 
 /// Fields that every item needs. An item that has one of them wrong must be refused.
-fn needed(format: Format) -> &'static [&'static str] {
+fn needed(format: DatasetFormat) -> &'static [&'static str] {
     match format {
-        Format::R2r => &["/path_id", "/scan", "/path", "/heading", "/instructions"],
-        Format::Reverie => &["/id", "/path_id", "/scan", "/path", "/heading", "/instructions"],
-        Format::Rxr => &["/instruction_id", "/path_id", "/scan", "/path", "/heading", "/instruction"],
-        Format::Vlnce => &[
+        DatasetFormat::R2r => &["/path_id", "/scan", "/path", "/heading", "/instructions"],
+        DatasetFormat::Reverie => &["/id", "/path_id", "/scan", "/path", "/heading", "/instructions"],
+        DatasetFormat::Rxr => &["/instruction_id", "/path_id", "/scan", "/path", "/heading", "/instruction"],
+        DatasetFormat::Vlnce => &[
             "/episode_id",
             "/trajectory_id",
             "/scene_id",
@@ -62,43 +62,43 @@ fn needed(format: Format) -> &'static [&'static str] {
             "/goals",
             "/instruction",
         ],
-        Format::Wayword => {
+        DatasetFormat::Wayword => {
             &["/format", "/platform", "/path", "/text", "/style", "/mentions", "/verdict", "/findings", "/provenance"]
         }
     }
 }
 
-fn names(format: Format) -> &'static [&'static str] {
+fn names(format: DatasetFormat) -> &'static [&'static str] {
     match format {
-        Format::R2r => &["/path_id", "/scan", "/path/1"],
-        Format::Reverie => &["/id", "/path_id", "/scan", "/path/0", "/objId"],
-        Format::Rxr => &["/instruction_id", "/path_id", "/scan", "/path/2", "/split"],
-        Format::Vlnce => &["/episode_id", "/trajectory_id", "/scene_id"],
-        Format::Wayword => &["/path/id", "/path/scene", "/path/frames/1/viewpoint", "/platform"],
+        DatasetFormat::R2r => &["/path_id", "/scan", "/path/1"],
+        DatasetFormat::Reverie => &["/id", "/path_id", "/scan", "/path/0", "/objId"],
+        DatasetFormat::Rxr => &["/instruction_id", "/path_id", "/scan", "/path/2", "/split"],
+        DatasetFormat::Vlnce => &["/episode_id", "/trajectory_id", "/scene_id"],
+        DatasetFormat::Wayword => &["/path/id", "/path/scene", "/path/frames/1/viewpoint", "/platform"],
     }
 }
 
-fn places(format: Format) -> &'static str {
+fn places(format: DatasetFormat) -> &'static str {
     match format {
-        Format::R2r | Format::Reverie | Format::Rxr => "/path",
-        Format::Vlnce => "/reference_path",
-        Format::Wayword => "/path/frames",
+        DatasetFormat::R2r | DatasetFormat::Reverie | DatasetFormat::Rxr => "/path",
+        DatasetFormat::Vlnce => "/reference_path",
+        DatasetFormat::Wayword => "/path/frames",
     }
 }
 
-fn number_place(format: Format) -> &'static str {
+fn number_place(format: DatasetFormat) -> &'static str {
     match format {
-        Format::R2r | Format::Reverie | Format::Rxr => "/heading",
-        Format::Vlnce => "/start_position/1",
-        Format::Wayword => "/path/frames/0/pose/position/2",
+        DatasetFormat::R2r | DatasetFormat::Reverie | DatasetFormat::Rxr => "/heading",
+        DatasetFormat::Vlnce => "/start_position/1",
+        DatasetFormat::Wayword => "/path/frames/0/pose/position/2",
     }
 }
 
 /// A damaged file, and whether a reader may accept it.
-fn damaged(format: Format, damage: Damage, dice: &mut Dice) -> (Vec<u8>, bool) {
+fn damaged(format: DatasetFormat, damage: Damage, dice: &mut Dice) -> (Vec<u8>, bool) {
     let mut items = crate::common::items(format);
     let index = dice.roll(items.len());
-    let lines = matches!(format, Format::Rxr | Format::Wayword);
+    let lines = matches!(format, DatasetFormat::Rxr | DatasetFormat::Wayword);
     let marked = |items: &mut Vec<Value>, place: &str| *items[index].pointer_mut(place).unwrap() = json!("MARK");
     let render =
         |items: &[Value], with: &str| crate::common::text(format, items).replace("\"MARK\"", with).into_bytes();
@@ -167,17 +167,17 @@ fn damaged(format: Format, damage: Damage, dice: &mut Dice) -> (Vec<u8>, bool) {
     }
 }
 
-fn survives(format: Format) {
+fn survives(format: DatasetFormat) {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("damaged.json");
-    let mut dice = Dice(wayword_core::rng(20_260_101, &[format.name()]));
+    let mut dice = Dice(wayword_core::seeded_rng(20_260_101, &[format.name()]));
     let mut refused = 0;
     for round in 0..1_000 {
         let damage = ALL[round % ALL.len()];
         let (bytes, may_pass) = damaged(format, damage, &mut dice);
         std::fs::write(&file, &bytes).unwrap();
         let shown = || String::from_utf8_lossy(&bytes[..bytes.len().min(2_000)]).into_owned();
-        match format.read(&file) {
+        match format.read_file(&file) {
             Ok(_) => assert!(may_pass, "{format}: {damage:?} was accepted: {}", shown()),
             Err(error) => {
                 refused += 1;
@@ -185,7 +185,7 @@ fn survives(format: Format) {
             }
         }
         // Whatever format it is taken for, the reader must not crash.
-        let _ = read(&file);
+        let _ = read_any_format(&file);
     }
     assert!(refused > 700, "only {refused} of 1,000 were refused");
 }
@@ -201,25 +201,25 @@ fn assert_clear(error: &FormatError, file: &std::path::Path) {
 
 #[test]
 fn r2r_reader_survives() {
-    survives(Format::R2r);
+    survives(DatasetFormat::R2r);
 }
 
 #[test]
 fn reverie_reader_survives() {
-    survives(Format::Reverie);
+    survives(DatasetFormat::Reverie);
 }
 
 #[test]
 fn rxr_reader_survives() {
-    survives(Format::Rxr);
+    survives(DatasetFormat::Rxr);
 }
 
 #[test]
 fn vlnce_reader_survives() {
-    survives(Format::Vlnce);
+    survives(DatasetFormat::Vlnce);
 }
 
 #[test]
 fn wayword_reader_survives() {
-    survives(Format::Wayword);
+    survives(DatasetFormat::Wayword);
 }

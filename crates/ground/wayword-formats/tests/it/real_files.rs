@@ -27,7 +27,11 @@ fn comes_back(file: &str, items: usize, read: Read, write: Write) {
     let Some(file) = data(file) else { return };
     let episodes = read(&file).unwrap();
     assert_eq!(episodes.len(), items);
-    assert_eq!(wayword_formats::read(&file).unwrap(), episodes, "the format was not recognised by the content");
+    assert_eq!(
+        wayword_formats::read_any_format(&file).unwrap(),
+        episodes,
+        "the format was not recognised by the content"
+    );
     let folder = tempfile::tempdir().unwrap();
     let copy = folder.path().join("copy.json");
     write(&copy, &episodes).unwrap();
@@ -36,12 +40,12 @@ fn comes_back(file: &str, items: usize, read: Read, write: Write) {
 
 #[test]
 fn reverie_comes_back_as_it_was() {
-    comes_back("reverie/REVERIE_train.json", 4071, reverie::read, reverie::write);
-    comes_back("reverie/REVERIE_val_seen.json", 501, reverie::read, reverie::write);
+    comes_back("reverie/REVERIE_train.json", 4071, reverie::read_reverie_file, reverie::write_reverie_file);
+    comes_back("reverie/REVERIE_val_seen.json", 501, reverie::read_reverie_file, reverie::write_reverie_file);
 }
 
 #[test]
 fn r2r_comes_back_as_it_was() {
-    comes_back("r2r/R2R_train.json", 4675, r2r::read, r2r::write);
-    comes_back("r2r/R2R_val_seen.json", 340, r2r::read, r2r::write);
+    comes_back("r2r/R2R_train.json", 4675, r2r::read_r2r_file, r2r::write_r2r_file);
+    comes_back("r2r/R2R_val_seen.json", 340, r2r::read_r2r_file, r2r::write_r2r_file);
 }

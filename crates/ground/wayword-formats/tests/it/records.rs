@@ -9,13 +9,13 @@ use std::{
     path::{Path, PathBuf},
 };
 use wayword_formats::{
-    Format,
-    jsonl::{self, Record, Split},
-    split,
+    DatasetFormat,
+    jsonl::{self, DatasetSplit, InstructionRecord},
+    split_by_scene,
 };
 
 fn records(folder: &Path, platform: &str, scenes: &[usize]) -> PathBuf {
-    let template = &crate::common::items(Format::Wayword)[0];
+    let template = &crate::common::items(DatasetFormat::Wayword)[0];
     let record = |(n, scene): (usize, &usize)| {
         let mut record = template.clone();
         record.as_object_mut().unwrap().shift_remove("split");
@@ -26,11 +26,11 @@ fn records(folder: &Path, platform: &str, scenes: &[usize]) -> PathBuf {
     };
     let records: Vec<Value> = scenes.iter().enumerate().map(record).collect();
     let file = folder.join(format!("{platform}.jsonl"));
-    std::fs::write(&file, crate::common::text(Format::Wayword, &records)).unwrap();
+    std::fs::write(&file, crate::common::text(DatasetFormat::Wayword, &records)).unwrap();
     file
 }
 
-fn splits_of_scenes(records: &[Record]) -> BTreeMap<(&str, &str), BTreeSet<Split>> {
+fn splits_of_scenes(records: &[InstructionRecord]) -> BTreeMap<(&str, &str), BTreeSet<DatasetSplit>> {
     let mut scenes: BTreeMap<_, BTreeSet<_>> = BTreeMap::new();
     for record in records {
         let key = (record.platform.as_str(), record.path.scene.as_str());
@@ -51,25 +51,25 @@ proptest! {
     ) {
         let folder = tempfile::tempdir().unwrap();
         let files = [records(folder.path(), "house", &a), records(folder.path(), "matterport", &b)];
-        let mut merged = jsonl::merge(&files).unwrap();
+        let mut merged = jsonl::merge_records(&files).unwrap();
         prop_assert_eq!(merged.len(), a.len() + b.len());
-        split(&mut merged, share, seed);
+        split_by_scene(&mut merged, share, seed);
         let scenes = splits_of_scenes(&merged);
         prop_assert!(scenes.values().all(|splits| splits.len() == 1));
         for platform in ["house", "matterport"] {
             let of_platform: Vec<_> = scenes.iter().filter(|((name, _), _)| *name == platform).collect();
-            let in_val = of_platform.iter().filter(|(_, splits)| splits.contains(&Split::Val)).count();
+            let in_val = of_platform.iter().filter(|(_, splits)| splits.contains(&DatasetSplit::Val)).count();
             prop_assert!(of_platform.len() < 2 || (1..of_platform.len()).contains(&in_val));
         }
 
-        let mut backwards = jsonl::merge(&[&files[1], &files[0]]).unwrap();
+        let mut backwards = jsonl::merge_records(&[&files[1], &files[0]]).unwrap();
         backwards.reverse();
-        split(&mut backwards, share, seed);
+        split_by_scene(&mut backwards, share, seed);
         prop_assert_eq!(splits_of_scenes(&backwards), scenes);
 
         let file = folder.path().join("all.jsonl.gz");
-        jsonl::write(&file, &merged).unwrap();
-        prop_assert_eq!(jsonl::read(&file).unwrap(), merged);
+        jsonl::write_records(&file, &merged).unwrap();
+        prop_assert_eq!(jsonl::read_records(&file).unwrap(), merged);
     }
 }
 
@@ -78,11 +78,11 @@ fn another_seed_chooses_other_scenes() {
     let folder = tempfile::tempdir().unwrap();
     let file = records(folder.path(), "house", &(0..40).collect::<Vec<_>>());
     let val = |seed| {
-        let mut records = jsonl::read(&file).unwrap();
-        split(&mut records, 0.25, seed);
+        let mut records = jsonl::read_records(&file).unwrap();
+        split_by_scene(&mut records, 0.25, seed);
         records
             .into_iter()
-            .filter(|record| record.split == Some(Split::Val))
+            .filter(|record| record.split == Some(DatasetSplit::Val))
             .map(|record| record.path.scene)
             .collect::<Vec<_>>()
     };
@@ -94,21 +94,21 @@ fn another_seed_chooses_other_scenes() {
 fn merge_refuses_records_that_cannot_be_together() {
     let folder = tempfile::tempdir().unwrap();
     let file = records(folder.path(), "house", &[1, 1]);
-    let twice = jsonl::merge(&[&file, &file]).unwrap_err().to_string();
+    let twice = jsonl::merge_records(&[&file, &file]).unwrap_err().to_string();
     assert!(twice.contains("line 1 (id p0): field \"text\": path \"p0\" already has the same instruction"), "{twice}");
 
-    let mut records = jsonl::read(&file).unwrap();
-    records[0].split = Some(Split::Train);
-    records[1].split = Some(Split::Val);
-    let leak = jsonl::write(&file, &records).unwrap_err().to_string();
+    let mut records = jsonl::read_records(&file).unwrap();
+    records[0].split = Some(DatasetSplit::Train);
+    records[1].split = Some(DatasetSplit::Val);
+    let leak = jsonl::write_records(&file, &records).unwrap_err().to_string();
     assert!(leak.contains("scene scene1 is in train and in val"), "{leak}");
 
     records[1].split = None;
     records[1].path.id = records[0].path.id.clone();
     records[1].path.frames.truncate(1);
-    let other = jsonl::write(&file, &records).unwrap_err().to_string();
+    let other = jsonl::write_records(&file, &records).unwrap_err().to_string();
     assert!(other.contains("a different path with the name \"p0\""), "{other}");
-    assert_eq!(jsonl::read(&file).unwrap().len(), 2, "a refused write touched the file");
+    assert_eq!(jsonl::read_records(&file).unwrap().len(), 2, "a refused write touched the file");
 }
 
 #[test]
@@ -118,7 +118,7 @@ fn a_record_of_a_later_format_is_refused_with_the_version_that_wrote_it() {
     let later =
         std::fs::read_to_string(&file).unwrap().replace("wayword/1", "wayword/2").replace("\"0.1.0\"", "\"7.0.3\"");
     std::fs::write(&file, later).unwrap();
-    let told = jsonl::read(&file).unwrap_err().to_string();
+    let told = jsonl::read_records(&file).unwrap_err().to_string();
     assert!(["\"wayword/2\"", "7.0.3", "expected \"wayword/1\""].iter().all(|part| told.contains(part)), "{told}");
 }
 
@@ -126,13 +126,13 @@ fn a_record_of_a_later_format_is_refused_with_the_version_that_wrote_it() {
 fn records_come_to_one_episode_per_path() {
     let folder = tempfile::tempdir().unwrap();
     let file = records(folder.path(), "house", &[1, 2]);
-    let mut records = jsonl::read(&file).unwrap();
+    let mut records = jsonl::read_records(&file).unwrap();
     let mut other = records[0].clone();
     other.instruction.style = "reverie".into();
     other.instruction.text = "Go to the door".into();
     other.instruction.mentions.clear();
     records.push(other);
-    let episodes = jsonl::episodes(&records);
+    let episodes = jsonl::episodes_from_records(&records);
     assert_eq!(episodes.len(), 2);
     assert_eq!(episodes[0].instructions, ["Walk to the door and stop.", "Go to the door"]);
     assert_eq!(episodes[0].viewpoints.len(), 2);
@@ -143,7 +143,7 @@ fn items_on_one_path_of_a_dataset_keep_its_name() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("records.jsonl");
     let record = |(item, path_id): (&str, Option<Value>)| {
-        let mut record = crate::common::items(Format::Wayword)[0].clone();
+        let mut record = crate::common::items(DatasetFormat::Wayword)[0].clone();
         record["path"]["id"] = json!(item);
         if let Some(path_id) = path_id {
             record["path_id"] = path_id;
@@ -152,14 +152,15 @@ fn items_on_one_path_of_a_dataset_keep_its_name() {
     };
     let write = |items: Vec<(&str, Option<Value>)>| {
         let items: Vec<Value> = items.into_iter().map(record).collect();
-        std::fs::write(&file, crate::common::text(Format::Wayword, &items)).unwrap();
+        std::fs::write(&file, crate::common::text(DatasetFormat::Wayword, &items)).unwrap();
     };
     write(vec![("12_3", Some(json!("12"))), ("12_4", Some(json!(12))), ("13_5", None)]);
-    let path_ids: Vec<_> = Format::Wayword.read(&file).unwrap().into_iter().map(|episode| episode.path_id).collect();
+    let path_ids: Vec<_> =
+        DatasetFormat::Wayword.read_file(&file).unwrap().into_iter().map(|episode| episode.path_id).collect();
     assert_eq!(path_ids, ["12", "12", "13_5"]);
     for bad in [json!("../12"), json!("x".repeat(129)), json!(1.5), json!(null), json!(["12"])] {
         write(vec![("12_3", Some(bad.clone()))]);
-        let refused = jsonl::read(&file).unwrap_err().to_string();
+        let refused = jsonl::read_records(&file).unwrap_err().to_string();
         assert!(refused.contains("line 1 (id 12_3): field \"path_id\": expected a whole number"), "{bad}: {refused}");
     }
 }
@@ -171,12 +172,12 @@ fn scenes_that_are_officially_held_out_are_for_val() {
     let file = records(folder.path(), "matterport", &[0, 1, 2, 3]);
     let scenes = ["17DRP5sb8fy", "2azQ1b91cZZ", "2t7WUuJeko7", "5q7pvUzZiYa"];
     for (share, seed) in [(0.0, 0), (0.25, 1), (0.5, 2), (0.75, 3), (1.0, 4)] {
-        let mut records = jsonl::read(&file).unwrap();
+        let mut records = jsonl::read_records(&file).unwrap();
         for (record, scene) in records.iter_mut().zip(scenes) {
             record.path.scene = wayword_core::SceneId::new(scene).unwrap();
         }
-        split(&mut records, share, seed);
-        let val: Vec<bool> = records.iter().map(|record| record.split == Some(Split::Val)).collect();
+        split_by_scene(&mut records, share, seed);
+        let val: Vec<bool> = records.iter().map(|record| record.split == Some(DatasetSplit::Val)).collect();
         assert!(val[1] && val[2], "{share}: {val:?}");
         let expected = (share * 4.0_f64).round().max(2.0) as usize;
         assert_eq!(val.iter().filter(|is_val| **is_val).count(), expected, "{share}");

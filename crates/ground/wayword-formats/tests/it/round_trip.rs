@@ -5,7 +5,7 @@
 use proptest::prelude::*;
 use serde_json::{Map, Value, json};
 use std::path::Path;
-use wayword_formats::{Format, read};
+use wayword_formats::{DatasetFormat, read_any_format};
 
 fn number() -> impl Strategy<Value = Value> {
     prop_oneof![
@@ -56,9 +56,10 @@ fn change() -> impl Strategy<Value = Change> {
     )
 }
 
-fn changed(format: Format, n: usize, item: &Value, change: &Change) -> Value {
+fn changed(format: DatasetFormat, n: usize, item: &Value, change: &Change) -> Value {
     let mut item = item.as_object().unwrap().clone();
-    let scene = if format == Format::Wayword || format == Format::Vlnce { None } else { Some(&change.scene) };
+    let scene =
+        if format == DatasetFormat::Wayword || format == DatasetFormat::Vlnce { None } else { Some(&change.scene) };
     if let Some(scene) = scene {
         item["scan"] = json!(scene);
         item["path"] = json!(change.path);
@@ -66,15 +67,15 @@ fn changed(format: Format, n: usize, item: &Value, change: &Change) -> Value {
     }
     let text = json!(format!("{} {n}", change.text));
     match format {
-        Format::R2r | Format::Reverie => item["instructions"] = json!([text, change.text]),
-        Format::Rxr => item["instruction"] = text,
-        Format::Vlnce => item["instruction"]["instruction_text"] = text,
-        Format::Wayword => {
+        DatasetFormat::R2r | DatasetFormat::Reverie => item["instructions"] = json!([text, change.text]),
+        DatasetFormat::Rxr => item["instruction"] = text,
+        DatasetFormat::Vlnce => item["instruction"]["instruction_text"] = text,
+        DatasetFormat::Wayword => {
             item["text"] = text;
             item["mentions"] = json!([]);
         }
     }
-    let bears_unknown = format != Format::Vlnce;
+    let bears_unknown = format != DatasetFormat::Vlnce;
     item.extend(change.unknown.iter().filter(|_| bears_unknown).cloned());
     let entries: Vec<_> = item.into_iter().collect();
     let ordered: Map<_, _> =
@@ -86,7 +87,7 @@ fn unknown_keys(item: &Value) -> Vec<&String> {
     item.as_object().unwrap().keys().filter(|key| key.starts_with("x_")).collect()
 }
 
-fn comes_back(format: Format, ending: &str, changes: &[Change]) {
+fn comes_back(format: DatasetFormat, ending: &str, changes: &[Change]) {
     let items: Vec<_> = changes
         .iter()
         .zip(crate::common::items(format))
@@ -97,7 +98,7 @@ fn comes_back(format: Format, ending: &str, changes: &[Change]) {
     let (file, copy) = (folder.path().join("file"), folder.path().join(format!("copy{ending}")));
     std::fs::write(&file, crate::common::text(format, &items)).unwrap();
     crate::common::copy(format, &file, &copy).unwrap();
-    assert_eq!(read(&copy).unwrap(), read(&file).unwrap());
+    assert_eq!(read_any_format(&copy).unwrap(), read_any_format(&file).unwrap());
     if !ending.ends_with(".gz") {
         let back = crate::common::items_of(format, &copy);
         assert_eq!(back, items);
@@ -117,81 +118,81 @@ proptest! {
 
     #[test]
     fn r2r(changes in prop::collection::vec(change(), 1..4)) {
-        comes_back(Format::R2r, ".json", &changes);
+        comes_back(DatasetFormat::R2r, ".json", &changes);
     }
 
     #[test]
     fn reverie(changes in prop::collection::vec(change(), 1..4)) {
-        comes_back(Format::Reverie, ".json", &changes);
+        comes_back(DatasetFormat::Reverie, ".json", &changes);
     }
 
     #[test]
     fn rxr(changes in prop::collection::vec(change(), 1..4)) {
-        comes_back(Format::Rxr, ".jsonl", &changes);
+        comes_back(DatasetFormat::Rxr, ".jsonl", &changes);
     }
 
     #[test]
     fn rxr_gz(changes in prop::collection::vec(change(), 1..4)) {
-        comes_back(Format::Rxr, ".jsonl.gz", &changes);
+        comes_back(DatasetFormat::Rxr, ".jsonl.gz", &changes);
     }
 
     #[test]
     fn vlnce(changes in prop::collection::vec(change(), 1..4)) {
-        comes_back(Format::Vlnce, ".json", &changes);
+        comes_back(DatasetFormat::Vlnce, ".json", &changes);
     }
 
     #[test]
     fn vlnce_gz(changes in prop::collection::vec(change(), 1..4)) {
-        comes_back(Format::Vlnce, ".json.gz", &changes);
+        comes_back(DatasetFormat::Vlnce, ".json.gz", &changes);
     }
 
     #[test]
     fn wayword(changes in prop::collection::vec(change(), 1..4)) {
-        comes_back(Format::Wayword, ".jsonl", &changes);
+        comes_back(DatasetFormat::Wayword, ".jsonl", &changes);
     }
 }
 
 /// Writes one item, reads it and writes it again.
-fn copied(format: Format, item: Value) -> Value {
+fn copied(format: DatasetFormat, item: Value) -> Value {
     let folder = tempfile::tempdir().unwrap();
     let (file, copy) = (folder.path().join("file"), folder.path().join("copy"));
     std::fs::write(&file, crate::common::text(format, &[item])).unwrap();
-    assert_eq!(wayword_formats::detect(&file).unwrap(), format);
+    assert_eq!(wayword_formats::detect_format(&file).unwrap(), format);
     crate::common::copy(format, &file, &copy).unwrap();
     crate::common::items_of(format, &copy).remove(0)
 }
 
 #[test]
 fn reveries_first_release_comes_back_too() {
-    let mut item = crate::common::items(Format::Reverie).remove(0);
+    let mut item = crate::common::items(DatasetFormat::Reverie).remove(0);
     item["distance"] = json!(11.25);
     item["ix"] = json!(3);
     item["instructions_l"] = json!(["Leave the hall.", "Walk on.", "Stop."]);
-    assert_eq!(copied(Format::Reverie, item.clone()), item);
+    assert_eq!(copied(DatasetFormat::Reverie, item.clone()), item);
 }
 
 #[test]
 fn an_item_without_an_object_is_reverie_by_its_id() {
-    let mut item = crate::common::items(Format::Reverie).remove(0);
+    let mut item = crate::common::items(DatasetFormat::Reverie).remove(0);
     item.as_object_mut().unwrap().shift_remove("objId");
     item["id"] = json!("0_free");
-    assert_eq!(copied(Format::Reverie, item.clone()), item);
+    assert_eq!(copied(DatasetFormat::Reverie, item.clone()), item);
 }
 
 #[test]
 fn vlnce_drops_fields_that_crash_its_loader() {
-    let item = crate::common::items(Format::Vlnce).remove(0);
+    let item = crate::common::items(DatasetFormat::Vlnce).remove(0);
     let mut strange = item.clone();
     strange["style"] = json!("r2r");
     strange["instruction"]["language"] = json!("en-US");
-    assert_eq!(copied(Format::Vlnce, strange), item);
+    assert_eq!(copied(DatasetFormat::Vlnce, strange), item);
 }
 
 #[test]
 fn a_vlnce_episode_of_a_test_split_has_neither_goal_nor_path() {
-    let mut item = crate::common::items(Format::Vlnce).remove(0);
+    let mut item = crate::common::items(DatasetFormat::Vlnce).remove(0);
     item["goals"] = Value::Null;
     item["reference_path"] = Value::Null;
     item["info"] = Value::Null;
-    assert_eq!(copied(Format::Vlnce, item.clone()), item);
+    assert_eq!(copied(DatasetFormat::Vlnce, item.clone()), item);
 }

@@ -10,7 +10,10 @@ use std::{fs, io::Write, path::Path};
 use wayword_core::{Heading, ObjectId, SceneId, ViewpointId};
 use wayword_formats::{
     Episode,
-    submission::{Posed, Problems, Reading, Submitted, instr_id, read, write},
+    submission::{
+        SubmissionProblems, SubmissionReading, SubmittedTrajectory, TrajectoryPose, instr_id, read_submission,
+        write_submission,
+    },
 };
 
 fn in_file<T>(contents: impl AsRef<[u8]>, look: impl FnOnce(&Path) -> T) -> T {
@@ -21,26 +24,26 @@ fn in_file<T>(contents: impl AsRef<[u8]>, look: impl FnOnce(&Path) -> T) -> T {
 }
 
 /// All items of a file without problems.
-fn whole(file: &Path) -> Vec<Submitted> {
-    let Reading { submitted, flawed, problems, is_whole } = read(file);
+fn whole(file: &Path) -> Vec<SubmittedTrajectory> {
+    let SubmissionReading { submitted, flawed, problems, is_whole } = read_submission(file);
     assert!(problems.told.is_empty() && flawed.is_empty() && is_whole, "{problems:?} {flawed:?}");
     submitted
 }
 
-fn good(items: &Value) -> Vec<Submitted> {
+fn good(items: &Value) -> Vec<SubmittedTrajectory> {
     in_file(items.to_string(), whole)
 }
 
 /// The problems of a file, without its name.
 fn problems(contents: impl AsRef<[u8]>) -> Vec<String> {
-    let Problems { told, untold } = in_file(contents, read).problems;
+    let SubmissionProblems { told, untold } = in_file(contents, read_submission).problems;
     assert_eq!(untold, 0);
     let bare = |text: String| text.split_once("submission.json: ").unwrap().1.to_owned();
     told.iter().map(|problem| bare(problem.to_string())).collect()
 }
 
-fn place(viewpoint: &str) -> Posed {
-    Posed { viewpoint: ViewpointId::new(viewpoint).unwrap(), heading: Heading::NORTH, elevation_rad: 0.0 }
+fn place(viewpoint: &str) -> TrajectoryPose {
+    TrajectoryPose { viewpoint: ViewpointId::new(viewpoint).unwrap(), heading: Heading::NORTH, elevation_rad: 0.0 }
 }
 
 #[test]
@@ -52,7 +55,7 @@ fn both_datasets_submissions_are_read() {
         {"instr_id": "4332_66_3", "trajectory": [["hall", 0, 0]], "predObjId": null},
     ]));
     assert_eq!(found[0].instr_id, "4332_0");
-    let turned = Posed { heading: Heading::new(1.5).unwrap(), elevation_rad: -0.25, ..place("hall") };
+    let turned = TrajectoryPose { heading: Heading::new(1.5).unwrap(), elevation_rad: -0.25, ..place("hall") };
     assert_eq!(found[0].trajectory[0], turned);
     assert!((found[0].trajectory[1].heading.rad() - (7.0 - std::f64::consts::TAU)).abs() < 1e-12);
     let object = ObjectId::new("66").unwrap();
@@ -65,7 +68,7 @@ fn directions_may_be_absent_and_places_may_come_together() {
     let found = good(&json!([
         {"instr_id": "1_0", "trajectory": [["hall"], "door", ["stairs", "landing", "room"], ["desk", 0.5]]},
     ]));
-    let mut expected: Vec<Posed> = ["hall", "door", "stairs", "landing", "room", "desk"].map(place).into();
+    let mut expected: Vec<TrajectoryPose> = ["hall", "door", "stairs", "landing", "room", "desk"].map(place).into();
     expected[5].heading = Heading::new(0.5).unwrap();
     assert_eq!(found[0].trajectory, expected);
 }
@@ -122,11 +125,12 @@ fn read_returns_usable_items_together_with_problems() {
         {"trajectory": ["hall"]},
         {"instr_id": "1_3", "trajectory": ["door"]},
     ]);
-    let names = |reading: &Reading| reading.submitted.iter().map(|item| item.instr_id.clone()).collect::<Vec<_>>();
-    let reading = in_file(items.to_string(), read);
+    let names =
+        |reading: &SubmissionReading| reading.submitted.iter().map(|item| item.instr_id.clone()).collect::<Vec<_>>();
+    let reading = in_file(items.to_string(), read_submission);
     assert_eq!(names(&reading), ["1_1", "1_3"]);
     assert_eq!((reading.flawed.as_slice(), reading.is_whole), (["1_0".to_owned(), "1_2".to_owned()].as_slice(), true));
-    let broken = in_file(items.to_string().replace("{\"trajectory\"", "{"), read);
+    let broken = in_file(items.to_string().replace("{\"trajectory\"", "{"), read_submission);
     assert_eq!((names(&broken), broken.is_whole), (vec!["1_1".to_owned()], false));
 }
 
@@ -140,13 +144,13 @@ fn read_lists_problems_before_the_file_broke_off() {
 #[test]
 fn read_lists_a_thousand_problems_and_counts_the_rest() {
     let items: Vec<Value> = (0..1_500).map(|n| json!({"instr_id": format!("{n}_0")})).collect();
-    let problems = in_file(Value::from(items).to_string(), read).problems;
+    let problems = in_file(Value::from(items).to_string(), read_submission).problems;
     assert_eq!((problems.told.len(), problems.untold, problems.count()), (1_000, 500, 1_500));
 }
 
 #[test]
 fn a_file_that_is_not_there_is_refused() {
-    let Reading { problems, is_whole, .. } = read(Path::new("nowhere/submission.json"));
+    let SubmissionReading { problems, is_whole, .. } = read_submission(Path::new("nowhere/submission.json"));
     assert!(problems.told[0].to_string().starts_with("nowhere/submission.json: cannot open it") && !is_whole);
 }
 
@@ -159,12 +163,12 @@ fn instructions_are_named_by_item_and_place() {
 #[test]
 fn an_object_is_always_written() {
     in_file("", |file| {
-        let of = |name: &str, object: Option<&str>| Submitted {
+        let of = |name: &str, object: Option<&str>| SubmittedTrajectory {
             instr_id: name.to_owned(),
             trajectory: vec![place("hall")],
             object: object.map(|object| ObjectId::new(object).unwrap()),
         };
-        write(file, &[of("1_0", Some("66")), of("1_1", None)]).unwrap();
+        write_submission(file, &[of("1_0", Some("66")), of("1_1", None)]).unwrap();
         let items: Value = serde_json::from_slice(&fs::read(file).unwrap()).unwrap();
         assert_eq!(items[0], json!({"instr_id": "1_0", "trajectory": [["hall", 0.0, 0.0]], "predObjId": 66}));
         assert_eq!(items[1]["predObjId"], Value::Null);
@@ -172,12 +176,12 @@ fn an_object_is_always_written() {
     });
 }
 
-fn submitted() -> impl Strategy<Value = Submitted> {
+fn submitted() -> impl Strategy<Value = SubmittedTrajectory> {
     let posed = ("[0-9a-z]{1,32}", -10.0..10.0f64, -1.5..1.5f64).prop_map(|(viewpoint, heading, elevation_rad)| {
-        Posed { heading: Heading::new(heading).unwrap(), elevation_rad, ..place(&viewpoint) }
+        TrajectoryPose { heading: Heading::new(heading).unwrap(), elevation_rad, ..place(&viewpoint) }
     });
     let object = prop::option::of("[0-9]{1,4}|0[0-9]|[a-z ]{1,9}");
-    (prop::collection::vec(posed, 1..9), object).prop_map(|(trajectory, object)| Submitted {
+    (prop::collection::vec(posed, 1..9), object).prop_map(|(trajectory, object)| SubmittedTrajectory {
         instr_id: String::new(),
         trajectory,
         object: object.map(|object| ObjectId::new(object).unwrap()),
@@ -192,7 +196,7 @@ proptest! {
         }
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join(format!("submission.json{ending}"));
-        write(&file, &all).unwrap();
+        write_submission(&file, &all).unwrap();
         prop_assert_eq!(whole(&file), all);
         prop_assert_eq!(fs::read(&file).unwrap().starts_with(&[0x1f, 0x8b]), !ending.is_empty());
     }
@@ -201,7 +205,7 @@ proptest! {
 /// A thousand damaged files: each is read or refused with the file's name, and none makes the reader crash.
 #[test]
 fn the_reader_survives_damage() {
-    let mut dice = wayword_core::rng(20_260_102, &["submission"]);
+    let mut dice = wayword_core::seeded_rng(20_260_102, &["submission"]);
     let whole = json!([
         {"instr_id": "1_0", "trajectory": [["hall", 1.5, 0.0], ["door", 0.5, 0.25]], "predObjId": 5},
         {"instr_id": "1_1", "trajectory": [["hall", 1.5, 0.0], "door"], "predObjId": null},
@@ -239,7 +243,7 @@ fn the_reader_survives_damage() {
             }
         }
         in_file(&bytes, |file| {
-            let problems = read(file).problems;
+            let problems = read_submission(file).problems;
             if problems.count() > 0 {
                 refused += 1;
                 let file = file.display().to_string();

@@ -3,8 +3,8 @@
 use crate::data;
 use std::sync::LazyLock;
 
-static FAMILIES: LazyLock<Vec<Vec<&'static str>>> = LazyLock::new(|| {
-    data::lines(include_str!("../words/colours.txt")).map(|line| data::names(line).collect()).collect()
+static COLOUR_FAMILIES: LazyLock<Vec<Vec<&'static str>>> = LazyLock::new(|| {
+    data::content_lines(include_str!("../words/colours.txt")).map(|line| data::split_names(line).collect()).collect()
 });
 
 /// Whether two colours may describe one thing: they are equal up to a shade ("dark brown", "brown"), or near each
@@ -12,7 +12,7 @@ static FAMILIES: LazyLock<Vec<Vec<&'static str>>> = LazyLock::new(|| {
 #[must_use]
 pub fn same_colour(a: &str, b: &str) -> bool {
     let (a, b) = (without_shade(a), without_shade(b));
-    a == b || FAMILIES.iter().any(|family| family.contains(&a) && family.contains(&b))
+    a == b || COLOUR_FAMILIES.iter().any(|family| family.contains(&a) && family.contains(&b))
 }
 
 fn without_shade(colour: &str) -> &str {

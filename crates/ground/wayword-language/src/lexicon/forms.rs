@@ -1,10 +1,10 @@
 //! Forms of a name: with its article, in the singular and the plural, with a number.
 
 use super::normal_word;
-use crate::text::words;
+use crate::text::split_words;
 
 /// Numbers in words, from two on. The last two mean any greater number.
-pub const COUNTS: [&str; 7] = ["two", "three", "four", "five", "six", "several", "many"];
+pub const COUNT_WORDS: [&str; 7] = ["two", "three", "four", "five", "six", "several", "many"];
 
 /// Plural names that mean one thing.
 const ONE_THING: [&str; 8] = ["stairs", "steps", "drawers", "clothes", "blinds", "drums", "weights", "toiletries"];
@@ -17,7 +17,7 @@ pub fn without_article(name: &str) -> &str {
 
 /// A name with the last word in the singular.
 #[must_use]
-pub fn singular(name: &str) -> String {
+pub fn to_singular(name: &str) -> String {
     match name.rsplit_once(' ') {
         Some((before, last)) => format!("{before} {}", normal_word(last)),
         None => normal_word(name),
@@ -27,7 +27,7 @@ pub fn singular(name: &str) -> String {
 /// Whether a name means several things: "chairs" does, "stairs" does not.
 #[must_use]
 pub fn says_several(name: &str) -> bool {
-    words(name).last().is_some_and(|last| normal_word(last) != *last && !ONE_THING.contains(&last.as_str()))
+    split_words(name).last().is_some_and(|last| normal_word(last) != *last && !ONE_THING.contains(&last.as_str()))
 }
 
 /// A name with its article: "a lamp", "an oven", "some shelves".
@@ -53,7 +53,7 @@ pub fn is_plural(name: &str) -> bool {
 
 /// The plural of a name.
 #[must_use]
-pub fn plural(name: &str) -> String {
+pub fn to_plural(name: &str) -> String {
     if is_plural(name) {
         return name.to_owned();
     }
@@ -71,11 +71,11 @@ pub fn plural(name: &str) -> String {
 
 /// A count of things in words: "a lamp", "two lamps", "several lamps".
 #[must_use]
-pub fn counted(count: usize, name: &str) -> String {
+pub fn counted_name(count: usize, name: &str) -> String {
     match count {
         0 | 1 => with_article(name),
-        2..=6 => format!("{} {}", COUNTS[count - 2], plural(name)),
-        _ => format!("several {}", plural(name)),
+        2..=6 => format!("{} {}", COUNT_WORDS[count - 2], to_plural(name)),
+        _ => format!("several {}", to_plural(name)),
     }
 }
 
@@ -86,9 +86,9 @@ mod tests {
     #[test]
     fn articles_and_plurals_are_english() {
         assert_eq!(with_article("oven"), "an oven");
-        assert_eq!(counted(2, "bookshelf"), "two bookshelves");
-        assert_eq!(counted(3, "couch"), "three couches");
-        assert_eq!(counted(1, "shelves"), "some shelves");
+        assert_eq!(counted_name(2, "bookshelf"), "two bookshelves");
+        assert_eq!(counted_name(3, "couch"), "three couches");
+        assert_eq!(counted_name(1, "shelves"), "some shelves");
     }
 
     #[test]

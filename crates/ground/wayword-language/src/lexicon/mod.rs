@@ -7,7 +7,9 @@ mod rooms;
 mod things;
 
 pub use colours::same_colour;
-pub use forms::{COUNTS, counted, is_plural, plural, says_several, singular, with_article, without_article};
-pub use normal::{normal, normal_word};
+pub use forms::{
+    COUNT_WORDS, counted_name, is_plural, says_several, to_plural, to_singular, with_article, without_article,
+};
+pub use normal::{normal_word, normalise_name};
 pub use rooms::{is_room, room_name, same_room};
-pub use things::{Class, Thing, agree, is_fabric, is_thing, kinds, longest_name, thing};
+pub use things::{LexiconThing, ThingClass, find_thing, is_fabric, is_thing, kinds_of, longest_name, names_agree};

@@ -2,13 +2,13 @@
 
 /// A name in normal spelling: lower case, words separated by one space, each in the singular, without punctuation.
 #[must_use]
-pub fn normal(name: &str) -> String {
+pub fn normalise_name(name: &str) -> String {
     let words = name.split(|c: char| !c.is_alphanumeric() && !matches!(c, '\'' | '’')).filter(|word| !word.is_empty());
     words.map(normal_word).collect::<Vec<_>>().join(" ")
 }
 
 /// Plurals for which the rules below give a wrong singular.
-const IRREGULAR: [(&str, &str); 7] = [
+const IRREGULAR_PLURALS: [(&str, &str); 7] = [
     ("shelves", "shelf"),
     ("knives", "knife"),
     ("leaves", "leaf"),
@@ -39,7 +39,7 @@ pub fn normal_word(word: &str) -> String {
     let keeps_its_s = ["ss", "us", "is"].iter().any(|end| word.ends_with(end)) || (word.len() < 4 && !is_initials);
     let keeps_its_s = keeps_its_s || ALWAYS_PLURAL.contains(&word);
     let Some(stem) = word.strip_suffix('s').filter(|_| !keeps_its_s) else { return word.to_owned() };
-    if let Some((end, instead)) = IRREGULAR.into_iter().find(|(end, _)| word.ends_with(end)) {
+    if let Some((end, instead)) = IRREGULAR_PLURALS.into_iter().find(|(end, _)| word.ends_with(end)) {
         return format!("{}{instead}", &word[..word.len() - end.len()]);
     }
     let in_list = |list: &[&str]| list.iter().any(|end| stem.ends_with(end));
@@ -58,8 +58,8 @@ mod tests {
 
     #[test]
     fn plurals_and_spellings_come_together() {
-        assert_eq!(normal("Book-Shelves"), "book shelf");
-        assert_eq!(normal("couches"), normal("couch"));
+        assert_eq!(normalise_name("Book-Shelves"), "book shelf");
+        assert_eq!(normalise_name("couches"), normalise_name("couch"));
         for (one, many) in [
             ("tv", "TVs"),
             ("niche", "niches"),
@@ -77,12 +77,12 @@ mod tests {
             ("bus", "buses"),
             ("shoe", "shoes"),
         ] {
-            assert_eq!(normal(many), one);
-            assert_eq!(normal(one), one);
+            assert_eq!(normalise_name(many), one);
+            assert_eq!(normalise_name(one), one);
         }
-        assert_eq!(normal("Clothes"), "clothes");
-        assert_eq!(normal("robot’s"), "robot");
-        assert_eq!(normal("glass"), "glass");
-        assert_eq!(normal("  dining#chairs "), "dining chair");
+        assert_eq!(normalise_name("Clothes"), "clothes");
+        assert_eq!(normalise_name("robot’s"), "robot");
+        assert_eq!(normalise_name("glass"), "glass");
+        assert_eq!(normalise_name("  dining#chairs "), "dining chair");
     }
 }

@@ -1,12 +1,12 @@
 //! The names of rooms: which ones mean the same room, and which rooms people confuse.
 
-use super::normal;
+use super::normalise_name;
 use crate::data;
 use std::{collections::BTreeMap, sync::LazyLock};
 
-const LIST: &str = include_str!("../words/rooms.txt");
+const ROOM_LIST: &str = include_str!("../words/rooms.txt");
 
-struct Rooms {
+struct RoomLexicon {
     /// The line of each name, by its normal spelling.
     line_of: BTreeMap<String, usize>,
     /// The first name of each line.
@@ -15,29 +15,30 @@ struct Rooms {
     taken_for: Vec<Vec<usize>>,
 }
 
-static ROOMS: LazyLock<Rooms> = LazyLock::new(|| {
+static ROOMS: LazyLock<RoomLexicon> = LazyLock::new(|| {
     let (mut line_of, mut names, mut confused) = (BTreeMap::new(), Vec::new(), Vec::new());
-    for (number, line) in data::lines(LIST).enumerate() {
-        let [same, others] = data::columns(line);
-        for name in data::names(same) {
-            line_of.entry(normal(name)).or_insert(number);
+    for (number, line) in data::content_lines(ROOM_LIST).enumerate() {
+        let [same, others] = data::row_columns(line);
+        for name in data::split_names(same) {
+            line_of.entry(normalise_name(name)).or_insert(number);
         }
-        names.push(data::names(same).next().unwrap_or_default());
+        names.push(data::split_names(same).next().unwrap_or_default());
         confused.push(others);
     }
-    let lines_of = |others| data::names(others).filter_map(|name| line_of.get(&normal(name)).copied()).collect();
+    let lines_of =
+        |others| data::split_names(others).filter_map(|name| line_of.get(&normalise_name(name)).copied()).collect();
     let taken_for = confused.into_iter().map(lines_of).collect();
-    Rooms { line_of, names, taken_for }
+    RoomLexicon { line_of, names, taken_for }
 });
 
-fn line(name: &str) -> Option<usize> {
-    ROOMS.line_of.get(&normal(name)).copied()
+fn room_line(name: &str) -> Option<usize> {
+    ROOMS.line_of.get(&normalise_name(name)).copied()
 }
 
 /// The usual name of a room; `None` where `name` is not a room's.
 #[must_use]
 pub fn room_name(name: &str) -> Option<&'static str> {
-    line(name).map(|line| ROOMS.names[line])
+    room_line(name).map(|line| ROOMS.names[line])
 }
 
 /// Whether a phrase in normal spelling names a room.
@@ -49,9 +50,9 @@ pub fn is_room(normal_name: &str) -> bool {
 /// Whether two names may mean the same room: they are on one line of the list, or of rooms that people confuse.
 #[must_use]
 pub fn same_room(a: &str, b: &str) -> bool {
-    match (line(a), line(b)) {
+    match (room_line(a), room_line(b)) {
         (Some(a), Some(b)) => a == b || ROOMS.taken_for[a].contains(&b) || ROOMS.taken_for[b].contains(&a),
-        _ => normal(a) == normal(b),
+        _ => normalise_name(a) == normalise_name(b),
     }
 }
 
@@ -73,9 +74,9 @@ mod tests {
 
     #[test]
     fn every_confusion_names_a_room_of_the_list() {
-        for line in data::lines(LIST) {
-            let [_, others] = data::columns(line);
-            for name in data::names(others) {
+        for line in data::content_lines(ROOM_LIST) {
+            let [_, others] = data::row_columns(line);
+            for name in data::split_names(others) {
                 assert!(room_name(name).is_some(), "{name} is no room of rooms.txt");
             }
         }

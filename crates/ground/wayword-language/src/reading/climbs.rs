@@ -4,28 +4,30 @@
 #[cfg(test)]
 mod tests;
 
-use super::{Event, Floor, Link, What, links::link, tokens::Tokens, vocabulary as v};
+use super::{
+    EventContent, PlaceLink, StoreyMention, TextEvent, links::link_before, tokens::TokenSlice, vocabulary as v,
+};
 use crate::lexicon::{is_room, is_thing, normal_word};
-use wayword_core::Climb;
+use wayword_core::ClimbDirection;
 
 /// The climbs and storeys that a text names.
-pub(super) fn climbs_and_floors(tokens: Tokens<'_>, clauses: &[usize]) -> Vec<Event> {
+pub(super) fn climbs_and_floors(tokens: TokenSlice<'_>, clauses: &[usize]) -> Vec<TextEvent> {
     let before_climb = tokens.runs_before(|word| v::BEFORE_CLIMB.contains(&word));
-    let text = Text { tokens, clauses, before_climb };
-    let mut events: Vec<Event> = Vec::new();
+    let text = ClimbText { tokens, clauses, before_climb };
+    let mut events: Vec<TextEvent> = Vec::new();
     // The climbs found in this clause. They are few, because each is counted once in a clause.
-    let mut told: Vec<What> = Vec::new();
+    let mut told: Vec<EventContent> = Vec::new();
     for at in 0..tokens.len() {
         if at > 0 && clauses[at] != clauses[at - 1] {
             told.clear();
         }
-        if let Some(what) = text.climb(at).filter(|what| !told.contains(what)) {
+        if let Some(what) = text.climb_at(at).filter(|what| !told.contains(what)) {
             told.push(what.clone());
-            events.push(Event { what, span: tokens.span(at, at), clause: clauses[at], denied: false });
+            events.push(TextEvent { what, span: tokens.span_of(at, at), clause: clauses[at], denied: false });
         }
-        if let Some((floor, last)) = text.floor(at) {
-            let span = tokens.span(at, last);
-            events.push(Event { what: What::Floor(floor), span, clause: clauses[at], denied: false });
+        if let Some((floor, last)) = text.storey_at(at) {
+            let span = tokens.span_of(at, last);
+            events.push(TextEvent { what: EventContent::Floor(floor), span, clause: clauses[at], denied: false });
         }
     }
     events
@@ -44,102 +46,108 @@ fn is_floor(word: &str) -> bool {
 
 /// How far a climb goes: a flight of stairs, or a few steps.
 #[derive(Clone, Copy)]
-enum Way {
+enum ClimbExtent {
     Flight,
     Steps,
 }
 
-impl Way {
-    fn told(self, climb: Climb, is_command: bool) -> What {
+impl ClimbExtent {
+    fn to_event(self, climb: ClimbDirection, is_command: bool) -> EventContent {
         match self {
-            Self::Flight => told(climb, is_command),
-            Self::Steps => What::Steps(climb),
+            Self::Flight => climb_or_storey(climb, is_command),
+            Self::Steps => EventContent::Steps(climb),
         }
     }
 }
 
-fn told(climb: Climb, is_command: bool) -> What {
-    if is_command { What::Climb(climb) } else { What::Storey(climb) }
+fn climb_or_storey(climb: ClimbDirection, is_command: bool) -> EventContent {
+    if is_command { EventContent::Climb(climb) } else { EventContent::Storey(climb) }
 }
 
-struct Text<'a> {
-    tokens: Tokens<'a>,
+struct ClimbText<'a> {
+    tokens: TokenSlice<'a>,
     clauses: &'a [usize],
     /// For each token, where the run of adverbs before it begins.
     before_climb: Vec<usize>,
 }
 
-impl<'a> Text<'a> {
-    fn word(&self, at: usize) -> &'a str {
-        self.tokens.word(at)
+impl<'a> ClimbText<'a> {
+    fn word_at(&self, at: usize) -> &'a str {
+        self.tokens.word_at(at)
     }
 
-    fn before(&self, at: usize) -> &'a str {
-        self.tokens.before(at)
+    fn word_before(&self, at: usize) -> &'a str {
+        self.tokens.word_before(at)
     }
 
     /// The climb that a token means, or the place up or down the stairs.
-    fn climb(&self, at: usize) -> Option<What> {
+    fn climb_at(&self, at: usize) -> Option<EventContent> {
         if self.describes_stairs(at) {
             return None;
         }
-        if let Some(climb) = self.alone(at) {
-            return Some(What::Climb(climb));
+        if let Some(climb) = self.climb_without_stairs(at) {
+            return Some(EventContent::Climb(climb));
         }
-        let next = self.word(at + 1);
-        match self.word(at) {
+        let next = self.word_at(at + 1);
+        match self.word_at(at) {
             "upper" | "lower" | "floor" | "level" | "storey" | "story" => self.other_storey(at),
-            "upstairs" => Some(told(Climb::Up, self.commands_upstairs(at))),
-            "downstairs" => Some(told(Climb::Down, self.commands_upstairs(at))),
+            "upstairs" => Some(climb_or_storey(ClimbDirection::Up, self.commands_upstairs(at))),
+            "downstairs" => Some(climb_or_storey(ClimbDirection::Down, self.commands_upstairs(at))),
             "climb" | "climbing" | "ascend" | "ascending" if next != "down" => {
-                Some(self.leads_on(at)?.told(Climb::Up, true))
+                Some(self.leads_on(at)?.to_event(ClimbDirection::Up, true))
             }
-            "descend" | "descending" => Some(self.leads_on(at)?.told(Climb::Down, true)),
-            "up" => Some(self.leads_on(at).or(self.behind_stairs(at))?.told(Climb::Up, self.commands(at))),
-            "down" => Some(self.leads_on(at).or(self.behind_stairs(at))?.told(Climb::Down, self.commands(at))),
+            "descend" | "descending" => Some(self.leads_on(at)?.to_event(ClimbDirection::Down, true)),
+            "up" => {
+                Some(self.leads_on(at).or(self.behind_stairs(at))?.to_event(ClimbDirection::Up, self.is_command(at)))
+            }
+            "down" => {
+                Some(self.leads_on(at).or(self.behind_stairs(at))?.to_event(ClimbDirection::Down, self.is_command(at)))
+            }
             _ => None,
         }
     }
 
     /// "Take the stairs to the upper floor", "go to the floor above", but not "start on the upper floor", and not "the
     /// stairs to the upper floor".
-    fn other_storey(&self, at: usize) -> Option<What> {
-        let next = self.word(at + 1);
+    fn other_storey(&self, at: usize) -> Option<EventContent> {
+        let next = self.word_at(at + 1);
         let is_joint = |word: &str| v::BREAKERS.contains(&word) && !v::DETERMINERS.contains(&word);
-        let ends = |at: usize| !self.tokens.is_word(at) || self.word(at) == "and" || is_joint(self.word(at));
-        let (climb, end) = match (self.word(at), next) {
-            ("upper", _) if is_floor(next) => (Climb::Up, at + 2),
-            ("lower", _) if is_floor(next) => (Climb::Down, at + 2),
+        let ends = |at: usize| !self.tokens.is_word(at) || self.word_at(at) == "and" || is_joint(self.word_at(at));
+        let (climb, end) = match (self.word_at(at), next) {
+            ("upper", _) if is_floor(next) => (ClimbDirection::Up, at + 2),
+            ("lower", _) if is_floor(next) => (ClimbDirection::Down, at + 2),
             ("upper" | "lower", _) => return None,
-            (_, "above") => (Climb::Up, at + 2),
-            (_, "below") => (Climb::Down, at + 2),
+            (_, "above") => (ClimbDirection::Up, at + 2),
+            (_, "below") => (ClimbDirection::Down, at + 2),
             _ => return None,
         };
-        let to = at.checked_sub(1 + usize::from(v::DETERMINERS.contains(&self.before(at))))?;
-        let before = self.before(to);
-        let verb = || (to.saturating_sub(4)..to).rev().map(|at| self.word(at)).find(|word| v::CLIMBING.contains(word));
-        let goes = self.word(to) == "to" && (v::CLIMBING.contains(&before) || verb().is_some());
-        (goes && ends(end)).then_some(What::Storey(climb))
+        let to = at.checked_sub(1 + usize::from(v::DETERMINERS.contains(&self.word_before(at))))?;
+        let before = self.word_before(to);
+        let verb =
+            || (to.saturating_sub(4)..to).rev().map(|at| self.word_at(at)).find(|word| v::CLIMBING.contains(word));
+        let goes = self.word_at(to) == "to" && (v::CLIMBING.contains(&before) || verb().is_some());
+        (goes && ends(end)).then_some(EventContent::Storey(climb))
     }
 
     /// "Go up.", "head down and turn left", "ascend": a climb that names no stairs.
-    fn alone(&self, at: usize) -> Option<Climb> {
-        let (climb, is_verb) = match self.word(at) {
-            "up" | "upward" | "upwards" => (Climb::Up, false),
-            "down" | "downward" | "downwards" => (Climb::Down, false),
-            "ascend" | "ascending" => (Climb::Up, true),
-            "descend" | "descending" => (Climb::Down, true),
-            "climb" | "climbing" if !self.tokens.is_word(at + 1) => (Climb::Up, true),
+    fn climb_without_stairs(&self, at: usize) -> Option<ClimbDirection> {
+        let (climb, is_verb) = match self.word_at(at) {
+            "up" | "upward" | "upwards" => (ClimbDirection::Up, false),
+            "down" | "downward" | "downwards" => (ClimbDirection::Down, false),
+            "ascend" | "ascending" => (ClimbDirection::Up, true),
+            "descend" | "descending" => (ClimbDirection::Down, true),
+            "climb" | "climbing" if !self.tokens.is_word(at + 1) => (ClimbDirection::Up, true),
             _ => return None,
         };
-        let end = at + 1 + usize::from(matches!(self.word(at + 1), "again" | "here" | "there" | "now"));
-        let ends = !self.tokens.is_word(end) || matches!(self.word(end), "and" | "then" | "until" | "till" | "again");
-        let verb = self.before_climb(at).map_or("", |before| self.word(before));
+        let end = at + 1 + usize::from(matches!(self.word_at(at + 1), "again" | "here" | "there" | "now"));
+        let ends =
+            !self.tokens.is_word(end) || matches!(self.word_at(end), "and" | "then" | "until" | "till" | "again");
+        let verb = self.before_climb(at).map_or("", |before| self.word_at(before));
         let goes =
             is_verb || matches!(verb, "go" | "going" | "head" | "heading" | "walk" | "walking" | "climb" | "step");
         // "Ascend the ramp", "descend to the kitchen"; for "up" and "down", the words behind them decide whether those
         // are climbs.
-        let climbs = if is_verb { self.word(at + 1) != "down" } else { ends };
+        let climbs = if is_verb { self.word_at(at + 1) != "down" } else { ends };
         (goes && climbs && self.leads_on(at).is_none()).then_some(climb)
     }
 
@@ -148,11 +156,11 @@ impl<'a> Text<'a> {
     fn describes_stairs(&self, at: usize) -> bool {
         let Some(before) = self.before_climb(at) else { return false };
         let of_stairs =
-            |before: usize| is_stairs(self.before(before)) || matches!(self.before(before), "that" | "which");
-        match self.word(before) {
+            |before: usize| is_stairs(self.word_before(before)) || matches!(self.word_before(before), "that" | "which");
+        match self.word_at(before) {
             "leading" | "leads" | "lead" => true,
             "going" | "goes" | "go" | "headed" => of_stairs(before),
-            "stairs" | "staircase" | "steps" => matches!(self.word(at), "ascending" | "descending"),
+            "stairs" | "staircase" | "steps" => matches!(self.word_at(at), "ascending" | "descending"),
             _ => false,
         }
     }
@@ -163,12 +171,12 @@ impl<'a> Text<'a> {
     }
 
     /// "Up the old stairs", "up one floor", "up to the second floor", but not "up to the stairs".
-    fn leads_on(&self, at: usize) -> Option<Way> {
-        let to = usize::from(self.word(at + 1) == "to");
+    fn leads_on(&self, at: usize) -> Option<ClimbExtent> {
+        let to = usize::from(self.word_at(at + 1) == "to");
         let in_phrase = |at: &usize| {
-            let (word, name) = (self.word(*at), normal_word(self.word(*at)));
-            let joins =
-                word != "of" || matches!(self.before(*at), "flight" | "flights" | "set" | "sets" | "rest" | "couple");
+            let (word, name) = (self.word_at(*at), normal_word(self.word_at(*at)));
+            let joins = word != "of"
+                || matches!(self.word_before(*at), "flight" | "flights" | "set" | "sets" | "rest" | "couple");
             let is_end = is_stairs(word) || (is_floor(word) && !self.is_underfoot(*at));
             let is_noun = (is_thing(&name) || is_room(&name)) && !v::ADJECTIVES.contains(&word);
             let breaks = v::BREAKERS.contains(&word) && !v::DETERMINERS.contains(&word) && word != "of";
@@ -176,75 +184,75 @@ impl<'a> Text<'a> {
                 && joins
                 && (is_end || !(is_noun || breaks || matches!(word, "passed" | "passing")))
         };
-        let phrase: Vec<&str> = (at + 1 + to..at + 7).take_while(in_phrase).map(|at| self.word(at)).collect();
+        let phrase: Vec<&str> = (at + 1 + to..at + 7).take_while(in_phrase).map(|at| self.word_at(at)).collect();
         let end = phrase.iter().position(|word| is_floor(word) || (to == 0 && is_stairs(word)))?;
         if is_floor(phrase[end]) && self.is_underfoot(at + 1 + to + end) {
             return None;
         }
         // A storey's height is many steps, and so is a flight.
         let few = phrase[..end].iter().any(|word| v::FEW.contains(word)) && matches!(phrase[end], "steps" | "stairs");
-        Some(if few { Way::Steps } else { Way::Flight })
+        Some(if few { ClimbExtent::Steps } else { ClimbExtent::Flight })
     }
 
     /// "Down the tiled floor", "down the wood floor hallway": the ground that one walks on, and no storey.
     fn is_underfoot(&self, floor: usize) -> bool {
-        let next = normal_word(self.word(floor + 1));
-        v::FLOORINGS.contains(&self.before(floor)) || is_room(&next) || matches!(next.as_str(), "path" | "walkway")
+        let next = normal_word(self.word_at(floor + 1));
+        v::FLOORINGS.contains(&self.word_before(floor)) || is_room(&next) || matches!(next.as_str(), "path" | "walkway")
     }
 
     /// "Take the stairs up", "take the elevator down", but not "take a few steps down the hallway".
-    fn behind_stairs(&self, at: usize) -> Option<Way> {
-        if v::DETERMINERS.contains(&self.word(at + 1)) && self.before(at) == "steps" {
+    fn behind_stairs(&self, at: usize) -> Option<ClimbExtent> {
+        if v::DETERMINERS.contains(&self.word_at(at + 1)) && self.word_before(at) == "steps" {
             return None;
         }
-        let mut words = (at.saturating_sub(4)..at).rev().map(|at| self.word(at));
+        let mut words = (at.saturating_sub(4)..at).rev().map(|at| self.word_at(at));
         let taken = words.next().is_some_and(|word| is_stairs(word) || v::CARRIERS.contains(&word))
             && words.any(|word| matches!(word, "take" | "taking" | "follow" | "use" | "ride" | "riding"));
-        taken.then_some(Way::Flight)
+        taken.then_some(ClimbExtent::Flight)
     }
 
     /// Whether the words are a command to climb, and not a place upstairs or downstairs.
-    fn commands(&self, at: usize) -> bool {
+    fn is_command(&self, at: usize) -> bool {
         let Some(before) = self.before_climb(at) else { return true };
-        let name = normal_word(self.word(before));
+        let name = normal_word(self.word_at(before));
         let is_place = is_thing(&name) || is_room(&name);
-        let is_carrier = is_stairs(self.word(before)) || v::CARRIERS.contains(&self.word(before));
+        let is_carrier = is_stairs(self.word_at(before)) || v::CARRIERS.contains(&self.word_at(before));
         // "To the bathroom up the stairs", but "past the sofa up the stairs".
-        !is_place || is_carrier || link(self.tokens, self.clauses, before) == Link::Along
+        !is_place || is_carrier || link_before(self.tokens, self.clauses, before) == PlaceLink::Along
     }
 
     /// The same for "upstairs" and "downstairs". Without a verb of going before them, they name a place.
     fn commands_upstairs(&self, at: usize) -> bool {
-        let name = normal_word(self.word(at + 1));
+        let name = normal_word(self.word_at(at + 1));
         if is_thing(&name) || is_room(&name) {
             return false;
         }
-        let before = self.before_climb(at).map_or("", |before| self.word(before));
-        let joined =
-            matches!(self.before(at), "and" | "then") && !matches!(self.word(at + 1), "in" | "at" | "on" | "is");
+        let before = self.before_climb(at).map_or("", |before| self.word_at(before));
+        let joined = matches!(self.word_before(at), "and" | "then")
+            && !matches!(self.word_at(at + 1), "in" | "at" | "on" | "is");
         v::CLIMBING.contains(&before) || joined
     }
 
     /// A storey that is named from this token on, and its last token: "level 2", "second floor", "top floor".
-    fn floor(&self, at: usize) -> Option<(Floor, usize)> {
-        let is_numbered = |at: usize| v::floor_number(self.word(at));
-        let (number, last) = if is_floor(self.word(at)) {
-            let told_before = at > 0 && (is_numbered(at - 1).is_some() || self.word(at - 1) == "top");
+    fn storey_at(&self, at: usize) -> Option<(StoreyMention, usize)> {
+        let is_numbered = |at: usize| v::floor_number(self.word_at(at));
+        let (number, last) = if is_floor(self.word_at(at)) {
+            let told_before = at > 0 && (is_numbered(at - 1).is_some() || self.word_at(at - 1) == "top");
             (Some(is_numbered(at + 1).filter(|_| !told_before)?), at + 1)
-        } else if self.word(at) == "top" && is_floor(self.word(at + 1)) {
+        } else if self.word_at(at) == "top" && is_floor(self.word_at(at + 1)) {
             (None, at + 1)
         } else {
             // "Up one floor" and "two floors up" give a number of floors, and not the number of a floor.
-            let is_one = matches!(self.word(at + 1), "floor" | "level" | "story" | "storey");
-            (Some(is_numbered(at).filter(|_| is_one && self.word(at) != "one")?), at + 1)
+            let is_one = matches!(self.word_at(at + 1), "floor" | "level" | "story" | "storey");
+            (Some(is_numbered(at).filter(|_| is_one && self.word_at(at) != "one")?), at + 1)
         };
         let in_clause = (0..at).rev().take_while(|before| self.clauses[*before] == self.clauses[at]);
-        let words: Vec<&str> = in_clause.map(|before| self.word(before)).take(7).collect();
+        let words: Vec<&str> = in_clause.map(|before| self.word_at(before)).take(7).collect();
         let joint = words.iter().find(|word| v::BREAKERS.contains(word) && !v::DETERMINERS.contains(word));
         let leaves = joint == Some(&"from") || words.iter().any(|word| v::LEAVING.contains(word));
         let going = |pair: &[&str]| matches!(pair[0], "going" | "goes") && (is_stairs(pair[1]) || pair[1] == "that");
         let aside =
             words.iter().any(|word| matches!(*word, "leading" | "leads" | "lead")) || words.windows(2).any(going);
-        Some((Floor { number, leaves, aside }, last))
+        Some((StoreyMention { number, leaves, aside }, last))
     }
 }

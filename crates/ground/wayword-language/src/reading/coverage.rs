@@ -2,32 +2,32 @@
 //! shows how far a verdict on the text can be trusted.
 
 use super::{
-    Clause, Event, Role, What, Word, numbers, places, role_words as r, stems::is_form_of, tokens::Tokens,
-    vocabulary as v,
+    EventContent, ReadWord, TextClause, TextEvent, WordRole, numbers, places, role_words as r, stems::is_form_of,
+    tokens::TokenSlice, vocabulary as v,
 };
 use crate::lexicon::{is_room, is_thing, normal_word};
 use std::collections::BTreeSet;
 
 /// The words of a text with their roles, and its clauses.
-pub(super) fn coverage(
-    tokens: Tokens<'_>,
+pub(super) fn read_coverage(
+    tokens: TokenSlice<'_>,
     clauses: &[usize],
-    events: &[Event],
+    events: &[TextEvent],
     known: &BTreeSet<String>,
-) -> (Vec<Word>, Vec<Clause>) {
-    let named = named(tokens, known);
-    let told = told(tokens, events);
-    let text = Text { tokens, clauses, named };
-    let roles: Vec<Option<Role>> = (0..tokens.len()).map(|at| text.role(at, told[at])).collect();
+) -> (Vec<ReadWord>, Vec<TextClause>) {
+    let named = named_tokens(tokens, known);
+    let told = event_roles(tokens, events);
+    let text = CoverageText { tokens, clauses, named };
+    let roles: Vec<Option<WordRole>> = (0..tokens.len()).map(|at| text.role_at(at, told[at])).collect();
     let words = roles.iter().enumerate().filter_map(|(at, role)| {
         let role = (*role)?;
-        Some(Word { span: tokens.span(at, at), role, is_counted: !r::STOP_WORDS.contains(&tokens.word(at)) })
+        Some(ReadWord { span: tokens.span_of(at, at), role, is_counted: !r::STOP_WORDS.contains(&tokens.word_at(at)) })
     });
-    (words.collect(), text.clauses(&roles))
+    (words.collect(), text.understood_clauses(&roles))
 }
 
 /// For each token, whether it belongs to a name of the lexicon or of the evidence.
-fn named(tokens: Tokens<'_>, known: &BTreeSet<String>) -> Vec<bool> {
+fn named_tokens(tokens: TokenSlice<'_>, known: &BTreeSet<String>) -> Vec<bool> {
     let mut named = vec![false; tokens.len()];
     let mut at = 0;
     while at < tokens.len() {
@@ -39,7 +39,7 @@ fn named(tokens: Tokens<'_>, known: &BTreeSet<String>) -> Vec<bool> {
 }
 
 /// For each token, the role that it gets from the event that it belongs to.
-fn told(tokens: Tokens<'_>, events: &[Event]) -> Vec<Option<Role>> {
+fn event_roles(tokens: TokenSlice<'_>, events: &[TextEvent]) -> Vec<Option<WordRole>> {
     let mut told = vec![None; tokens.len()];
     for event in events {
         let Some(role) = role_of(&event.what) else { continue };
@@ -50,64 +50,64 @@ fn told(tokens: Tokens<'_>, events: &[Event]) -> Vec<Option<Role>> {
 }
 
 /// The role of the words of an event. Those of a place are named or not, word by word.
-fn role_of(what: &What) -> Option<Role> {
+fn role_of(what: &EventContent) -> Option<WordRole> {
     match what {
-        What::Place(_) => None,
-        What::Turn(_) => Some(Role::Turn),
-        What::Climb(_) | What::Steps(_) => Some(Role::Climb),
-        What::Storey(_) | What::Floor(_) => Some(Role::Storey),
-        What::Onward => Some(Role::Motion),
-        What::Stop => Some(Role::Stop),
-        What::Face { .. } => Some(Role::Facing),
-        What::Compass { .. } => Some(Role::Compass),
-        What::Distance { .. } => Some(Role::Distance),
+        EventContent::Place(_) => None,
+        EventContent::Turn(_) => Some(WordRole::Turn),
+        EventContent::Climb(_) | EventContent::Steps(_) => Some(WordRole::Climb),
+        EventContent::Storey(_) | EventContent::Floor(_) => Some(WordRole::Storey),
+        EventContent::Onward => Some(WordRole::Motion),
+        EventContent::Stop => Some(WordRole::Stop),
+        EventContent::Face { .. } => Some(WordRole::Facing),
+        EventContent::Compass { .. } => Some(WordRole::Compass),
+        EventContent::Distance { .. } => Some(WordRole::Distance),
     }
 }
 
-struct Text<'a> {
-    tokens: Tokens<'a>,
+struct CoverageText<'a> {
+    tokens: TokenSlice<'a>,
     clauses: &'a [usize],
     /// For each token, whether it belongs to a known name.
     named: Vec<bool>,
 }
 
-impl<'a> Text<'a> {
-    fn word(&self, at: usize) -> &'a str {
-        self.tokens.word(at)
+impl<'a> CoverageText<'a> {
+    fn word_at(&self, at: usize) -> &'a str {
+        self.tokens.word_at(at)
     }
 
-    fn before(&self, at: usize) -> &'a str {
-        self.tokens.before(at)
+    fn word_before(&self, at: usize) -> &'a str {
+        self.tokens.word_before(at)
     }
 
     /// The role of a token; `None` for a mark.
-    fn role(&self, at: usize, told: Option<Role>) -> Option<Role> {
+    fn role_at(&self, at: usize, told: Option<WordRole>) -> Option<WordRole> {
         if !self.tokens.is_word(at) {
             return None;
         }
-        let found = told.or_else(|| self.named[at].then_some(Role::Place)).or_else(|| self.by_context(at));
-        Some(found.or_else(|| self.by_list(self.word(at))).unwrap_or(Role::Unknown))
+        let found = told.or_else(|| self.named[at].then_some(WordRole::Place)).or_else(|| self.by_context(at));
+        Some(found.or_else(|| self.by_list(self.word_at(at))).unwrap_or(WordRole::Unknown))
     }
 
     /// The role of a word that depends on the words around it.
-    fn by_context(&self, at: usize) -> Option<Role> {
-        let (word, before, next) = (self.word(at), self.before(at), self.word(at + 1));
+    fn by_context(&self, at: usize) -> Option<WordRole> {
+        let (word, before, next) = (self.word_at(at), self.word_before(at), self.word_at(at + 1));
         let is_number = !matches!(word, "bottom" | "ground") && v::floor_number(word).is_some()
             || word.starts_with(|c: char| c.is_ascii_digit());
         if matches!(word, "left" | "right") {
-            return self.side(at);
+            return self.side_role(at);
         }
         if v::UNITS.contains(&word) && (numbers::is_number(before) || matches!(before, "few" | "of" | "more")) {
-            return Some(Role::Distance);
+            return Some(WordRole::Distance);
         }
         if matches!(word, "leftmost" | "rightmost") {
-            return Some(Role::Ordinal);
+            return Some(WordRole::Ordinal);
         }
         if is_number
             || numbers::is_number(word) && !matches!(word, "a" | "an" | "several" | "half")
             || matches!(word, "last" | "next" | "final")
         {
-            return self.number(at);
+            return self.number_role(at);
         }
         // "The walk", "a level": a noun, whatever verb looks like it.
         let is_noun = v::DETERMINERS.contains(&before) && before != "that";
@@ -115,41 +115,41 @@ impl<'a> Text<'a> {
         let begins = at == 0 || !self.tokens.is_word(at - 1) || v::ADVERBS.contains(&before);
         let describes = !begins && (word.ends_with("ing") || word.ends_with("ed"));
         if describes && is_form_of(word, &r::RELATIONS) {
-            return Some(Role::Relation);
+            return Some(WordRole::Relation);
         }
         if is_verb && matches!(word, "up" | "down") && !matches!(next, "" | "." | ",") {
-            return Some(Role::Relation);
+            return Some(WordRole::Relation);
         }
         if is_verb && is_form_of(word, &r::MOTION) {
-            return Some(Role::Motion);
+            return Some(WordRole::Motion);
         }
         let has_object = v::DETERMINERS.contains(&next) || next == "me";
         if (begins || is_verb && (word.ends_with("ing") || has_object)) && is_form_of(word, &r::TASKS) {
-            return Some(Role::Task);
+            return Some(WordRole::Task);
         }
         None
     }
 
     /// A number counts the noun behind it, or picks one of several.
-    fn number(&self, at: usize) -> Option<Role> {
-        let word = self.word(at);
-        if numbers::ordinal(word).is_some() {
-            return Some(Role::Ordinal);
+    fn number_role(&self, at: usize) -> Option<WordRole> {
+        let word = self.word_at(at);
+        if numbers::ordinal_word(word).is_some() {
+            return Some(WordRole::Ordinal);
         }
-        if v::UNITS.contains(&self.word(at + 1)) {
-            return Some(Role::Distance);
+        if v::UNITS.contains(&self.word_at(at + 1)) {
+            return Some(WordRole::Distance);
         }
         // "Office 12": a name.
-        let is_name = self.named.get(at.wrapping_sub(1)) == Some(&true) || self.before(at) == "room";
+        let is_name = self.named.get(at.wrapping_sub(1)) == Some(&true) || self.word_before(at) == "room";
         let counts = !is_name && self.tokens.is_word(at + 1) && numbers::is_number(word);
-        counts.then_some(Role::Count)
+        counts.then_some(WordRole::Count)
     }
 
     /// A side that is no turn: of a place ("on your left", "the left door"), or "right" as an adverb.
-    fn side(&self, at: usize) -> Option<Role> {
-        let next = self.word(at + 1);
+    fn side_role(&self, at: usize) -> Option<WordRole> {
+        let next = self.word_at(at + 1);
         let leads = matches!(
-            self.before(at),
+            self.word_before(at),
             "the"
                 | "your"
                 | "far"
@@ -167,62 +167,64 @@ impl<'a> Text<'a> {
                 | "slight"
         );
         let tells = matches!(next, "of" | "side" | "hand" | "most" | "corner" | "end" | "wall") || self.is_noun(at + 1);
-        let adverb = self.word(at) == "right" && v::AFTER_ADVERB_RIGHT.contains(&next);
+        let adverb = self.word_at(at) == "right" && v::AFTER_ADVERB_RIGHT.contains(&next);
         match (adverb, leads || tells) {
-            (true, _) => Some(Role::Manner),
-            (false, true) => Some(Role::Side),
+            (true, _) => Some(WordRole::Manner),
+            (false, true) => Some(WordRole::Side),
             _ => None,
         }
     }
 
     fn is_noun(&self, at: usize) -> bool {
-        self.named.get(at) == Some(&true) || v::HAVE_SIDES.contains(&self.word(at))
+        self.named.get(at) == Some(&true) || v::HAVE_SIDES.contains(&self.word_at(at))
     }
 
     /// The role that a word has wherever it occurs.
-    fn by_list(&self, word: &str) -> Option<Role> {
+    fn by_list(&self, word: &str) -> Option<WordRole> {
         let name = normal_word(word);
-        let lists: [(&[&str], Role); 8] = [
-            (&v::COLOURS, Role::Colour),
-            (&["not", "never", "without", "neither", "nor", "avoid", "cannot", "no"], Role::Denial),
-            (&["up", "down", "upstairs", "downstairs", "upwards", "downwards", "upward", "downward"], Role::Climb),
-            (&r::CONNECTIVES, Role::Connective),
-            (&r::RELATIONS, Role::Relation),
-            (&r::GENERAL, Role::General),
-            (&r::MANNER, Role::Manner),
-            (&r::STOP_WORDS, Role::Filler),
+        let lists: [(&[&str], WordRole); 8] = [
+            (&v::COLOURS, WordRole::Colour),
+            (&["not", "never", "without", "neither", "nor", "avoid", "cannot", "no"], WordRole::Denial),
+            (&["up", "down", "upstairs", "downstairs", "upwards", "downwards", "upward", "downward"], WordRole::Climb),
+            (&r::CONNECTIVES, WordRole::Connective),
+            (&r::RELATIONS, WordRole::Relation),
+            (&r::GENERAL, WordRole::General),
+            (&r::MANNER, WordRole::Manner),
+            (&r::STOP_WORDS, WordRole::Filler),
         ];
         let by_list = lists.into_iter().find(|(list, _)| list.contains(&word)).map(|(_, role)| role);
         let denies = word.ends_with("n't") || word.ends_with("n’t");
         by_list
-            .or_else(|| denies.then_some(Role::Denial))
-            .or_else(|| r::GENERAL.contains(&name.as_str()).then_some(Role::General))
-            .or_else(|| is_form_of(word, &r::RELATIONS).then_some(Role::Relation))
-            .or_else(|| (is_adverb(word) || describes(word)).then_some(Role::Manner))
-            .or_else(|| (is_thing(&name) || is_room(&name)).then_some(Role::Place))
+            .or_else(|| denies.then_some(WordRole::Denial))
+            .or_else(|| r::GENERAL.contains(&name.as_str()).then_some(WordRole::General))
+            .or_else(|| is_form_of(word, &r::RELATIONS).then_some(WordRole::Relation))
+            .or_else(|| (is_adverb(word) || is_descriptive(word)).then_some(WordRole::Manner))
+            .or_else(|| (is_thing(&name) || is_room(&name)).then_some(WordRole::Place))
     }
 
     /// The clauses: each is understood unless the first word with a meaning in it is unknown.
-    fn clauses(&self, roles: &[Option<Role>]) -> Vec<Clause> {
+    fn understood_clauses(&self, roles: &[Option<WordRole>]) -> Vec<TextClause> {
         let count = self.clauses.last().map_or(0, |last| last + 1);
-        let mut clauses = vec![Clause { span: [0, 0], understood: true }; count];
+        let mut clauses = vec![TextClause { span: [0, 0], understood: true }; count];
         let mut decided = vec![false; count];
         for (at, role) in roles.iter().enumerate() {
             let Some(role) = role else { continue };
             let number = self.clauses[at];
             let clause = &mut clauses[number];
-            let [from, to] = self.tokens.span(at, at);
+            let [from, to] = self.tokens.span_of(at, at);
             clause.span = if clause.span == [0, 0] { [from, to] } else { [clause.span[0], to] };
             if decided[number] {
                 continue;
             }
             match role {
                 // "The gizmo", but not "the gizmo lamp".
-                Role::Unknown => {
-                    let describes = roles.get(at + 1).is_some_and(|next| *next == Some(Role::Place));
+                WordRole::Unknown => {
+                    let describes = roles.get(at + 1).is_some_and(|next| *next == Some(WordRole::Place));
                     (decided[number], clause.understood) = (!describes, describes);
                 }
-                Role::Place | Role::General | Role::Turn | Role::Climb | Role::Storey => decided[number] = true,
+                WordRole::Place | WordRole::General | WordRole::Turn | WordRole::Climb | WordRole::Storey => {
+                    decided[number] = true
+                }
                 _ => {}
             }
         }
@@ -231,7 +233,7 @@ impl<'a> Text<'a> {
 }
 
 /// Whether a word is an adjective, or a form of one: "larger", "biggest".
-fn describes(word: &str) -> bool {
+fn is_descriptive(word: &str) -> bool {
     let is_one = |word: &str| v::ADJECTIVES.contains(&word) || r::MANNER.contains(&word);
     let stem = word.strip_suffix("er").or(word.strip_suffix("est")).filter(|stem| stem.len() > 2);
     let graded = |stem: &str| {
@@ -249,27 +251,27 @@ fn is_adverb(word: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::reading::read;
+    use crate::reading::read_instruction;
 
     /// The counted words of a text that the reader does not understand.
     fn unknown(text: &str) -> Vec<&str> {
-        let words = read(text, &BTreeSet::new()).words;
+        let words = read_instruction(text, &BTreeSet::new()).words;
         let unknown = words.iter().filter(|word| word.is_counted && !word.is_understood());
         unknown.map(|word| &text[word.span[0]..word.span[1]]).collect()
     }
 
-    fn roles(text: &str) -> Vec<Role> {
-        read(text, &BTreeSet::new()).words.iter().map(|word| word.role).collect()
+    fn roles(text: &str) -> Vec<WordRole> {
+        read_instruction(text, &BTreeSet::new()).words.iter().map(|word| word.role).collect()
     }
 
     fn understood(text: &str) -> Vec<bool> {
-        let clauses = read(text, &BTreeSet::new()).clauses.into_iter();
+        let clauses = read_instruction(text, &BTreeSet::new()).clauses.into_iter();
         clauses.filter(|clause| clause.span[1] > 0).map(|clause| clause.understood).collect()
     }
 
     #[test]
     fn each_word_has_a_role() {
-        use Role::{Colour, Connective, Count, Filler, Motion, Ordinal, Place, Relation, Side, Stop, Turn};
+        use WordRole::{Colour, Connective, Count, Filler, Motion, Ordinal, Place, Relation, Side, Stop, Turn};
         for (text, wanted) in [
             ("Turn left and stop.", &[Motion, Turn, Connective, Stop][..]),
             ("Pass two red chairs.", &[Motion, Count, Colour, Place]),
@@ -299,8 +301,8 @@ mod tests {
     #[test]
     fn names_of_the_evidence_are_understood() {
         let known = BTreeSet::from(["zorble".to_owned()]);
-        let reading = read("Walk past the zorble.", &known);
-        assert!(reading.words.iter().all(Word::is_understood) && reading.clauses[0].understood);
+        let reading = read_instruction("Walk past the zorble.", &known);
+        assert!(reading.words.iter().all(ReadWord::is_understood) && reading.clauses[0].understood);
     }
 
     #[test]
@@ -320,7 +322,7 @@ mod tests {
     #[test]
     fn clauses_have_the_numbers_that_events_have() {
         for text in ["Turn left. Stop at the sofa, by the lamp!", ", go on and stop", "Stop"] {
-            let reading = read(text, &BTreeSet::new());
+            let reading = read_instruction(text, &BTreeSet::new());
             for event in &reading.events {
                 let [from, to] = reading.clauses[event.clause].span;
                 assert!(from <= event.span[0] && event.span[1] <= to, "{text}: {event:?}");

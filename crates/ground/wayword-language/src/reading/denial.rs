@@ -1,11 +1,11 @@
 //! Finds denials: actions that an instruction forbids, and things that it declares absent. The checks must not take
 //! "do not turn right" for a turn.
 
-use super::{tokens::Tokens, vocabulary as v};
+use super::{tokens::TokenSlice, vocabulary as v};
 
 /// For each token, whether the text denies it: "do not turn right", "without going up the stairs", "there is no piano",
 /// "if you reach the stairs you have gone too far".
-pub(super) fn denied(tokens: Tokens<'_>, clauses: &[usize]) -> Vec<bool> {
+pub(super) fn denied_tokens(tokens: TokenSlice<'_>, clauses: &[usize]) -> Vec<bool> {
     let mut denied = by_words(tokens, clauses);
     too_far(tokens, clauses, &mut denied);
     denied
@@ -13,7 +13,7 @@ pub(super) fn denied(tokens: Tokens<'_>, clauses: &[usize]) -> Vec<bool> {
 
 /// How far a denial reaches.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Reach {
+enum DenialReach {
     Nothing,
     /// To the end of the noun phrase: "no piano in the hall".
     Phrase,
@@ -23,44 +23,44 @@ enum Reach {
     Clause,
 }
 
-fn by_words(tokens: Tokens<'_>, clauses: &[usize]) -> Vec<bool> {
-    let mut reach = Reach::Nothing;
+fn by_words(tokens: TokenSlice<'_>, clauses: &[usize]) -> Vec<bool> {
+    let mut reach = DenialReach::Nothing;
     let mut clause = 0;
     let is_denied = |at: usize| {
-        let word = tokens.word(at);
+        let word = tokens.word_at(at);
         if clauses[at] != clause || matches!(word, "but" | "until" | "till") {
-            (reach, clause) = (Reach::Nothing, clauses[at]);
+            (reach, clause) = (DenialReach::Nothing, clauses[at]);
         }
         let goes_on = v::DETERMINERS.contains(&word) || matches!(word, "or" | "nor" | "of");
-        if reach == Reach::Phrase && v::BREAKERS.contains(&word) && !goes_on {
-            reach = Reach::Nothing;
+        if reach == DenialReach::Phrase && v::BREAKERS.contains(&word) && !goes_on {
+            reach = DenialReach::Nothing;
         }
-        if reach == Reach::And && word == "and" {
-            reach = Reach::Nothing;
+        if reach == DenialReach::And && word == "and" {
+            reach = DenialReach::Nothing;
         }
-        match begins(tokens, at) {
-            Reach::Nothing => {}
-            Reach::Phrase if reach == Reach::Clause => {}
+        match denial_at(tokens, at) {
+            DenialReach::Nothing => {}
+            DenialReach::Phrase if reach == DenialReach::Clause => {}
             begun => reach = begun,
         }
-        reach != Reach::Nothing
+        reach != DenialReach::Nothing
     };
     (0..tokens.len()).map(is_denied).collect()
 }
 
 /// How far the denial reaches that begins at a token, if one does.
-fn begins(tokens: Tokens<'_>, at: usize) -> Reach {
-    let (word, next) = (tokens.word(at), tokens.word(at + 1));
+fn denial_at(tokens: TokenSlice<'_>, at: usize) -> DenialReach {
+    let (word, next) = (tokens.word_at(at), tokens.word_at(at + 1));
     let is_not = matches!(word, "not" | "cannot" | "dont" | "cant") || word.ends_with("n't") || word.ends_with("n’t");
     match word {
-        _ if is_not && affirms(tokens, at) => Reach::Nothing,
-        _ if is_not => Reach::Clause,
-        "without" => Reach::And,
-        "never" | "neither" | "nor" | "avoid" | "avoiding" => Reach::Clause,
-        "ignore" | "ignoring" | "disregard" => Reach::Clause,
-        "instead" | "rather" if matches!(next, "of" | "than") => Reach::And,
+        _ if is_not && affirms_anyway(tokens, at) => DenialReach::Nothing,
+        _ if is_not => DenialReach::Clause,
+        "without" => DenialReach::And,
+        "never" | "neither" | "nor" | "avoid" | "avoiding" => DenialReach::Clause,
+        "ignore" | "ignoring" | "disregard" => DenialReach::Clause,
+        "instead" | "rather" if matches!(next, "of" | "than") => DenialReach::And,
         // "There is no need to turn".
-        "no" if next == "need" => Reach::Clause,
+        "no" if next == "need" => DenialReach::Clause,
         // "No more than two doors", "no longer", "no later than the sofa": a limit.
         "no" if matches!(
             next,
@@ -79,23 +79,23 @@ fn begins(tokens: Tokens<'_>, at: usize) -> Reach {
                 | "trouble"
         ) =>
         {
-            Reach::Nothing
+            DenialReach::Nothing
         }
-        "no" if tokens.is_word(at + 1) => Reach::Phrase,
-        _ => Reach::Nothing,
+        "no" if tokens.is_word(at + 1) => DenialReach::Phrase,
+        _ => DenialReach::Nothing,
     }
 }
 
 /// "You can't miss the sofa", "not far from the sofa", "not only", "don't forget to turn left": a "not" that affirms.
-fn affirms(tokens: Tokens<'_>, at: usize) -> bool {
+fn affirms_anyway(tokens: TokenSlice<'_>, at: usize) -> bool {
     // "Until you can't go any further turn left": an impossible action is no command.
-    let is_can = matches!(tokens.word(at), "cannot" | "cant" | "can't" | "can’t") || tokens.before(at) == "can";
-    if is_can && v::GOING.contains(&tokens.word(at + 1)) {
+    let is_can = matches!(tokens.word_at(at), "cannot" | "cant" | "can't" | "can’t") || tokens.word_before(at) == "can";
+    if is_can && v::GOING.contains(&tokens.word_at(at + 1)) {
         return true;
     }
-    let next = at + 1 + usize::from(matches!(tokens.word(at + 1), "to" | "quite" | "too" | "very" | "so" | "that"));
+    let next = at + 1 + usize::from(matches!(tokens.word_at(at + 1), "to" | "quite" | "too" | "very" | "so" | "that"));
     matches!(
-        tokens.word(next),
+        tokens.word_at(next),
         "miss"
             | "far"
             | "only"
@@ -119,16 +119,16 @@ fn affirms(tokens: Tokens<'_>, at: usize) -> bool {
 }
 
 /// "If you reach the stairs, you have gone too far": the condition after the "if" is not part of the walk.
-fn too_far(tokens: Tokens<'_>, clauses: &[usize], denied: &mut [bool]) {
+fn too_far(tokens: TokenSlice<'_>, clauses: &[usize], denied: &mut [bool]) {
     let mut from = 0;
     while from < tokens.len() {
-        let ends = |at: &usize| tokens.get(*at).is_some_and(crate::text::Token::ends_sentence);
+        let ends = |at: &usize| tokens.get(*at).is_some_and(crate::text::TextToken::ends_sentence);
         let end = (from..tokens.len()).find(ends).unwrap_or(tokens.len());
         let is_far = |at: &usize| {
-            let gone = matches!(tokens.before(*at), "gone" | "went" | "walked" | "come" | "go");
-            tokens.word(*at) == "too" && tokens.word(at + 1) == "far" && gone
+            let gone = matches!(tokens.word_before(*at), "gone" | "went" | "walked" | "come" | "go");
+            tokens.word_at(*at) == "too" && tokens.word_at(at + 1) == "far" && gone
         };
-        let begins = |at: &usize| matches!(tokens.word(*at), "if" | "when" | "once");
+        let begins = |at: &usize| matches!(tokens.word_at(*at), "if" | "when" | "once");
         if let Some(far) = (from..end).find(is_far) {
             // "If you see the bed you have gone too far", or "you have gone too far if you see the bed".
             let before = (from..far).rev().find(begins).map(|start| start..far);
@@ -147,14 +147,14 @@ fn end_of_clause(clauses: &[usize], start: usize, end: usize) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use crate::reading::{What, read};
+    use crate::reading::{EventContent, read_instruction};
     use std::collections::BTreeSet;
 
     /// The places that a text claims, and those that it denies.
     fn told(text: &str) -> (Vec<String>, Vec<String>) {
-        let events = read(text, &BTreeSet::new()).events.into_iter();
+        let events = read_instruction(text, &BTreeSet::new()).events.into_iter();
         let places = events.filter_map(|event| match event.what {
-            What::Place(place) => Some((event.denied, place.name)),
+            EventContent::Place(place) => Some((event.denied, place.name)),
             _ => None,
         });
         let (denied, claimed): (Vec<_>, Vec<_>) = places.partition(|(denied, _)| *denied);
@@ -191,7 +191,7 @@ mod tests {
     #[test]
     fn a_walk_too_far_is_understood_in_any_tense() {
         for text in ["If you see the bed, you went too far.", "You have gone too far if you see the bed."] {
-            assert!(read(text, &BTreeSet::new()).clauses.iter().all(|clause| clause.understood), "{text}");
+            assert!(read_instruction(text, &BTreeSet::new()).clauses.iter().all(|clause| clause.understood), "{text}");
         }
     }
 

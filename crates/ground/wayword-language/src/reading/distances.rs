@@ -1,6 +1,6 @@
 //! Finds the distances that a text asks to walk ("500 meters", "a few steps"), as ranges in metres.
 
-use super::{Event, What, numbers::cardinal, tokens::Tokens, vocabulary as v};
+use super::{EventContent, TextEvent, numbers::cardinal_number, tokens::TokenSlice, vocabulary as v};
 
 /// A foot, metres.
 const FOOT_M: f64 = 0.3048;
@@ -11,15 +11,15 @@ const FARTHEST_M: f64 = 100_000.0;
 
 /// The distances that a text asks to walk. A distance that only locates something ("two feet from the sofa") is none,
 /// and neither are the steps of stairs.
-pub(super) fn distances(tokens: Tokens<'_>, clauses: &[usize]) -> Vec<Event> {
+pub(super) fn read_distances(tokens: TokenSlice<'_>, clauses: &[usize]) -> Vec<TextEvent> {
     let mut events = Vec::new();
     let mut at = 0;
     while at < tokens.len() {
-        let found = told(tokens, at);
+        let found = distance_at(tokens, at);
         if let Some(told) = found.as_ref().filter(|told| is_walked(tokens, at, told)) {
             let [metres_low, metres_high] = told.metres;
-            let what = What::Distance { metres_low, metres_high };
-            events.push(Event { what, span: tokens.span(at, told.end - 1), clause: clauses[at], denied: false });
+            let what = EventContent::Distance { metres_low, metres_high };
+            events.push(TextEvent { what, span: tokens.span_of(at, told.end - 1), clause: clauses[at], denied: false });
         }
         at = found.map_or(at + 1, |told| told.end);
     }
@@ -27,7 +27,7 @@ pub(super) fn distances(tokens: Tokens<'_>, clauses: &[usize]) -> Vec<Event> {
 }
 
 /// A number with a unit.
-struct Told {
+struct DistanceWords {
     metres: [f64; 2],
     in_steps: bool,
     /// The token behind it.
@@ -35,34 +35,34 @@ struct Told {
 }
 
 /// The distance that begins at a token: "500 meters", "10ft", "a few steps", "two or three paces".
-fn told(tokens: Tokens<'_>, at: usize) -> Option<Told> {
-    let word = |at: usize| tokens.word(at);
-    if let Some((number, unit)) = joined(word(at)) {
-        return Some(Told { metres: times([number; 2], unit)?, in_steps: false, end: at + 1 });
+fn distance_at(tokens: TokenSlice<'_>, at: usize) -> Option<DistanceWords> {
+    let word = |at: usize| tokens.word_at(at);
+    if let Some((number, unit)) = joined_number(word(at)) {
+        return Some(DistanceWords { metres: in_metres([number; 2], unit)?, in_steps: false, end: at + 1 });
     }
-    let (numbers, behind) = numbers(tokens, at)?;
+    let (numbers, behind) = number_range(tokens, at)?;
     let behind = behind + usize::from(matches!(word(behind), "more" | "big" | "small" | "short" | "of" | "full"));
     let behind = behind + usize::from(word(behind - 1) == "of" && word(behind) == "a");
     let in_steps = matches!(word(behind), "step" | "steps" | "pace" | "paces" | "stride" | "strides");
     let unit = if in_steps { STEP_M } else { [unit_m(word(behind))?; 2] };
-    Some(Told { metres: times(numbers, unit)?, in_steps, end: behind + 1 })
+    Some(DistanceWords { metres: in_metres(numbers, unit)?, in_steps, end: behind + 1 })
 }
 
-fn times(numbers: [f64; 2], unit: [f64; 2]) -> Option<[f64; 2]> {
+fn in_metres(numbers: [f64; 2], unit: [f64; 2]) -> Option<[f64; 2]> {
     let metres = [numbers[0] * unit[0], numbers[1] * unit[1]];
     (0.0 < metres[0] && metres[0] <= metres[1] && metres[1] <= FARTHEST_M).then_some(metres)
 }
 
 /// "10ft", "3.5m".
-fn joined(word: &str) -> Option<(f64, [f64; 2])> {
+fn joined_number(word: &str) -> Option<(f64, [f64; 2])> {
     let unit = word.trim_start_matches(|c: char| c.is_ascii_digit() || c == '.');
     let number = word[..word.len() - unit.len()].parse().ok()?;
     Some((number, [unit_m(unit)?; 2]))
 }
 
 /// The least and the greatest number that words can mean, and the token behind them.
-fn numbers(tokens: Tokens<'_>, at: usize) -> Option<([f64; 2], usize)> {
-    let word = |at: usize| tokens.word(at);
+fn number_range(tokens: TokenSlice<'_>, at: usize) -> Option<([f64; 2], usize)> {
+    let word = |at: usize| tokens.word_at(at);
     let exact = |number: f64, end| Some(([number; 2], end));
     match (word(at), word(at + 1)) {
         ("a" | "another", "few") => Some(([2.0, 5.0], at + 2)),
@@ -73,10 +73,11 @@ fn numbers(tokens: Tokens<'_>, at: usize) -> Option<([f64; 2], usize)> {
         ("several" | "some", _) => Some(([3.0, 8.0], at + 1)),
         ("half", _) => exact(0.5, at + 1),
         _ => {
-            let (low, end) = hundreds(tokens, at)?;
+            let (low, end) = number_at(tokens, at)?;
             // "Two or three", "5-10".
             let joint = usize::from(matches!(word(end), "or" | "to"));
-            let high = hundreds(tokens, end + joint).filter(|(high, _)| *high > low && !matches!(word(at), "a" | "an"));
+            let high =
+                number_at(tokens, end + joint).filter(|(high, _)| *high > low && !matches!(word(at), "a" | "an"));
             match high {
                 Some((high, end)) => Some(([low, high], end)),
                 None => exact(low, end),
@@ -86,19 +87,19 @@ fn numbers(tokens: Tokens<'_>, at: usize) -> Option<([f64; 2], usize)> {
 }
 
 /// "Five", "two hundred", "three hundred and fifty": a number, and the token behind it.
-fn hundreds(tokens: Tokens<'_>, at: usize) -> Option<(f64, usize)> {
-    let few = number(tokens.word(at))?;
-    let (many, end) = match tokens.word(at + 1) {
+fn number_at(tokens: TokenSlice<'_>, at: usize) -> Option<(f64, usize)> {
+    let few = number_word(tokens.word_at(at))?;
+    let (many, end) = match tokens.word_at(at + 1) {
         "hundred" => (few * 100.0, at + 2),
         "thousand" => (few * 1000.0, at + 2),
         _ => return Some((few, at + 1)),
     };
-    let rest = end + usize::from(tokens.word(end) == "and");
-    let more = number(tokens.word(rest)).filter(|more| *more < 100.0);
+    let rest = end + usize::from(tokens.word_at(end) == "and");
+    let more = number_word(tokens.word_at(rest)).filter(|more| *more < 100.0);
     Some(more.map_or((many, end), |more| (many + more, rest + 1)))
 }
 
-fn number(word: &str) -> Option<f64> {
+fn number_word(word: &str) -> Option<f64> {
     let many = match word {
         "a" | "an" | "one" => 1.0,
         "eleven" => 11.0,
@@ -114,16 +115,16 @@ fn number(word: &str) -> Option<f64> {
         "hundred" => 100.0,
         _ => {
             let parsed = word.starts_with(|c: char| c.is_ascii_digit()).then(|| word.parse::<f64>().ok()).flatten();
-            parsed.or(cardinal(word).filter(|_| word != "both").map(f64::from))?
+            parsed.or(cardinal_number(word).filter(|_| word != "both").map(f64::from))?
         }
     };
     many.is_finite().then_some(many)
 }
 
 /// Whether the words from a token on are a unit behind a number: "100 yards". They name no place.
-pub(super) fn is_unit(tokens: Tokens<'_>, at: usize) -> bool {
-    let is_number = |word: &str| !matches!(word, "a" | "an") && number(word).is_some();
-    at > 0 && is_number(tokens.word(at - 1)) && unit_m(tokens.word(at)).is_some()
+pub(super) fn is_unit(tokens: TokenSlice<'_>, at: usize) -> bool {
+    let is_number = |word: &str| !matches!(word, "a" | "an") && number_word(word).is_some();
+    at > 0 && is_number(tokens.word_at(at - 1)) && unit_m(tokens.word_at(at)).is_some()
 }
 
 /// A unit in metres.
@@ -141,9 +142,9 @@ fn unit_m(word: &str) -> Option<f64> {
 }
 
 /// Whether the walker walks that far, and the distance does not locate or measure a thing.
-fn is_walked(tokens: Tokens<'_>, at: usize, told: &Told) -> bool {
+fn is_walked(tokens: TokenSlice<'_>, at: usize, told: &DistanceWords) -> bool {
     // "Three feet from the sofa", "two metres to the left of it", "a ten foot ladder".
-    let next = tokens.word(told.end);
+    let next = tokens.word_at(told.end);
     let placed = matches!(
         next,
         "from"
@@ -159,18 +160,18 @@ fn is_walked(tokens: Tokens<'_>, at: usize, told: &Told) -> bool {
             | "below"
             | "above"
             | "thick"
-    ) || matches!((next, tokens.word(told.end + 1)), ("in", "front"))
+    ) || matches!((next, tokens.word_at(told.end + 1)), ("in", "front"))
         || (next == "to"
-            && (told.end + 2..told.end + 4).any(|at| matches!(tokens.word(at), "left" | "right" | "side")));
+            && (told.end + 2..told.end + 4).any(|at| matches!(tokens.word_at(at), "left" | "right" | "side")));
     // "Up three steps", "the two steps", "two steps up": stairs.
     let climbs = |word: &str| {
         matches!(word, "up" | "down" | "climb" | "climbing" | "ascend" | "descend" | "the" | "these" | "those" | "of")
     };
     let leads_up = matches!(next, "up" | "down" | "upwards" | "downwards" | "upward" | "downward" | "leading")
-        || tokens.word(told.end + 2) == "stairs";
-    let stairs = told.in_steps && ((at.saturating_sub(2)..at).any(|at| climbs(tokens.word(at))) || leads_up);
+        || tokens.word_at(told.end + 2) == "stairs";
+    let stairs = told.in_steps && ((at.saturating_sub(2)..at).any(|at| climbs(tokens.word_at(at))) || leads_up);
     let start = at.saturating_sub(6);
-    let mut words = (start..at).rev().take_while(|at| tokens.is_word(*at)).map(|at| tokens.word(at));
+    let mut words = (start..at).rev().take_while(|at| tokens.is_word(*at)).map(|at| tokens.word_at(at));
     let verb = words.find(|word| v::WALKING.contains(word) || v::TURNING.contains(word) || word.ends_with("ing"));
     let goes = verb.is_some_and(|verb| {
         v::GOING.contains(&verb) || v::CLIMBING.contains(&verb) || matches!(verb, "take" | "taking" | "march" | "make")
@@ -181,13 +182,13 @@ fn is_walked(tokens: Tokens<'_>, at: usize, told: &Told) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use crate::reading::{What, read};
+    use crate::reading::{EventContent, read_instruction};
     use std::collections::BTreeSet;
 
     fn told(text: &str) -> Vec<[f64; 2]> {
-        let events = read(text, &BTreeSet::new()).events.into_iter();
+        let events = read_instruction(text, &BTreeSet::new()).events.into_iter();
         let metres = events.filter_map(|event| match event.what {
-            What::Distance { metres_low, metres_high } => Some([metres_low, metres_high]),
+            EventContent::Distance { metres_low, metres_high } => Some([metres_low, metres_high]),
             _ => None,
         });
         metres.map(|range| range.map(|metres| (metres * 100.0).round() / 100.0)).collect()
@@ -248,8 +249,8 @@ mod tests {
     #[test]
     fn a_unit_behind_a_number_is_no_place() {
         let names = |text: &str| {
-            let events = read(text, &BTreeSet::new()).events.into_iter();
-            let name = |what| if let What::Place(place) = what { Some(place.name) } else { None };
+            let events = read_instruction(text, &BTreeSet::new()).events.into_iter();
+            let name = |what| if let EventContent::Place(place) = what { Some(place.name) } else { None };
             events.filter_map(|event| name(event.what)).collect::<Vec<_>>()
         };
         assert_eq!(names("Walk 100 yards to the sofa."), ["sofa"]);
@@ -261,8 +262,8 @@ mod tests {
     #[test]
     fn steps_that_are_walked_are_no_stairs() {
         let places = |text: &str| {
-            let events = read(text, &BTreeSet::new()).events.into_iter();
-            events.filter(|event| matches!(event.what, What::Place(_))).count()
+            let events = read_instruction(text, &BTreeSet::new()).events.into_iter();
+            events.filter(|event| matches!(event.what, EventContent::Place(_))).count()
         };
         assert_eq!(places("Take two steps forward."), 0);
         assert_eq!(places("Walk up the two steps."), 1);

@@ -1,7 +1,7 @@
 //! Tests that the cost of reading grows in proportion to a text's length. They count looks at its tokens, because time
 //! depends on the machine.
 
-use super::{read, vocabulary as v};
+use super::{read_instruction, vocabulary as v};
 use std::{cell::Cell, collections::BTreeSet};
 
 thread_local! {
@@ -9,20 +9,20 @@ thread_local! {
 }
 
 /// Counts one look at a token.
-pub(super) fn look() {
+pub(super) fn count_look() {
     LOOKS.with(|looks| looks.set(looks.get() + 1));
 }
 
 /// The number of looks that reading a text takes.
-fn looks(text: &str) -> usize {
+fn looks_for(text: &str) -> usize {
     LOOKS.with(|looks| looks.set(0));
-    let _ = read(text, &BTreeSet::new());
+    let _ = read_instruction(text, &BTreeSet::new());
     LOOKS.with(Cell::get)
 }
 
 /// The parts to repeat: each word that steers the reading, alone and before the words that it steers, and phrases that
 /// several readers look at.
-fn repeated() -> BTreeSet<String> {
+fn repeated_parts() -> BTreeSet<String> {
     let lists = [
         &v::WALKING,
         &v::TURNING,
@@ -82,13 +82,13 @@ fn repeated() -> BTreeSet<String> {
 /// more looks as 20 more do.
 #[track_caller]
 fn grows_in_proportion(text: impl Fn(usize) -> String) {
-    let [few, more, many] = [20, 40, 80].map(|times| looks(&text(times)));
+    let [few, more, many] = [20, 40, 80].map(|times| looks_for(&text(times)));
     assert!(10 * (many - more) <= 22 * (more - few), "{:?}: {few}, {more}, {many} looks", text(1));
 }
 
 #[test]
 fn twice_the_text_takes_twice_the_looks() {
-    for part in repeated() {
+    for part in repeated_parts() {
         grows_in_proportion(|times| part.repeat(times));
     }
 }

@@ -32,53 +32,57 @@ pub mod vocabulary;
 mod ways;
 
 use crate::{
-    language::language,
-    text::{self, Token},
+    language::language_of,
+    text::{self, TextToken},
 };
-pub use numbers::{cardinal, ordinal};
-pub use roles::{Clause, Role, Word};
-pub use said::{Compass, Event, Floor, Going, Link, Ordinal, Place, Reading, Task, What};
+pub use numbers::{cardinal_number, ordinal_word};
+pub use roles::{ReadWord, TextClause, WordRole};
+pub use said::{
+    ClosingTask, CompassDirection, EventContent, PlaceLink, PlaceMention, PlaceMotion, PlaceOrdinal, StoreyMention,
+    TextEvent, TextReading,
+};
 use std::collections::BTreeSet;
-use tokens::Tokens;
+use tokens::TokenSlice;
 
 /// Reads a text. `known` has the evidence's names in normal spelling, because the lexicon may lack them.
 #[must_use]
-pub fn read(text: &str, known: &BTreeSet<String>) -> Reading {
-    let tokens = text::tokens(text);
-    let clauses = clauses(&tokens);
-    let tokens = Tokens::of(&tokens);
-    let mut events = turns::turns(tokens, &clauses);
+pub fn read_instruction(text: &str, known: &BTreeSet<String>) -> TextReading {
+    let tokens = text::split_tokens(text);
+    let clauses = clause_numbers(&tokens);
+    let tokens = TokenSlice::from_tokens(&tokens);
+    let mut events = turns::read_turns(tokens, &clauses);
     events.extend(climbs::climbs_and_floors(tokens, &clauses));
-    events.extend(onward::onward(tokens, &clauses));
-    events.extend(compass::compass(tokens, &clauses));
+    events.extend(onward::onward_commands(tokens, &clauses));
+    events.extend(compass::compass_events(tokens, &clauses));
     events.extend(stops::stops_and_facing(tokens, &clauses));
-    events.extend(distances::distances(tokens, &clauses));
-    let names_no_place = |event: &&Event| matches!(event.what, What::Floor(_) | What::Distance { .. });
+    events.extend(distances::read_distances(tokens, &clauses));
+    let names_no_place =
+        |event: &&TextEvent| matches!(event.what, EventContent::Floor(_) | EventContent::Distance { .. });
     let taken: Vec<[usize; 2]> = events.iter().filter(names_no_place).map(|event| event.span).collect();
-    let numbers_of_others = |event: &&Event| matches!(event.what, What::Turn(_) | What::Floor(_));
+    let numbers_of_others = |event: &&TextEvent| matches!(event.what, EventContent::Turn(_) | EventContent::Floor(_));
     let mut others: Vec<[usize; 2]> = events.iter().filter(numbers_of_others).map(|event| event.span).collect();
     others.sort_unstable();
-    events.extend(places::places(tokens, &clauses, known, &taken, &others));
+    events.extend(places::read_places(tokens, &clauses, known, &taken, &others));
     events.sort_by_key(|event| event.span);
-    let denied = denial::denied(tokens, &clauses);
+    let denied = denial::denied_tokens(tokens, &clauses);
     for event in &mut events {
         event.denied = denied[tokens.first_from(event.span[0])];
     }
     mark_turn_places(tokens, &mut events);
     let task = task::closing_task(tokens, &events);
-    let (words, clauses) = coverage::coverage(tokens, &clauses, &events, known);
-    let language = language(text, &words);
-    Reading { events, task, words, clauses, language }
+    let (words, clauses) = coverage::read_coverage(tokens, &clauses, &events, known);
+    let language = language_of(text, &words);
+    TextReading { events, task, words, clauses, language }
 }
 
 /// The number of each token's clause. Commas, full stops and "then" begin a new clause, and so does an "and" before a
 /// verb. "The lounge and the bedroom" is in one clause.
 #[must_use]
-pub fn clauses(tokens: &[Token]) -> Vec<usize> {
-    let tokens = Tokens::of(tokens);
+pub fn clause_numbers(tokens: &[TextToken]) -> Vec<usize> {
+    let tokens = TokenSlice::from_tokens(tokens);
     let behind_adverbs = task::behind_adverbs(tokens);
     let mut clause = 0;
-    let begins = |at: usize| match tokens.word(at) {
+    let begins = |at: usize| match tokens.word_at(at) {
         "and" => behind_adverbs.get(at + 1).is_some_and(|verb| task::verb_at(tokens, *verb).is_some()),
         word => !tokens.is_word(at) || word == "then",
     };
@@ -90,9 +94,9 @@ pub fn clauses(tokens: &[Token]) -> Vec<usize> {
 }
 
 /// Marks the places at which the turn before them happens.
-fn mark_turn_places(tokens: Tokens<'_>, events: &mut [Event]) {
+fn mark_turn_places(tokens: TokenSlice<'_>, events: &mut [TextEvent]) {
     let is_connection =
-        |at: &usize| matches!(tokens.word(*at), "at" | "by" | "near" | "after" | "past" | "when" | "once");
+        |at: &usize| matches!(tokens.word_at(*at), "at" | "by" | "near" | "after" | "past" | "when" | "once");
     let connections: Vec<usize> = (0..tokens.len()).filter(is_connection).collect();
     let connects = |from: usize, to: usize| {
         let (from, to) = (tokens.first_from(from), tokens.first_from(to));
@@ -102,12 +106,18 @@ fn mark_turn_places(tokens: Tokens<'_>, events: &mut [Event]) {
     let mut turn = None;
     for event in events {
         match (&mut event.what, turn) {
-            (What::Place(place), Some((clause, end))) => {
+            (EventContent::Place(place), Some((clause, end))) => {
                 place.tells_turn = clause == event.clause && connects(end, event.span[0]);
             }
-            (What::Place(_), None) => {}
-            (What::Turn(_), _) => turn = Some((event.clause, event.span[1])),
-            (What::Stop | What::Face { .. } | What::Compass { .. } | What::Distance { .. }, _) => {}
+            (EventContent::Place(_), None) => {}
+            (EventContent::Turn(_), _) => turn = Some((event.clause, event.span[1])),
+            (
+                EventContent::Stop
+                | EventContent::Face { .. }
+                | EventContent::Compass { .. }
+                | EventContent::Distance { .. },
+                _,
+            ) => {}
             _ => turn = None,
         }
     }
@@ -120,17 +130,23 @@ mod tests {
     use wayword_core::Side;
 
     fn told(text: &str) -> Vec<String> {
-        let reading = read(text, &BTreeSet::new());
-        let events = reading.events.iter().filter(|event| !matches!(event.what, What::Stop | What::Face { .. }));
-        let word = |event: &Event| match &event.what {
-            What::Place(place) => place.name.clone(),
-            What::Turn(side) => format!("turn {side:?}"),
-            What::Climb(climb) => format!("climb {climb:?}"),
-            What::Steps(climb) => format!("steps {climb:?}"),
-            What::Storey(climb) => format!("storey {climb:?}"),
-            What::Floor(floor) => format!("floor {}", floor.number.map_or("top".into(), |number| number.to_string())),
-            What::Onward => "on".into(),
-            What::Stop | What::Face { .. } | What::Compass { .. } | What::Distance { .. } => String::new(),
+        let reading = read_instruction(text, &BTreeSet::new());
+        let events =
+            reading.events.iter().filter(|event| !matches!(event.what, EventContent::Stop | EventContent::Face { .. }));
+        let word = |event: &TextEvent| match &event.what {
+            EventContent::Place(place) => place.name.clone(),
+            EventContent::Turn(side) => format!("turn {side:?}"),
+            EventContent::Climb(climb) => format!("climb {climb:?}"),
+            EventContent::Steps(climb) => format!("steps {climb:?}"),
+            EventContent::Storey(climb) => format!("storey {climb:?}"),
+            EventContent::Floor(floor) => {
+                format!("floor {}", floor.number.map_or("top".into(), |number| number.to_string()))
+            }
+            EventContent::Onward => "on".into(),
+            EventContent::Stop
+            | EventContent::Face { .. }
+            | EventContent::Compass { .. }
+            | EventContent::Distance { .. } => String::new(),
         };
         events.map(word).collect()
     }
@@ -140,16 +156,16 @@ mod tests {
         fn any_text_is_read_without_a_panic(
             text in "\\PC{0,80}|((no|not|you|can't|if|too|far|gone|turn|left|right|twice|two|10|ft|steps|few|until|go|up|down|north|east|counter|clockwise|o'clock|at|3|of|the|end|sofa|kitchen|zorble|is|green|on|your|facing|back|to|switch|stop|and|by|from|[,.!])  ?){0,30}",
         ) {
-            let reading = read(&text, &BTreeSet::new());
+            let reading = read_instruction(&text, &BTreeSet::new());
             let is_part = |[from, to]: [usize; 2]| from < to && text.get(from..to).is_some();
-            let tokens = text::tokens(&text);
+            let tokens = text::split_tokens(&text);
             let spans: Vec<[usize; 2]> = tokens.iter().filter(|token| token.is_word()).map(|token| token.span).collect();
             prop_assert_eq!(reading.words.iter().map(|word| word.span).collect::<Vec<_>>(), spans);
             for event in &reading.events {
                 let clause = reading.clauses[event.clause];
                 prop_assert!(is_part(event.span) && clause.span[0] <= event.span[0], "{:?}", event);
             }
-            prop_assert!(reading.claims().events.iter().all(|event| !event.denied));
+            prop_assert!(reading.into_claims().events.iter().all(|event| !event.denied));
         }
     }
 
@@ -177,8 +193,8 @@ mod tests {
     #[test]
     fn forbidden_actions_are_not_claimed() {
         let claims = |text: &str| {
-            let events = read(text, &BTreeSet::new()).claims().events;
-            events.iter().filter(|event| event.what != What::Stop).count()
+            let events = read_instruction(text, &BTreeSet::new()).into_claims().events;
+            events.iter().filter(|event| event.what != EventContent::Stop).count()
         };
         for text in [
             "Do not turn right.",
@@ -192,9 +208,10 @@ mod tests {
         assert_eq!(claims("Do not turn right but left at the sofa."), 2);
         assert_eq!(claims("Do not stop, turn left."), 1);
         assert_eq!(claims("Don't turn and go to the sofa."), 1);
-        let reading = read("Don't pass the sofa. Go to the bed and clean the lamp", &BTreeSet::new()).claims();
+        let reading =
+            read_instruction("Don't pass the sofa. Go to the bed and clean the lamp", &BTreeSet::new()).into_claims();
         let object = reading.task.and_then(|task| task.object).unwrap();
-        assert!(matches!(&reading.events[object].what, What::Place(place) if place.name == "lamp"));
+        assert!(matches!(&reading.events[object].what, EventContent::Place(place) if place.name == "lamp"));
     }
 
     #[test]
@@ -241,7 +258,8 @@ mod tests {
 
     #[test]
     fn the_closing_task_has_a_verb_and_an_object() {
-        let task = |text: &str| read(text, &BTreeSet::new()).task.map(|task| (task.verb, task.object.is_some()));
+        let task =
+            |text: &str| read_instruction(text, &BTreeSet::new()).task.map(|task| (task.verb, task.object.is_some()));
         assert_eq!(task("Go to the kitchen and wipe the counter"), Some(("wipe".into(), true)));
         assert_eq!(task("Bring me the pillow from the bedroom"), Some(("bring".into(), true)));
         assert_eq!(task("Walk to the kitchen and stop by the sink."), None);
@@ -251,8 +269,8 @@ mod tests {
 
     #[test]
     fn a_colour_belongs_to_the_thing_behind_it() {
-        let colour = |text: &str| match &read(text, &BTreeSet::new()).events[0].what {
-            What::Place(place) => place.colour.clone(),
+        let colour = |text: &str| match &read_instruction(text, &BTreeSet::new()).events[0].what {
+            EventContent::Place(place) => place.colour.clone(),
             _ => None,
         };
         assert_eq!(colour("dust the dark grey sofa"), Some("dark grey".into()));
@@ -267,9 +285,11 @@ mod tests {
 
     #[test]
     fn a_side_belongs_to_the_thing_before_it() {
-        let reading = read("clean the lamp on your left", &BTreeSet::new());
-        assert!(matches!(&reading.events[0].what, What::Place(place) if place.side == Some(Side::Left)));
-        let reading = read("turn left at the sofa", &BTreeSet::new());
-        assert!(matches!(&reading.events[1].what, What::Place(place) if place.side.is_none() && place.tells_turn));
+        let reading = read_instruction("clean the lamp on your left", &BTreeSet::new());
+        assert!(matches!(&reading.events[0].what, EventContent::Place(place) if place.side == Some(Side::Left)));
+        let reading = read_instruction("turn left at the sofa", &BTreeSet::new());
+        assert!(
+            matches!(&reading.events[1].what, EventContent::Place(place) if place.side.is_none() && place.tells_turn)
+        );
     }
 }

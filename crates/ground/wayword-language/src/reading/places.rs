@@ -1,14 +1,14 @@
 //! Finds the landmarks and rooms of a text, with their side, colour, number, and how the walk goes by them.
 
 use super::{
-    Event, Place, What, colours::Colours, distances::is_unit, links::link, numbers::Numbers, sides, task,
-    tokens::Tokens, vocabulary as v, ways::going,
+    EventContent, PlaceMention, TextEvent, colours::PlaceColours, distances::is_unit, links::link_before,
+    numbers::PlaceNumbers, sides, task, tokens::TokenSlice, vocabulary as v, ways::motion_by_place,
 };
-use crate::lexicon::{Class, is_room, is_thing, longest_name, normal_word, room_name, says_several, thing};
+use crate::lexicon::{ThingClass, find_thing, is_room, is_thing, longest_name, normal_word, room_name, says_several};
 use std::collections::BTreeSet;
 
 /// A run of tokens that names a place.
-struct Found {
+struct PlaceCandidate {
     /// Where the words begin that distinguish it: "bedroom" of "the second bedroom door".
     noun: usize,
     from: usize,
@@ -20,20 +20,20 @@ struct Found {
 
 /// The places of a text. Tokens within `taken` spans are skipped; sides and numbers within `others` belong to
 /// turns and storeys.
-pub(super) fn places(
-    tokens: Tokens<'_>,
+pub(super) fn read_places(
+    tokens: TokenSlice<'_>,
     clauses: &[usize],
     known: &BTreeSet<String>,
     taken: &[[usize; 2]],
     others: &[[usize; 2]],
-) -> Vec<Event> {
-    let free = free(tokens, taken);
-    let mut found: Vec<Found> = Vec::new();
+) -> Vec<TextEvent> {
+    let free = free_tokens(tokens, taken);
+    let mut found: Vec<PlaceCandidate> = Vec::new();
     let mut at = 0;
     while at < tokens.len() {
         let next = if free[at] {
-            named(tokens, at, known)
-                .or_else(|| unnamed(tokens, at, known).filter(|place| is_free_of(others, tokens, place)))
+            named_place_at(tokens, at, known)
+                .or_else(|| unnamed_place_at(tokens, at, known).filter(|place| is_free_of(others, tokens, place)))
         } else {
             None
         };
@@ -41,8 +41,8 @@ pub(super) fn places(
         let Some(mut place) = next else { continue };
         // "The kitchen table": a place right before another only qualifies the other. A basement does not,
         // because it is a storey.
-        let is_floor = |before: &Found| before.is_room && room_name(&before.name) == Some("basement");
-        let tells_which = |before: &mut Found| before.to == place.from && !is_floor(before);
+        let is_floor = |before: &PlaceCandidate| before.is_room && room_name(&before.name) == Some("basement");
+        let tells_which = |before: &mut PlaceCandidate| before.to == place.from && !is_floor(before);
         if let Some(mut before) = found.pop_if(tells_which) {
             place.noun = before.noun;
             if !before.is_room && !place.is_room {
@@ -53,35 +53,36 @@ pub(super) fn places(
         }
         found.push(place);
     }
-    let (colours, numbers) = (Colours::of(tokens), Numbers::of(tokens, others));
-    let event = |place: Found| {
-        let span = tokens.span(place.from, place.to - 1);
+    let (colours, numbers) = (PlaceColours::from_tokens(tokens), PlaceNumbers::from_tokens(tokens, others));
+    let event = |place: PlaceCandidate| {
+        let span = tokens.span_of(place.from, place.to - 1);
         let clause = clauses[place.from];
-        let (side, end) = sides::after(tokens, place.to);
-        let side = side.or_else(|| sides::before(tokens, place.noun));
-        let link = link(tokens, clauses, place.from);
-        let colour = colours.before(place.from).or_else(|| colours.behind(end));
-        let going = going(tokens, clauses, place.noun, &place.name);
-        let (ordinal, count) = (numbers.ordinal(place.noun), numbers.count(place.noun));
-        let several = count.is_some() || says_several(tokens.word(place.to - 1));
-        let Found { name, is_thing, is_room, .. } = place;
+        let (side, end) = sides::side_after(tokens, place.to);
+        let side = side.or_else(|| sides::side_before(tokens, place.noun));
+        let link = link_before(tokens, clauses, place.from);
+        let colour = colours.colour_before(place.from).or_else(|| colours.colour_behind(end));
+        let going = motion_by_place(tokens, clauses, place.noun, &place.name);
+        let (ordinal, count) = (numbers.ordinal_before(place.noun), numbers.count_before(place.noun));
+        let several = count.is_some() || says_several(tokens.word_at(place.to - 1));
+        let PlaceCandidate { name, is_thing, is_room, .. } = place;
         let tells_turn = false;
-        let place = Place { name, is_thing, is_room, link, side, colour, tells_turn, going, ordinal, count, several };
-        Event { what: What::Place(place), span, clause, denied: false }
+        let place =
+            PlaceMention { name, is_thing, is_room, link, side, colour, tells_turn, going, ordinal, count, several };
+        TextEvent { what: EventContent::Place(place), span, clause, denied: false }
     };
     found.into_iter().map(event).collect()
 }
 
 /// Whether a place is outside all of these spans: "an about-face" and "a U-turn" are turns.
-fn is_free_of(spans: &[[usize; 2]], tokens: Tokens<'_>, place: &Found) -> bool {
-    let [from, to] = tokens.span(place.from, place.to - 1);
+fn is_free_of(spans: &[[usize; 2]], tokens: TokenSlice<'_>, place: &PlaceCandidate) -> bool {
+    let [from, to] = tokens.span_of(place.from, place.to - 1);
     // The spans ascend.
     let next = spans.partition_point(|span| span[1] <= from);
     spans.get(next).is_none_or(|span| to <= span[0])
 }
 
 /// For each token, whether it is outside all of these spans.
-fn free(tokens: Tokens<'_>, taken: &[[usize; 2]]) -> Vec<bool> {
+fn free_tokens(tokens: TokenSlice<'_>, taken: &[[usize; 2]]) -> Vec<bool> {
     let mut free = vec![true; tokens.len()];
     for span in taken {
         let within = tokens.first_from(span[0])..tokens.first_from(span[1]);
@@ -91,28 +92,28 @@ fn free(tokens: Tokens<'_>, taken: &[[usize; 2]]) -> Vec<bool> {
 }
 
 /// The longest known name that begins at a token.
-fn named(tokens: Tokens<'_>, at: usize, known: &BTreeSet<String>) -> Option<Found> {
+fn named_place_at(tokens: TokenSlice<'_>, at: usize, known: &BTreeSet<String>) -> Option<PlaceCandidate> {
     let longest = longest_name().max(6).min(tokens.len() - at);
     (1..=longest).rev().find_map(|length| {
         let mut run = at..at + length;
         if !run.clone().all(|at| tokens.is_word(at)) || is_no_place(tokens, at, length) {
             return None;
         }
-        let name = run.by_ref().map(|at| normal_word(tokens.word(at))).collect::<Vec<_>>().join(" ");
+        let name = run.by_ref().map(|at| normal_word(tokens.word_at(at))).collect::<Vec<_>>().join(" ");
         let (is_thing, is_room) = (is_thing(&name) || known.contains(&name), is_room(&name));
-        (is_thing || is_room).then_some(Found { noun: at, from: at, to: at + length, name, is_thing, is_room })
+        (is_thing || is_room).then_some(PlaceCandidate { noun: at, from: at, to: at + length, name, is_thing, is_room })
     })
 }
 
 /// The token after the longest known name that begins at a token.
-pub(super) fn name_end(tokens: Tokens<'_>, at: usize, known: &BTreeSet<String>) -> Option<usize> {
-    named(tokens, at, known).map(|found| found.to)
+pub(super) fn name_end(tokens: TokenSlice<'_>, at: usize, known: &BTreeSet<String>) -> Option<usize> {
+    named_place_at(tokens, at, known).map(|found| found.to)
 }
 
 /// Whether words that can be a name are not one here: "step" and "turn back" of walking, "light blue", "water the
 /// plant".
-fn is_no_place(tokens: Tokens<'_>, at: usize, length: usize) -> bool {
-    let word = |at: usize| tokens.word(at);
+fn is_no_place(tokens: TokenSlice<'_>, at: usize, length: usize) -> bool {
+    let word = |at: usize| tokens.word_at(at);
     if length > 1 {
         return false;
     }
@@ -178,8 +179,8 @@ fn is_no_place(tokens: Tokens<'_>, at: usize, length: usize) -> bool {
 }
 
 /// A noun phrase that begins at a token and has no known name: "the shiny gizmo".
-fn unnamed(tokens: Tokens<'_>, at: usize, known: &BTreeSet<String>) -> Option<Found> {
-    let word = |at: usize| tokens.word(at);
+fn unnamed_place_at(tokens: TokenSlice<'_>, at: usize, known: &BTreeSet<String>) -> Option<PlaceCandidate> {
+    let word = |at: usize| tokens.word_at(at);
     let is_article = matches!(word(at), "the" | "a" | "an");
     if is_depicted(tokens, at) || !(is_article || begins_noun(tokens, at)) {
         return None;
@@ -196,14 +197,14 @@ fn unnamed(tokens: Tokens<'_>, at: usize, known: &BTreeSet<String>) -> Option<Fo
             || is_verb
             || is_turn
             || v::BREAKERS.contains(&word(end))
-            || named(tokens, end, known).is_some()
+            || named_place_at(tokens, end, known).is_some()
     };
     let mut to = at + 1;
     while to < at + 5 && !ends(to) {
         to += 1;
     }
     // Before a named place, these words are its adjectives.
-    let ends_in_name = tokens.is_word(to) && named(tokens, to, known).is_some();
+    let ends_in_name = tokens.is_word(to) && named_place_at(tokens, to, known).is_some();
     let last = word(to - 1);
     let tells_nothing = v::ABSTRACT.contains(&normal_word(last).as_str())
         || v::ADJECTIVES.contains(&last)
@@ -214,23 +215,23 @@ fn unnamed(tokens: Tokens<'_>, at: usize, known: &BTreeSet<String>) -> Option<Fo
         return None;
     }
     let name = (at + 1..to).map(|at| normal_word(word(at))).collect::<Vec<_>>().join(" ");
-    Some(Found { noun: at + 1, from: at + 1, to, name, is_thing: true, is_room: false })
+    Some(PlaceCandidate { noun: at + 1, from: at + 1, to, name, is_thing: true, is_room: false })
 }
 
 /// "A picture of two horses": the horses are in the picture and not at the place.
-fn is_depicted(tokens: Tokens<'_>, at: usize) -> bool {
-    let word = |back: usize| at.checked_sub(back).map_or("", |at| tokens.word(at));
-    word(1) == "of" && thing(&normal_word(word(2))).is_some_and(|thing| thing.class == Class::WallArt)
+fn is_depicted(tokens: TokenSlice<'_>, at: usize) -> bool {
+    let word = |back: usize| at.checked_sub(back).map_or("", |at| tokens.word_at(at));
+    word(1) == "of" && find_thing(&normal_word(word(2))).is_some_and(|thing| thing.class == ThingClass::WallArt)
 }
 
 /// Whether a word other than an article begins a noun phrase: "my", "two", "past that".
-fn begins_noun(tokens: Tokens<'_>, at: usize) -> bool {
-    let word = tokens.word(at);
+fn begins_noun(tokens: TokenSlice<'_>, at: usize) -> bool {
+    let word = tokens.word_at(at);
     if !matches!(word, "this" | "that" | "these" | "those") {
         return v::DETERMINERS.contains(&word) || v::COUNTING.contains(&word);
     }
     // "The door that leads on", "this takes you to the hall": here the word replaces a noun.
-    let before = tokens.before(at);
+    let before = tokens.word_before(at);
     let begins_clause =
         matches!(before, "where" | "when" | "until" | "till" | "while" | "as" | "if" | "that" | "which" | "and" | "so");
     !begins_clause && (v::BREAKERS.contains(&before) || v::WALKING.contains(&before))
@@ -238,8 +239,9 @@ fn begins_noun(tokens: Tokens<'_>, at: usize) -> bool {
 
 /// The first place of a text, for tests.
 #[cfg(test)]
-pub(super) fn first(text: &str) -> Place {
-    let places = super::read(text, &BTreeSet::new()).events.into_iter();
-    let mut place = places.filter_map(|event| if let What::Place(place) = event.what { Some(place) } else { None });
+pub(super) fn first(text: &str) -> PlaceMention {
+    let places = super::read_instruction(text, &BTreeSet::new()).events.into_iter();
+    let mut place =
+        places.filter_map(|event| if let EventContent::Place(place) = event.what { Some(place) } else { None });
     place.next().unwrap_or_else(|| panic!("{text} names no place"))
 }

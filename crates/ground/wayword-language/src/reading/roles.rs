@@ -2,27 +2,27 @@
 
 /// A word of a text with the role that the reader gives it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Word {
+pub struct ReadWord {
     /// Its byte range in the text.
     pub span: [usize; 2],
     /// Its role.
-    pub role: Role,
+    pub role: WordRole,
     /// Whether shares of understood words count it. Articles, pronouns, auxiliary verbs, conjunctions and prepositions
     /// are not counted.
     pub is_counted: bool,
 }
 
-impl Word {
+impl ReadWord {
     /// Whether the program can act on the word, or knows that it makes no claim.
     #[must_use]
     pub fn is_understood(&self) -> bool {
-        self.role != Role::Unknown
+        self.role != WordRole::Unknown
     }
 }
 
 /// The role of a word in its text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Role {
+pub enum WordRole {
     /// A turn: "left" of "turn left".
     Turn,
     /// Up or down.
@@ -69,7 +69,7 @@ pub enum Role {
 
 /// A clause of a text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Clause {
+pub struct TextClause {
     /// From its first word to its last, bytes. Both are 0 where the clause has no word.
     pub span: [usize; 2],
     /// Whether the reader knows its verb and its main noun. A clause without a word is understood.

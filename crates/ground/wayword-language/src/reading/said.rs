@@ -1,29 +1,29 @@
 //! The result of reading an instruction: its events in the order of the text, its closing task, its words and clauses.
 
-use super::{Clause, Word};
+use super::{ReadWord, TextClause};
 use crate::Language;
-use wayword_core::{Climb, Side};
+use wayword_core::{ClimbDirection, Side};
 
 /// An instruction after the rules of the language went over it.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Reading {
+pub struct TextReading {
     /// Everything that can be compared with a path.
-    pub events: Vec<Event>,
+    pub events: Vec<TextEvent>,
     /// The closing task, where the text ends in one.
-    pub task: Option<Task>,
+    pub task: Option<ClosingTask>,
     /// Every word of the text with its role.
-    pub words: Vec<Word>,
+    pub words: Vec<ReadWord>,
     /// The clauses of the text, by the number that events have.
-    pub clauses: Vec<Clause>,
+    pub clauses: Vec<TextClause>,
     /// The language of the text. Parts in another language than English are not read.
     pub language: Language,
 }
 
 /// One statement or command of an instruction: a place, a turn, a climb, a distance.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Event {
+pub struct TextEvent {
     /// Its kind and its details.
-    pub what: What,
+    pub what: EventContent,
     /// Its byte range in the text.
     pub span: [usize; 2],
     /// The number of its clause, counted over the whole text.
@@ -34,19 +34,19 @@ pub struct Event {
 
 /// The content of an event.
 #[derive(Debug, Clone, PartialEq)]
-pub enum What {
+pub enum EventContent {
     /// An object, a room, or a word that can mean either ("the stairs").
-    Place(Place),
+    Place(PlaceMention),
     /// A turn to a side, or around (`Behind`).
     Turn(Side),
     /// A command to go up or down a flight of stairs.
-    Climb(Climb),
+    Climb(ClimbDirection),
     /// A command to go up or down a few steps, fewer than a flight.
-    Steps(Climb),
+    Steps(ClimbDirection),
     /// A place that lies up or down the stairs ("the bedroom upstairs"), wherever the agent starts.
-    Storey(Climb),
+    Storey(ClimbDirection),
     /// A storey that the text names.
-    Floor(Floor),
+    Floor(StoreyMention),
     /// A command to walk on ("walk straight ahead").
     Onward,
     /// A command to stop or to wait, or a statement that the walk ends. The places of its clause tell where.
@@ -60,7 +60,7 @@ pub enum What {
     /// A direction of the compass.
     Compass {
         /// Which one.
-        towards: Compass,
+        towards: CompassDirection,
         /// Whether the walk goes or turns that way ("head north"), and not only a place lies there ("the east wall").
         goes: bool,
     },
@@ -76,7 +76,7 @@ pub enum What {
 /// The directions of the compass.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[allow(missing_docs)] // The names explain themselves.
-pub enum Compass {
+pub enum CompassDirection {
     North,
     NorthEast,
     East,
@@ -87,7 +87,7 @@ pub enum Compass {
     NorthWest,
 }
 
-impl Compass {
+impl CompassDirection {
     /// Degrees clockwise from north.
     #[must_use]
     pub fn degrees(self) -> f64 {
@@ -97,7 +97,7 @@ impl Compass {
 
 /// A storey that a text names.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Floor {
+pub struct StoreyMention {
     /// Its number, the lowest being 1; `None` for the top storey.
     pub number: Option<u32>,
     /// Whether the path comes from there: "from the second floor", "start on level 1".
@@ -108,7 +108,7 @@ pub struct Floor {
 
 /// An object or a room in a text.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Place {
+pub struct PlaceMention {
     /// Its name in normal spelling.
     pub name: String,
     /// Whether the name can be an object's.
@@ -116,7 +116,7 @@ pub struct Place {
     /// Whether the name can be a room's.
     pub is_room: bool,
     /// How it is linked to its sentence.
-    pub link: Link,
+    pub link: PlaceLink,
     /// The side of the agent that the text gives it ("on your left").
     pub side: Option<Side>,
     /// The colour that the text gives it.
@@ -124,9 +124,9 @@ pub struct Place {
     /// Whether it follows a turn that happens at, by or after it ("turn left at the sofa").
     pub tells_turn: bool,
     /// How the walk goes on by it. `None` where the text only locates something at it, in it or next to it.
-    pub going: Option<Going>,
+    pub going: Option<PlaceMotion>,
     /// Which one of several it is ("the second door").
-    pub ordinal: Option<Ordinal>,
+    pub ordinal: Option<PlaceOrdinal>,
     /// How many there are, where the text gives a number ("two chairs", "a pair of doors").
     pub count: Option<u32>,
     /// Whether the text names several ("two chairs", "pass couches").
@@ -135,7 +135,7 @@ pub struct Place {
 
 /// How a walk goes on by a place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Going {
+pub enum PlaceMotion {
     /// It leaves the place: "exit", "leave", "out of", "from".
     Leaving,
     /// It gets into the place: "enter", "into", "walk in".
@@ -156,7 +156,7 @@ pub enum Going {
 
 /// Which one of several things alike is meant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Ordinal {
+pub enum PlaceOrdinal {
     /// The first is 1.
     Number(u32),
     /// The last one.
@@ -169,7 +169,7 @@ pub enum Ordinal {
 
 /// How a place is linked to its sentence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Link {
+pub enum PlaceLink {
     /// No word links it: "leave the kitchen", "the kitchen is on your left".
     Plain,
     /// The agent gets there: "to", "into", "enter".
@@ -184,17 +184,17 @@ pub enum Link {
 
 /// The closing task of an instruction.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Task {
+pub struct ClosingTask {
     /// Its verb.
     pub verb: String,
     /// The event that is its object, where it names one.
     pub object: Option<usize>,
 }
 
-impl Reading {
+impl TextReading {
     /// The reading without the denied events: only the text's claims.
     #[must_use]
-    pub fn claims(mut self) -> Self {
+    pub fn into_claims(mut self) -> Self {
         if let Some(task) = &mut self.task {
             let claimed = |at: usize| self.events[..at].iter().filter(|event| !event.denied).count();
             task.object = task.object.filter(|at| !self.events[*at].denied).map(claimed);

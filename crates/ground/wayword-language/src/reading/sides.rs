@@ -1,15 +1,15 @@
 //! Finds the side of the walker on which a text locates a place.
 
-use super::{tokens::Tokens, vocabulary as v};
+use super::{tokens::TokenSlice, vocabulary as v};
 use wayword_core::Side;
 
 /// How far before a place its side may be, words.
-const REACH: usize = 10;
+const SIDE_REACH_WORDS: usize = 10;
 
 /// The side that follows a place ("on your left", "that is on the far right", but not "to the right of"), and the token
 /// behind it. That is `to` where no side follows.
-pub(super) fn after(tokens: Tokens<'_>, to: usize) -> (Option<Side>, usize) {
-    let word = |at: usize| tokens.word(at);
+pub(super) fn side_after(tokens: TokenSlice<'_>, to: usize) -> (Option<Side>, usize) {
+    let word = |at: usize| tokens.word_at(at);
     let mut at = to;
     while matches!(word(at), "that" | "is" | "are" | "which") {
         at += 1;
@@ -27,8 +27,8 @@ pub(super) fn after(tokens: Tokens<'_>, to: usize) -> (Option<Side>, usize) {
 }
 
 /// The side that is named before a place: "on your left is the sofa", "to the right you will see a sofa".
-pub(super) fn before(tokens: Tokens<'_>, from: usize) -> Option<Side> {
-    let word = |at: usize| tokens.word(at);
+pub(super) fn side_before(tokens: TokenSlice<'_>, from: usize) -> Option<Side> {
+    let word = |at: usize| tokens.word_at(at);
     let may = |word: &str| {
         v::DETERMINERS.contains(&word)
             || v::ADJECTIVES.contains(&word) && side_of(word).is_none()
@@ -37,7 +37,7 @@ pub(super) fn before(tokens: Tokens<'_>, from: usize) -> Option<Side> {
     let tells = |word: &str| {
         matches!(word, "is" | "are" | "be" | "see" | "find" | "notice" | "have" | "there's" | "there’s" | "comes")
     };
-    let first = from.saturating_sub(REACH);
+    let first = from.saturating_sub(SIDE_REACH_WORDS);
     let at = (first..from).rev().find(|at| !may(word(*at)) && !tells(word(*at)))?;
     if !(at..from).any(|at| tells(word(at))) {
         return None;
@@ -67,9 +67,9 @@ fn is_exact(word: &str) -> bool {
 }
 
 /// The token behind a side: "left", "left side", "left hand side".
-fn behind_side(tokens: Tokens<'_>, at: usize) -> usize {
-    let at = at + 1 + usize::from(tokens.word(at + 1) == "hand");
-    at + usize::from(tokens.word(at) == "side")
+fn behind_side(tokens: TokenSlice<'_>, at: usize) -> usize {
+    let at = at + 1 + usize::from(tokens.word_at(at + 1) == "hand");
+    at + usize::from(tokens.word_at(at) == "side")
 }
 
 #[cfg(test)]

@@ -2,11 +2,11 @@
 
 /// Whether a word is a verb of a list, in any of its regular forms: "walk", "walks", "walked", "walking".
 pub(super) fn is_form_of(word: &str, list: &[&str]) -> bool {
-    stems(word).any(|stem| list.contains(&stem.as_str()))
+    verb_stems(word).any(|stem| list.contains(&stem.as_str()))
 }
 
 /// The candidates for the plain form of a word, if it is a verb. Some of them are no words.
-fn stems(word: &str) -> impl Iterator<Item = String> {
+fn verb_stems(word: &str) -> impl Iterator<Item = String> {
     let cut = |end: &str| word.strip_suffix(end).filter(|stem| stem.len() > 1);
     let y = cut("ies").or(cut("ied")).map(|stem| format!("{stem}y"));
     let bare = [cut("s"), cut("es"), cut("ed"), cut("ing"), cut("d")].map(|stem| stem.map(str::to_owned));

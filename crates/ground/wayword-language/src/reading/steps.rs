@@ -2,14 +2,16 @@
 
 mod relation;
 
-use super::{Event, Floor, Reading, What, clauses, denial::denied, tokens::Tokens};
+use super::{
+    EventContent, StoreyMention, TextEvent, TextReading, clause_numbers, denial::denied_tokens, tokens::TokenSlice,
+};
 use crate::{
     lexicon::room_name,
-    text::{self, Token},
+    text::{self, TextToken},
 };
-pub use relation::Relation;
+pub use relation::StepRelation;
 use std::ops::Range;
-use wayword_core::{Climb, Side};
+use wayword_core::{ClimbDirection, Side};
 
 crate::data::lists! {
     "words/steps.txt";
@@ -19,7 +21,7 @@ crate::data::lists! {
 
 /// One step of an instruction.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Step {
+pub struct InstructionStep {
     /// Its byte range in the text.
     pub span: [usize; 2],
     /// Its turn; `Behind` for a turn around. Never `Ahead`.
@@ -29,11 +31,11 @@ pub struct Step {
     /// Whether the text calls the turn slight.
     pub is_slight: bool,
     /// Its climb: a flight of stairs, or a few steps.
-    pub climb: Option<Climb>,
+    pub climb: Option<ClimbDirection>,
     /// The storey that it mentions as a location: "the kitchen on level 2".
-    pub floor: Option<Floor>,
+    pub floor: Option<StoreyMention>,
     /// Whether something lies up or down the stairs: "the bedroom upstairs".
-    pub storey: Option<Climb>,
+    pub storey: Option<ClimbDirection>,
     /// Whether it is a command to stop or to wait.
     pub stops: bool,
     /// Whether it is a command to go straight on.
@@ -43,31 +45,31 @@ pub struct Step {
     /// Whether it speaks of the end of something: "at the end of the hallway".
     pub at_end: bool,
     /// Its relation to doors.
-    pub door: Door,
+    pub door: StepDoor,
     /// Its relation to stairs.
-    pub stairs: Stairs,
+    pub stairs: StepStairs,
     /// Whether it leads outside the house, and names no room there.
     pub is_outdoors: bool,
     /// A side on which the step locates a thing, and how the step relates to that thing: "the door on your left".
-    pub side: Option<(Relation, Side)>,
+    pub side: Option<(StepRelation, Side)>,
     /// The landmarks and rooms that it names.
-    pub places: Vec<Told>,
+    pub places: Vec<StepMention>,
     /// Which words of the list `marking` it has.
     pub marks: Vec<usize>,
 }
 
 /// A place that a step names.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Told {
+pub struct StepMention {
     /// Its event in the reading.
     pub event: usize,
     /// How the step relates to it.
-    pub relation: Relation,
+    pub relation: StepRelation,
 }
 
 /// How a step relates to doors.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Door {
+pub enum StepDoor {
     /// It has no door.
     None,
     /// It leads from one room to another.
@@ -80,7 +82,7 @@ pub enum Door {
 
 /// How a step relates to stairs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Stairs {
+pub enum StepStairs {
     /// It has no stairs.
     None,
     /// It names them.
@@ -93,18 +95,20 @@ pub enum Stairs {
 
 /// The steps of a text that was read. Denied events are no part of them.
 #[must_use]
-pub fn steps(text: &str, reading: &Reading) -> Vec<Step> {
-    let tokens = text::tokens(text);
-    let clauses = clauses(&tokens);
-    let denied = denied(Tokens::of(&tokens), &clauses);
-    let first_token = |event: &Event| tokens.partition_point(|token| token.span[0] < event.span[0]);
-    let events: Vec<(usize, &Event)> = reading.events.iter().map(|event| (first_token(event), event)).collect();
+pub fn read_steps(text: &str, reading: &TextReading) -> Vec<InstructionStep> {
+    let tokens = text::split_tokens(text);
+    let clauses = clause_numbers(&tokens);
+    let denied = denied_tokens(TokenSlice::from_tokens(&tokens), &clauses);
+    let first_token = |event: &TextEvent| tokens.partition_point(|token| token.span[0] < event.span[0]);
+    let events: Vec<(usize, &TextEvent)> = reading.events.iter().map(|event| (first_token(event), event)).collect();
     let mut next = 0;
     let mut steps = Vec::new();
-    for range in pieces(&tokens, &clauses, &events) {
+    for range in step_ranges(&tokens, &clauses, &events) {
         let from = next;
         next += events[from..].partition_point(|(at, _)| *at < range.end);
-        steps.extend(Builder { tokens: &tokens, denied: &denied, range, first_event: from }.step(&events[from..next]));
+        steps.extend(
+            StepBuilder { tokens: &tokens, denied: &denied, range, first_event: from }.build_step(&events[from..next]),
+        );
     }
     steps
 }
@@ -113,9 +117,9 @@ pub fn steps(text: &str, reading: &Reading) -> Vec<Step> {
 const TURN_REACH: usize = 5;
 
 /// Cuts the tokens at clauses, before a condition, and before a second turn.
-fn pieces(tokens: &[Token], clauses: &[usize], events: &[(usize, &Event)]) -> Vec<Range<usize>> {
+fn step_ranges(tokens: &[TextToken], clauses: &[usize], events: &[(usize, &TextEvent)]) -> Vec<Range<usize>> {
     let mut turns =
-        events.iter().filter(|(_, event)| matches!(event.what, What::Turn(_))).map(|(at, _)| *at).peekable();
+        events.iter().filter(|(_, event)| matches!(event.what, EventContent::Turn(_))).map(|(at, _)| *at).peekable();
     let mut cuts = vec![0];
     let (mut has_word, mut has_turn) = (false, false);
     let ends_at = |at: usize| events.partition_point(|(event, _)| *event < at);
@@ -128,7 +132,7 @@ fn pieces(tokens: &[Token], clauses: &[usize], events: &[(usize, &Event)]) -> Ve
             && clauses.get(at + 1).is_some_and(|clause| *clause == clauses[at])
             && ends_at(*cuts.last().unwrap_or(&0)) < ends_at(at)
             && events[ends_at(at)..].first().is_some_and(|(turn, event)| {
-                *turn <= at + TURN_REACH && clauses[*turn] == clauses[at] && matches!(event.what, What::Turn(_))
+                *turn <= at + TURN_REACH && clauses[*turn] == clauses[at] && matches!(event.what, EventContent::Turn(_))
             });
         if new_clause || (has_word && is_condition) || (is_turn && has_turn) || (has_word && begins_turn) {
             cuts.push(at);
@@ -142,8 +146,8 @@ fn pieces(tokens: &[Token], clauses: &[usize], events: &[(usize, &Event)]) -> Ve
 }
 
 /// Puts one step together.
-struct Builder<'a> {
-    tokens: &'a [Token],
+struct StepBuilder<'a> {
+    tokens: &'a [TextToken],
     /// For each token, whether the text denies it.
     denied: &'a [bool],
     range: Range<usize>,
@@ -151,68 +155,68 @@ struct Builder<'a> {
     first_event: usize,
 }
 
-impl Builder<'_> {
+impl StepBuilder<'_> {
     /// The step; `None` where it has no words.
-    fn step(&self, events: &[(usize, &Event)]) -> Option<Step> {
+    fn build_step(&self, events: &[(usize, &TextEvent)]) -> Option<InstructionStep> {
         let first = self.range.clone().find(|at| self.tokens[*at].is_word())?;
         let last = self.range.clone().rev().find(|at| self.tokens[*at].is_word())?;
-        let mut step = Step {
+        let mut step = InstructionStep {
             span: [self.tokens[first].span[0], self.tokens[last].span[1]],
             turn: None,
             turn_span: None,
-            is_slight: self.has(&SLIGHT),
+            is_slight: self.has_word(&SLIGHT),
             climb: None,
             floor: None,
             storey: None,
             stops: false,
-            is_straight: self.has(&STRAIGHT),
+            is_straight: self.has_word(&STRAIGHT),
             is_condition: CONDITIONS.contains(&self.tokens[first].word.as_str()),
-            at_end: self.has(&["end"]),
-            door: Door::None,
-            stairs: self.stairs(),
+            at_end: self.has_word(&["end"]),
+            door: StepDoor::None,
+            stairs: self.step_stairs(),
             is_outdoors: false,
             side: None,
             places: Vec::new(),
-            marks: (0..MARKING.len()).filter(|mark| self.has(&MARKING[*mark..=*mark])).collect(),
+            marks: (0..MARKING.len()).filter(|mark| self.has_word(&MARKING[*mark..=*mark])).collect(),
         };
-        let names_room = self.take(events, &mut step);
-        step.is_outdoors = !names_room && self.has(&OUTDOORS);
-        if step.door == Door::None && self.has(&LEAVING_WORDS) {
-            step.door = Door::Implied;
+        let names_room = self.take_events(events, &mut step);
+        step.is_outdoors = !names_room && self.has_word(&OUTDOORS);
+        if step.door == StepDoor::None && self.has_word(&LEAVING_WORDS) {
+            step.door = StepDoor::Implied;
         }
         if step.side.is_none() && step.turn.is_none() {
-            step.side = self.side().map(|side| (Relation::Plain, side));
+            step.side = self.named_side().map(|side| (StepRelation::Plain, side));
         }
         Some(step)
     }
 
     /// Takes the events over. Whether one of them names a room.
-    fn take(&self, events: &[(usize, &Event)], step: &mut Step) -> bool {
+    fn take_events(&self, events: &[(usize, &TextEvent)], step: &mut InstructionStep) -> bool {
         let mut before = None;
         let mut names_room = false;
         for (number, (at, event)) in events.iter().enumerate().filter(|(_, (_, event))| !event.denied) {
             match &event.what {
-                What::Turn(side) => {
+                EventContent::Turn(side) => {
                     step.turn = step.turn.or(Some(*side));
                     step.turn_span = step.turn_span.or(Some(event.span));
                 }
-                What::Climb(climb) | What::Steps(climb) => step.climb = step.climb.or(Some(*climb)),
-                What::Floor(floor) if !floor.leaves && !floor.aside => step.floor = Some(*floor),
-                What::Storey(climb) => step.storey = Some(*climb),
-                What::Stop => step.stops = true,
-                What::Place(place) => {
-                    let relation = Relation::of(place, &self.tokens[self.range.start..*at], before);
+                EventContent::Climb(climb) | EventContent::Steps(climb) => step.climb = step.climb.or(Some(*climb)),
+                EventContent::Floor(floor) if !floor.leaves && !floor.aside => step.floor = Some(*floor),
+                EventContent::Storey(climb) => step.storey = Some(*climb),
+                EventContent::Stop => step.stops = true,
+                EventContent::Place(place) => {
+                    let relation = StepRelation::from_place(place, &self.tokens[self.range.start..*at], before);
                     before = Some((*at - self.range.start, relation));
                     names_room |= place.is_room;
-                    step.door = step.door.max(door(&place.name, relation));
+                    step.door = step.door.max(door_for(&place.name, relation));
                     if room_name(&place.name) == Some("stairs") {
-                        step.stairs = step.stairs.max(Stairs::Named);
+                        step.stairs = step.stairs.max(StepStairs::Named);
                     }
                     if let (Some(side @ (Side::Left | Side::Right)), None) = (place.side, step.side) {
                         step.side = Some((relation, side));
                     }
                     let event = self.first_event + number;
-                    step.places.push(Told { event, relation });
+                    step.places.push(StepMention { event, relation });
                 }
                 _ => {}
             }
@@ -221,28 +225,28 @@ impl Builder<'_> {
     }
 
     /// Its tokens that are not denied.
-    fn told(&self) -> impl Iterator<Item = usize> {
+    fn undenied_tokens(&self) -> impl Iterator<Item = usize> {
         self.range.clone().filter(|at| !self.denied[*at])
     }
 
-    fn has(&self, list: &[&str]) -> bool {
-        self.told().any(|at| list.contains(&self.tokens[at].word.as_str()))
+    fn has_word(&self, list: &[&str]) -> bool {
+        self.undenied_tokens().any(|at| list.contains(&self.tokens[at].word.as_str()))
     }
 
-    fn stairs(&self) -> Stairs {
-        match self.has(&STAIR_WORDS) {
-            false => Stairs::None,
-            true if self.has(&BOTTOMS) => Stairs::Bottom,
-            true if self.has(&TOPS) => Stairs::Top,
-            true => Stairs::Named,
+    fn step_stairs(&self) -> StepStairs {
+        match self.has_word(&STAIR_WORDS) {
+            false => StepStairs::None,
+            true if self.has_word(&BOTTOMS) => StepStairs::Bottom,
+            true if self.has_word(&TOPS) => StepStairs::Top,
+            true => StepStairs::Named,
         }
     }
 
     /// A side that the step names in any way.
-    fn side(&self) -> Option<Side> {
+    fn named_side(&self) -> Option<Side> {
         let words = &self.tokens[self.range.clone()];
         let right_before = |at: usize| words.get(at + 1).is_some_and(|next| matches!(&*next.word, "before" | "after"));
-        self.told().find_map(|at| match self.tokens[at].word.as_str() {
+        self.undenied_tokens().find_map(|at| match self.tokens[at].word.as_str() {
             "left" => Some(Side::Left),
             "right" if !right_before(at - self.range.start) => Some(Side::Right),
             _ => None,
@@ -251,25 +255,25 @@ impl Builder<'_> {
 }
 
 /// How a step that names this place relates to doors.
-fn door(name: &str, relation: Relation) -> Door {
+fn door_for(name: &str, relation: StepRelation) -> StepDoor {
     let is_door = name.split(' ').any(|word| DOOR_WORDS.contains(&word)) || name == "room";
     match relation {
-        Relation::Through | Relation::OutOf | Relation::Into if is_door => Door::Through,
-        Relation::OutOf | Relation::Into => Door::Implied,
-        _ if is_door => Door::Named,
-        _ => Door::None,
+        StepRelation::Through | StepRelation::OutOf | StepRelation::Into if is_door => StepDoor::Through,
+        StepRelation::OutOf | StepRelation::Into => StepDoor::Implied,
+        _ if is_door => StepDoor::Named,
+        _ => StepDoor::None,
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::reading::read;
+    use crate::reading::read_instruction;
     use std::collections::BTreeSet;
 
-    fn told(text: &str) -> Vec<(String, Step)> {
-        let reading = read(text, &BTreeSet::new());
-        steps(text, &reading).into_iter().map(|step| (text[step.span[0]..step.span[1]].to_owned(), step)).collect()
+    fn told(text: &str) -> Vec<(String, InstructionStep)> {
+        let reading = read_instruction(text, &BTreeSet::new());
+        read_steps(text, &reading).into_iter().map(|step| (text[step.span[0]..step.span[1]].to_owned(), step)).collect()
     }
 
     #[test]
@@ -301,17 +305,17 @@ mod tests {
     #[test]
     fn steps_have_doors_stairs_and_sides() {
         let step = |text: &str| told(text).remove(0).1;
-        assert_eq!(step("Go through the door on your left.").door, Door::Through);
+        assert_eq!(step("Go through the door on your left.").door, StepDoor::Through);
         assert_eq!(step("Go through the door on your left.").side.map(|side| side.1), Some(Side::Left));
-        assert_eq!(step("Leave the kitchen.").door, Door::Implied);
-        assert_eq!(step("Walk to the sofa.").door, Door::None);
-        assert_eq!(step("Wait at the bottom of the stairs.").stairs, Stairs::Bottom);
-        assert_eq!(step("Stop at the top of the staircase.").stairs, Stairs::Top);
+        assert_eq!(step("Leave the kitchen.").door, StepDoor::Implied);
+        assert_eq!(step("Walk to the sofa.").door, StepDoor::None);
+        assert_eq!(step("Wait at the bottom of the stairs.").stairs, StepStairs::Bottom);
+        assert_eq!(step("Stop at the top of the staircase.").stairs, StepStairs::Top);
         assert!(step("Wait outside.").is_outdoors && step("Wait outside.").stops);
         assert_eq!(step("Stop right before the sofa.").side, None);
         assert_eq!(step("Go to the attic on level 3.").floor.and_then(|floor| floor.number), Some(3));
         assert_eq!(step("Go down from level 3.").floor, None);
-        assert_eq!(step("Go to the bedroom upstairs.").storey, Some(Climb::Up));
+        assert_eq!(step("Go to the bedroom upstairs.").storey, Some(ClimbDirection::Up));
     }
 
     #[test]
@@ -321,12 +325,12 @@ mod tests {
         assert_eq!((denied.turn, denied.side), (None, None));
         assert_eq!(denied.marks, Vec::<usize>::new());
         assert!(step("Wait.").marks.len() == 1 && step("Do not wait.").marks.is_empty());
-        assert_eq!(step("Never go down the stairs.").stairs, Stairs::None);
-        assert_eq!(step("Do not go straight on to the end of the stairs.").stairs, Stairs::None);
+        assert_eq!(step("Never go down the stairs.").stairs, StepStairs::None);
+        assert_eq!(step("Do not go straight on to the end of the stairs.").stairs, StepStairs::None);
         let denied = step("Don't go slightly forward to the end outside.");
         assert!(!(denied.is_straight || denied.is_slight || denied.at_end || denied.is_outdoors));
-        assert_eq!(step("Do not leave the kitchen.").door, Door::None);
+        assert_eq!(step("Do not leave the kitchen.").door, StepDoor::None);
         let both = step("Do not turn right but go down the stairs.");
-        assert_eq!((both.turn, both.stairs, both.climb), (None, Stairs::Named, Some(Climb::Down)));
+        assert_eq!((both.turn, both.stairs, both.climb), (None, StepStairs::Named, Some(ClimbDirection::Down)));
     }
 }

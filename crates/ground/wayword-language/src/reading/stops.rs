@@ -1,77 +1,82 @@
 //! Finds where a walk stops, and which places the walker faces there.
 
-use super::{Event, What, tokens::Tokens, vocabulary as v};
+use super::{EventContent, TextEvent, tokens::TokenSlice, vocabulary as v};
 use crate::lexicon::{is_room, is_thing, normal_word};
 
 /// The commands of a text to stop, and its words about facing something.
-pub(super) fn stops_and_facing(tokens: Tokens<'_>, clauses: &[usize]) -> Vec<Event> {
-    let text = Text { tokens };
-    let event = |what: What, at: usize| Event { what, span: tokens.span(at, at), clause: clauses[at], denied: false };
+pub(super) fn stops_and_facing(tokens: TokenSlice<'_>, clauses: &[usize]) -> Vec<TextEvent> {
+    let text = StopText { tokens };
+    let event = |what: EventContent, at: usize| TextEvent {
+        what,
+        span: tokens.span_of(at, at),
+        clause: clauses[at],
+        denied: false,
+    };
     let told = |at: usize| {
-        let stops = text.stops(at).then(|| event(What::Stop, at));
-        stops.or_else(|| text.faces(at).map(|away| event(What::Face { away }, at)))
+        let stops = text.stops_at(at).then(|| event(EventContent::Stop, at));
+        stops.or_else(|| text.faces_at(at).map(|away| event(EventContent::Face { away }, at)))
     };
     (0..tokens.len()).filter_map(told).collect()
 }
 
-struct Text<'a> {
-    tokens: Tokens<'a>,
+struct StopText<'a> {
+    tokens: TokenSlice<'a>,
 }
 
-impl<'a> Text<'a> {
-    fn word(&self, at: usize) -> &'a str {
-        self.tokens.word(at)
+impl<'a> StopText<'a> {
+    fn word_at(&self, at: usize) -> &'a str {
+        self.tokens.word_at(at)
     }
 
-    fn before(&self, at: usize) -> &'a str {
-        self.tokens.before(at)
+    fn word_before(&self, at: usize) -> &'a str {
+        self.tokens.word_before(at)
     }
 
     /// Whether a token ends the walk.
-    fn stops(&self, at: usize) -> bool {
-        let next = self.word(at + 1);
+    fn stops_at(&self, at: usize) -> bool {
+        let next = self.word_at(at + 1);
         let here = || !self.tokens.is_word(at + 1) || v::AFTER_STOP.contains(&next);
-        match self.word(at) {
+        match self.word_at(at) {
             "waiting" | "stop" if matches!(next, "sign" | "room" | "area") => false,
             // "The wait", but "make a stop".
-            word if v::STOPPING.contains(&word) => !matches!(self.before(at), "the" | "non" | "t" | "rest"),
+            word if v::STOPPING.contains(&word) => !matches!(self.word_before(at), "the" | "non" | "t" | "rest"),
             "end" | "finish" | "rest" | "stand" => self.is_commanded(at) && here(),
             "stay" | "remain" => self.is_commanded(at) && (here() || self.names_this_spot(at + 1)),
-            "standing" => matches!(self.before(at), "be" | "are" | "re"),
+            "standing" => matches!(self.word_before(at), "be" | "are" | "re"),
             "done" | "finished" | "arrived" => {
-                matches!(self.before(at), "are" | "you're" | "you’re" | "be" | "have" | "you've" | "you’ve")
+                matches!(self.word_before(at), "are" | "you're" | "you’re" | "be" | "have" | "you've" | "you’ve")
                     && here()
                     && !self.tells_when(at)
             }
-            "destination" => matches!(self.before(at), "your" | "the") && !self.tells_when(at),
+            "destination" => matches!(self.word_before(at), "your" | "the") && !self.tells_when(at),
             _ => false,
         }
     }
 
     /// "Stay where you are".
     fn names_this_spot(&self, at: usize) -> bool {
-        matches!((self.word(at), self.word(at + 1), self.word(at + 2)), ("where", "you", "are"))
+        matches!((self.word_at(at), self.word_at(at + 1), self.word_at(at + 2)), ("where", "you", "are"))
     }
 
     /// Whether a verb begins its clause, or follows words of command.
     fn is_commanded(&self, at: usize) -> bool {
-        at == 0 || !self.tokens.is_word(at - 1) || v::ADVERBS.contains(&self.before(at))
+        at == 0 || !self.tokens.is_word(at - 1) || v::ADVERBS.contains(&self.word_before(at))
     }
 
     /// "When you are done with that": the walk goes on.
     fn tells_when(&self, at: usize) -> bool {
         let mut before = (at.saturating_sub(5)..at).rev().take_while(|at| self.tokens.is_word(*at));
-        before.any(|at| matches!(self.word(at), "when" | "once" | "after" | "if" | "until"))
+        before.any(|at| matches!(self.word_at(at), "when" | "once" | "after" | "if" | "until"))
     }
 
     /// Whether the walker looks at the places that follow (`false`) or away from them (`true`).
-    fn faces(&self, at: usize) -> Option<bool> {
-        let next = self.word(at + 1);
-        match self.word(at) {
-            "back" | "backs" if next == "to" && matches!(self.before(at), "your" | "my" | "the") => Some(true),
+    fn faces_at(&self, at: usize) -> Option<bool> {
+        let next = self.word_at(at + 1);
+        match self.word_at(at) {
+            "back" | "backs" if next == "to" && matches!(self.word_before(at), "your" | "my" | "the") => Some(true),
             "facing" if next == "away" => Some(true),
             // "An about-face" is a turn.
-            "face" if self.before(at) == "about" => None,
+            "face" if self.word_before(at) == "about" => None,
             "face" | "facing" | "faced" if !self.names_direction(at + 1) && self.is_walker(at) => Some(next == "away"),
             "look" | "looking" if matches!(next, "at" | "toward" | "towards" | "into") && self.is_walker(at) => {
                 Some(false)
@@ -82,19 +87,19 @@ impl<'a> Text<'a> {
 
     /// "Face left", "facing the opposite direction": no place.
     fn names_direction(&self, from: usize) -> bool {
-        let at = from + usize::from(matches!(self.word(from), "the" | "to" | "your"));
-        let at = at + usize::from(matches!(self.word(at), "the" | "your"));
-        matches!(self.word(at), "left" | "right" | "opposite" | "other" | "direction" | "around" | "straight")
-            && matches!(self.word(at + 1), "" | "direction" | "way" | "and" | "so" | "then" | "." | ",")
+        let at = from + usize::from(matches!(self.word_at(from), "the" | "to" | "your"));
+        let at = at + usize::from(matches!(self.word_at(at), "the" | "your"));
+        matches!(self.word_at(at), "left" | "right" | "opposite" | "other" | "direction" | "around" | "straight")
+            && matches!(self.word_at(at + 1), "" | "direction" | "way" | "and" | "so" | "then" | "." | ",")
     }
 
     /// Whether it is the walker who faces something, and not a thing: "stop facing the lamp", but not "the chair facing
     /// the lamp", "on the face of the clock".
     fn is_walker(&self, at: usize) -> bool {
-        let before = self.before(at);
+        let before = self.word_before(at);
         let name = normal_word(before);
         let is_noun = is_thing(&name) || is_room(&name) || v::ABSTRACT.contains(&name.as_str());
-        let is_article = v::DETERMINERS.contains(&before) && self.word(at) == "face";
+        let is_article = v::DETERMINERS.contains(&before) && self.word_at(at) == "face";
         // "Turn left facing the lamp": a side is no thing.
         !self.tokens.is_word(at.wrapping_sub(1))
             || matches!(before, "left" | "right" | "straight" | "around" | "there" | "here")
@@ -104,12 +109,12 @@ impl<'a> Text<'a> {
 
 #[cfg(test)]
 mod tests {
-    use crate::reading::{What, read};
+    use crate::reading::{EventContent, read_instruction};
     use std::collections::BTreeSet;
 
-    fn told(text: &str) -> Vec<What> {
-        let events = read(text, &BTreeSet::new()).events.into_iter().map(|event| event.what);
-        events.filter(|what| matches!(what, What::Stop | What::Face { .. })).collect()
+    fn told(text: &str) -> Vec<EventContent> {
+        let events = read_instruction(text, &BTreeSet::new()).events.into_iter().map(|event| event.what);
+        events.filter(|what| matches!(what, EventContent::Stop | EventContent::Face { .. })).collect()
     }
 
     #[test]
@@ -127,7 +132,7 @@ mod tests {
             "Stay where you are.",
             "The sofa is your destination.",
         ] {
-            assert_eq!(told(text), [What::Stop], "{text}");
+            assert_eq!(told(text), [EventContent::Stop], "{text}");
         }
         for text in [
             "Walk to the end of the hall.",
@@ -144,7 +149,7 @@ mod tests {
 
     #[test]
     fn a_stop_can_be_denied() {
-        let reading = read("Do not stop at the sofa.", &BTreeSet::new());
+        let reading = read_instruction("Do not stop at the sofa.", &BTreeSet::new());
         assert!(reading.events.iter().all(|event| event.denied));
     }
 
@@ -160,7 +165,7 @@ mod tests {
             ("Start with your back to the bed.", true),
             ("Begin facing away from the bed.", true),
         ] {
-            assert_eq!(told(text), [What::Face { away }], "{text}");
+            assert_eq!(told(text), [EventContent::Face { away }], "{text}");
         }
         for text in [
             "Walk past the chair facing the window.",

@@ -1,33 +1,33 @@
 //! Finds the closing task: "and water the plant on the windowsill" at the end of an instruction.
 
-use super::{Event, Task, What, tokens::Tokens, vocabulary as v};
+use super::{ClosingTask, EventContent, TextEvent, tokens::TokenSlice, vocabulary as v};
 use crate::lexicon::{is_room, is_thing, normal_word};
 
 /// The task that ends a text: the last clause with a verb, if that verb is not one of walking.
-pub(super) fn closing_task(tokens: Tokens<'_>, events: &[Event]) -> Option<Task> {
+pub(super) fn closing_task(tokens: TokenSlice<'_>, events: &[TextEvent]) -> Option<ClosingTask> {
     let behind_adverbs = behind_adverbs(tokens);
     let mut starts = (0..tokens.len())
         .rev()
-        .filter(|at| *at == 0 || !tokens.is_word(at - 1) || matches!(tokens.word(at - 1), "and" | "then"));
+        .filter(|at| *at == 0 || !tokens.is_word(at - 1) || matches!(tokens.word_at(at - 1), "and" | "then"));
     let at = starts.find_map(|at| verb_at(tokens, behind_adverbs[at]))?;
-    let verb = tokens.word(at).to_owned();
+    let verb = tokens.word_at(at).to_owned();
     if is_walking(tokens, at) {
         return None;
     }
     let object = events.iter().position(|event| {
-        event.span[0] > tokens.span(at, at)[0] && matches!(&event.what, What::Place(place) if place.is_thing)
+        event.span[0] > tokens.span_of(at, at)[0] && matches!(&event.what, EventContent::Place(place) if place.is_thing)
     });
-    Some(Task { verb, object })
+    Some(ClosingTask { verb, object })
 }
 
 /// For each token, the first one from there on that is not an adverb, because a verb follows the adverbs of its clause.
-pub(super) fn behind_adverbs(tokens: Tokens<'_>) -> Vec<usize> {
+pub(super) fn behind_adverbs(tokens: TokenSlice<'_>) -> Vec<usize> {
     tokens.ends_of_runs(|word| v::ADVERBS.contains(&word))
 }
 
 /// The token of a clause's verb, given the first token after its adverbs; `None` where the clause has no verb.
-pub(super) fn verb_at(tokens: Tokens<'_>, at: usize) -> Option<usize> {
-    let word = |at: usize| tokens.word(at);
+pub(super) fn verb_at(tokens: TokenSlice<'_>, at: usize) -> Option<usize> {
+    let word = |at: usize| tokens.word_at(at);
     let first = tokens.get(at).filter(|token| token.is_word())?.word.as_str();
     if v::WALKING.contains(&first) {
         return Some(at);
@@ -44,8 +44,8 @@ pub(super) fn verb_at(tokens: Tokens<'_>, at: usize) -> Option<usize> {
 }
 
 /// Whether a word that can name a thing is a verb here: "switch on the lamp", "vacuum the rug", "fan the fire".
-pub(super) fn is_done(tokens: Tokens<'_>, at: usize) -> bool {
-    let (word, next, before) = (tokens.word(at), tokens.word(at + 1), tokens.before(at));
+pub(super) fn is_done(tokens: TokenSlice<'_>, at: usize) -> bool {
+    let (word, next, before) = (tokens.word_at(at), tokens.word_at(at + 1), tokens.word_before(at));
     let begins = at == 0 || !tokens.is_word(at - 1);
     let joined = v::ADVERBS.contains(&before) || matches!(before, "and" | "or");
     let object = matches!(next, "the" | "a" | "an" | "your" | "my" | "our" | "all" | "any" | "some" | "me" | "both");
@@ -58,8 +58,8 @@ pub(super) fn is_done(tokens: Tokens<'_>, at: usize) -> bool {
 }
 
 /// Whether a verb is one of walking here: "take a left" is, "take the towel" is not.
-fn is_walking(tokens: Tokens<'_>, at: usize) -> bool {
-    let word = |at: usize| tokens.word(at);
+fn is_walking(tokens: TokenSlice<'_>, at: usize) -> bool {
+    let word = |at: usize| tokens.word_at(at);
     let turns = || {
         (at + 1..at + 5).map(word).any(|word| matches!(word, "left" | "right" | "stairs" | "door" | "steps" | "few"))
     };
@@ -84,12 +84,12 @@ fn is_walking(tokens: Tokens<'_>, at: usize) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use crate::reading::{What, read};
+    use crate::reading::{EventContent, read_instruction};
     use std::collections::BTreeSet;
 
     fn places(text: &str) -> Vec<String> {
-        let events = read(text, &BTreeSet::new()).events.into_iter();
-        let name = |what: What| if let What::Place(place) = what { Some(place.name) } else { None };
+        let events = read_instruction(text, &BTreeSet::new()).events.into_iter();
+        let name = |what: EventContent| if let EventContent::Place(place) = what { Some(place.name) } else { None };
         events.filter_map(|event| name(event.what)).collect()
     }
 

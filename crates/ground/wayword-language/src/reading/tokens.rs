@@ -3,14 +3,14 @@
 //! No reader goes over the same words again from every token, because a long text would then take the square of its
 //! length. The tokens before or after a run of words are found once for all tokens. `growth` counts the looks.
 
-use crate::text::Token;
+use crate::text::TextToken;
 
 /// The tokens of a text.
 #[derive(Clone, Copy)]
-pub(super) struct Tokens<'a>(&'a [Token]);
+pub(super) struct TokenSlice<'a>(&'a [TextToken]);
 
-impl<'a> Tokens<'a> {
-    pub(super) fn of(tokens: &'a [Token]) -> Self {
+impl<'a> TokenSlice<'a> {
+    pub(super) fn from_tokens(tokens: &'a [TextToken]) -> Self {
         Self(tokens)
     }
 
@@ -19,29 +19,29 @@ impl<'a> Tokens<'a> {
     }
 
     /// The token at an index; `None` after the end.
-    pub(super) fn get(self, at: usize) -> Option<&'a Token> {
+    pub(super) fn get(self, at: usize) -> Option<&'a TextToken> {
         #[cfg(test)]
-        super::growth::look();
+        super::growth::count_look();
         self.0.get(at)
     }
 
     /// The word or mark at an index; empty after the end.
-    pub(super) fn word(self, at: usize) -> &'a str {
+    pub(super) fn word_at(self, at: usize) -> &'a str {
         self.get(at).map_or("", |token| token.word.as_str())
     }
 
     /// The word or mark right before an index; empty before the first.
-    pub(super) fn before(self, at: usize) -> &'a str {
-        at.checked_sub(1).map_or("", |before| self.word(before))
+    pub(super) fn word_before(self, at: usize) -> &'a str {
+        at.checked_sub(1).map_or("", |before| self.word_at(before))
     }
 
     /// Whether the token at an index is a word, and not a mark.
     pub(super) fn is_word(self, at: usize) -> bool {
-        self.get(at).is_some_and(Token::is_word)
+        self.get(at).is_some_and(TextToken::is_word)
     }
 
     /// The byte range from one token to another.
-    pub(super) fn span(self, first: usize, last: usize) -> [usize; 2] {
+    pub(super) fn span_of(self, first: usize, last: usize) -> [usize; 2] {
         [self.0[first].span[0], self.0[last].span[1]]
     }
 
@@ -55,7 +55,7 @@ impl<'a> Tokens<'a> {
     pub(super) fn runs_before(self, may: impl Fn(&str) -> bool) -> Vec<usize> {
         let mut from = 0;
         let start = |at: usize| {
-            if at > 0 && !may(self.word(at - 1)) {
+            if at > 0 && !may(self.word_at(at - 1)) {
                 from = at;
             }
             from
@@ -67,7 +67,7 @@ impl<'a> Tokens<'a> {
     pub(super) fn ends_of_runs(self, may: impl Fn(&str) -> bool) -> Vec<usize> {
         let mut ends = vec![self.len(); self.len()];
         for at in (0..self.len()).rev() {
-            ends[at] = if may(self.word(at)) { ends.get(at + 1).copied().unwrap_or(self.len()) } else { at };
+            ends[at] = if may(self.word_at(at)) { ends.get(at + 1).copied().unwrap_or(self.len()) } else { at };
         }
         ends
     }

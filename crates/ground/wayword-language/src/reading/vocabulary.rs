@@ -8,7 +8,7 @@ crate::data::lists! {
 
 /// The number of a storey, from an ordinal or a numeral.
 pub(super) fn floor_number(word: &str) -> Option<u32> {
-    const NUMBERS: [[&str; 2]; 12] = [
+    const STOREY_NUMBERS: [[&str; 2]; 12] = [
         ["one", "first"],
         ["two", "second"],
         ["three", "third"],
@@ -26,7 +26,7 @@ pub(super) fn floor_number(word: &str) -> Option<u32> {
         return Some(1);
     }
     let digits = ["st", "nd", "rd", "th"].iter().find_map(|end| word.strip_suffix(end)).unwrap_or(word);
-    let in_words = || NUMBERS.iter().zip(1..).find(|(words, _)| words.contains(&word)).map(|(_, number)| number);
+    let in_words = || STOREY_NUMBERS.iter().zip(1..).find(|(words, _)| words.contains(&word)).map(|(_, number)| number);
     digits.parse().ok().filter(|number| (1..1000).contains(number)).or_else(in_words)
 }
 

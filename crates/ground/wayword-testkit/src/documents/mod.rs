@@ -11,7 +11,7 @@ use std::{
 
 /// A command of one of this repository's programs, in a document.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Documented {
+pub struct DocumentedCommand {
     /// The document, relative to the repository's root, and the line on which the command begins, from 1.
     pub place: String,
     /// The program: `wayword`, `wayword-measure` or `wayword-trials`, however the document starts it.
@@ -25,15 +25,15 @@ pub struct Documented {
 }
 
 /// Programs of this repository that documents describe.
-const PROGRAMS: [&str; 3] = ["wayword", "wayword-measure", "wayword-trials"];
+const DOCUMENTED_PROGRAMS: [&str; 3] = ["wayword", "wayword-measure", "wayword-trials"];
 /// The names of fenced blocks of shell. Blocks without a name are shell as well.
-const SHELL: [&str; 5] = ["", "sh", "bash", "console", "shell"];
+const SHELL_FENCE_NAMES: [&str; 5] = ["", "sh", "bash", "console", "shell"];
 
 /// The commands of `README.md` and of `docs/*.md`, the README's first, then document by document.
 ///
 /// # Errors
 /// When a document cannot be read.
-pub fn commands(repository: &Path) -> io::Result<Vec<Documented>> {
+pub fn documented_commands(repository: &Path) -> io::Result<Vec<DocumentedCommand>> {
     let docs =
         fs::read_dir(repository.join("docs"))?.map(|entry| Ok(entry?.path())).collect::<io::Result<Vec<PathBuf>>>()?;
     let mut documents: Vec<PathBuf> =
@@ -50,13 +50,13 @@ pub fn commands(repository: &Path) -> io::Result<Vec<Documented>> {
 
 /// The commands of one document, in its order. `name` is the document's name in their places.
 #[must_use]
-pub fn commands_of(name: &str, markdown: &str) -> Vec<Documented> {
+pub fn commands_of(name: &str, markdown: &str) -> Vec<DocumentedCommand> {
     let mut found = Vec::new();
-    for Piece { line, text, is_within_text } in pieces(markdown) {
-        for command in shell::commands(&text) {
+    for MarkdownSnippet { line, text, is_within_text } in find_snippets(markdown) {
+        for command in shell::parse_script(&text) {
             if let Some((program, args)) = program_of(&command.words) {
                 let place = format!("{name}:{}", line + command.line);
-                found.push(Documented { place, program, variables: command.variables, args, is_within_text });
+                found.push(DocumentedCommand { place, program, variables: command.variables, args, is_within_text });
             }
         }
     }
@@ -66,7 +66,7 @@ pub fn commands_of(name: &str, markdown: &str) -> Vec<Documented> {
 /// Which of the programs a command starts, directly or with `cargo run`, and its arguments.
 fn program_of(words: &[String]) -> Option<(String, Vec<String>)> {
     let (first, rest) = words.split_first()?;
-    if PROGRAMS.contains(&first.as_str()) {
+    if DOCUMENTED_PROGRAMS.contains(&first.as_str()) {
         return Some((first.clone(), rest.to_vec()));
     }
     let is_cargo_run =
@@ -78,23 +78,24 @@ fn program_of(words: &[String]) -> Option<(String, Vec<String>)> {
 }
 
 /// A part of a document that may contain shell commands: the body of a fenced block, or one code span.
-struct Piece {
+struct MarkdownSnippet {
     /// Line on which it begins, from 1.
     line: usize,
     text: String,
     is_within_text: bool,
 }
 
-fn pieces(markdown: &str) -> Vec<Piece> {
+fn find_snippets(markdown: &str) -> Vec<MarkdownSnippet> {
     let mut pieces = Vec::new();
-    let mut fence: Option<(&str, Piece)> = None;
-    let mut paragraph = Piece { line: 1, text: String::new(), is_within_text: true };
+    let mut fence: Option<(&str, MarkdownSnippet)> = None;
+    let mut paragraph = MarkdownSnippet { line: 1, text: String::new(), is_within_text: true };
     for (number, line) in (1..).zip(markdown.lines()) {
         let marks = line.trim_start();
         match &mut fence {
             Some((_, block)) if marks.starts_with("```") => {
                 block.text.push('\n');
-                pieces.extend(fence.take().filter(|(name, _)| SHELL.contains(name)).map(|(_, block)| block));
+                pieces
+                    .extend(fence.take().filter(|(name, _)| SHELL_FENCE_NAMES.contains(name)).map(|(_, block)| block));
             }
             Some((name, block)) => {
                 // In a console transcript, lines after `$ ` are commands. The other lines are output.
@@ -103,9 +104,9 @@ fn pieces(markdown: &str) -> Vec<Piece> {
                 block.text.push('\n');
             }
             None if marks.starts_with("```") || marks.is_empty() => {
-                let next = Piece { line: number + 1, text: String::new(), is_within_text: true };
-                pieces.extend(spans(&std::mem::replace(&mut paragraph, next)));
-                let block = Piece { line: number + 1, text: String::new(), is_within_text: false };
+                let next = MarkdownSnippet { line: number + 1, text: String::new(), is_within_text: true };
+                pieces.extend(code_spans(&std::mem::replace(&mut paragraph, next)));
+                let block = MarkdownSnippet { line: number + 1, text: String::new(), is_within_text: false };
                 fence = marks.strip_prefix("```").map(|name| (name.trim(), block));
             }
             None => {
@@ -114,17 +115,21 @@ fn pieces(markdown: &str) -> Vec<Piece> {
             }
         }
     }
-    pieces.extend(spans(&paragraph));
+    pieces.extend(code_spans(&paragraph));
     pieces
 }
 
 /// The code spans within a paragraph. A span may continue in the next line.
-fn spans(paragraph: &Piece) -> Vec<Piece> {
+fn code_spans(paragraph: &MarkdownSnippet) -> Vec<MarkdownSnippet> {
     let mut line = paragraph.line;
     let mut found = Vec::new();
     for (number, text) in paragraph.text.split('`').enumerate() {
         if number % 2 == 1 {
-            found.push(Piece { line, text: text.replace('\n', " ").replace("\\|", "|"), is_within_text: true });
+            found.push(MarkdownSnippet {
+                line,
+                text: text.replace('\n', " ").replace("\\|", "|"),
+                is_within_text: true,
+            });
         }
         line += text.matches('\n').count();
     }

@@ -3,7 +3,7 @@
 
 /// One simple command in the sense of a shell: a program with its arguments, between `;`, `|`, `&&` and line ends.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Simple {
+pub(super) struct ShellCommand {
     /// Line of the text, from 0, on which it begins.
     pub(super) line: usize,
     /// Variables that are set for this command only.
@@ -13,18 +13,18 @@ pub(super) struct Simple {
 }
 
 /// The simple commands of a script, in order. Variables (`$NAME`) stay as they are written.
-pub(super) fn commands(script: &str) -> Vec<Simple> {
-    let mut reader = Reader::default();
+pub(super) fn parse_script(script: &str) -> Vec<ShellCommand> {
+    let mut reader = ShellScriptReader::default();
     let mut chars = script.chars().peekable();
     while let Some(c) = chars.next() {
         match (reader.quote, c) {
             (None, '\\') => match chars.next() {
                 Some('\n') => reader.line += 1,
-                Some(other) => reader.add(other),
+                Some(other) => reader.add_char(other),
                 None => {}
             },
             (Some('"'), '\\') if matches!(chars.peek(), Some('"' | '\\' | '$')) => {
-                reader.add(chars.next().unwrap_or('\\'));
+                reader.add_char(chars.next().unwrap_or('\\'));
             }
             (None, '\'' | '"') => {
                 reader.quote = Some(c);
@@ -33,7 +33,7 @@ pub(super) fn commands(script: &str) -> Vec<Simple> {
             (Some(open), c) if open == c => reader.quote = None,
             (None, '#') if reader.word.is_none() => while chars.next_if(|c| *c != '\n').is_some() {},
             (None, '>' | '<') => {
-                reader.redirect();
+                reader.start_redirection();
                 // `2>&1` is one redirection: its `&` does not end a command.
                 chars.next_if_eq(&'&');
             }
@@ -44,7 +44,7 @@ pub(super) fn commands(script: &str) -> Vec<Simple> {
             (None, c) if c.is_whitespace() => reader.end_word(),
             (_, c) => {
                 reader.line += usize::from(c == '\n');
-                reader.add(c);
+                reader.add_char(c);
             }
         }
     }
@@ -53,7 +53,7 @@ pub(super) fn commands(script: &str) -> Vec<Simple> {
 }
 
 #[derive(Default)]
-struct Reader {
+struct ShellScriptReader {
     line: usize,
     quote: Option<char>,
     word: Option<String>,
@@ -61,17 +61,17 @@ struct Reader {
     is_redirected: bool,
     now: Vec<String>,
     begun: Option<usize>,
-    done: Vec<Simple>,
+    done: Vec<ShellCommand>,
 }
 
-impl Reader {
-    fn add(&mut self, c: char) {
+impl ShellScriptReader {
+    fn add_char(&mut self, c: char) {
         self.begun.get_or_insert(self.line);
         self.word.get_or_insert_default().push(c);
     }
 
     /// `2>` and `>`: the number of a stream is not an argument.
-    fn redirect(&mut self) {
+    fn start_redirection(&mut self) {
         if self.word.as_ref().is_some_and(|word| word.chars().all(|c| c.is_ascii_digit())) {
             self.word = None;
         }
@@ -92,16 +92,16 @@ impl Reader {
         self.is_redirected = false;
         let line = self.begun.take().unwrap_or(self.line);
         let mut words = std::mem::take(&mut self.now);
-        let set = words.iter().take_while(|word| assignment(word).is_some()).count();
-        let variables = words.drain(..set).filter_map(|word| assignment(&word)).collect();
+        let set = words.iter().take_while(|word| parse_assignment(word).is_some()).count();
+        let variables = words.drain(..set).filter_map(|word| parse_assignment(&word)).collect();
         if !words.is_empty() {
-            self.done.push(Simple { line, variables, words });
+            self.done.push(ShellCommand { line, variables, words });
         }
     }
 }
 
 /// `NAME=value`.
-fn assignment(word: &str) -> Option<(String, String)> {
+fn parse_assignment(word: &str) -> Option<(String, String)> {
     let (name, value) = word.split_once('=')?;
     let is_name = !name.is_empty() && name.chars().all(|c| c.is_ascii_uppercase() || c.is_ascii_digit() || c == '_');
     is_name.then(|| (name.to_owned(), value.to_owned()))
@@ -112,7 +112,7 @@ mod tests {
     use super::*;
 
     fn words(script: &str) -> Vec<Vec<String>> {
-        commands(script).into_iter().map(|command| command.words).collect()
+        parse_script(script).into_iter().map(|command| command.words).collect()
     }
 
     #[test]
@@ -123,7 +123,7 @@ mod tests {
 
     #[test]
     fn a_line_goes_on_behind_a_backslash_and_ends_a_command_without() {
-        let found = commands("# a comment\nfirst --one \\\n    --two\nsecond\n");
+        let found = parse_script("# a comment\nfirst --one \\\n    --two\nsecond\n");
         assert_eq!(found.iter().map(|one| one.words.join(" ")).collect::<Vec<_>>(), ["first --one --two", "second"]);
         assert_eq!(found.iter().map(|one| one.line).collect::<Vec<_>>(), [1, 3]);
     }
@@ -138,12 +138,12 @@ mod tests {
 
     #[test]
     fn commands_separate_variables_from_words() {
-        let found = commands("OFFLINE=1 NAME='x y' run --at=2");
+        let found = parse_script("OFFLINE=1 NAME='x y' run --at=2");
         assert_eq!(found[0].variables, [("OFFLINE".into(), "1".into()), ("NAME".into(), "x y".into())]);
         assert_eq!(found[0].words, ["run", "--at=2"]);
         assert_eq!(
-            commands("export KEY=..."),
-            [Simple { line: 0, variables: vec![], words: vec!["export".into(), "KEY=...".into()] }]
+            parse_script("export KEY=..."),
+            [ShellCommand { line: 0, variables: vec![], words: vec!["export".into(), "KEY=...".into()] }]
         );
     }
 }

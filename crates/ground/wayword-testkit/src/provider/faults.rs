@@ -6,7 +6,7 @@ use std::time::Duration;
 
 /// What can go wrong with one request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Fault {
+pub enum ServiceFault {
     /// 429 although the client kept to the rate.
     TooMany(RetryAfter),
     /// 500.
@@ -21,7 +21,7 @@ pub enum Fault {
     Reset,
     /// The connection is closed before any byte of a response.
     Closed,
-    /// The body comes a byte at a time, with [`Faults::trickle`] between two bytes.
+    /// The body comes a byte at a time, with [`FaultSchedule::send_trickle`] between two bytes.
     Trickle,
     /// Half of the JSON, with a `content-length` that matches the half, so that HTTP looks complete.
     Truncated,
@@ -49,20 +49,20 @@ pub enum Fault {
 /// let in before. So the same requests get the same faults in every run, in any order, and a repeated request may
 /// succeed.
 #[derive(Debug, Clone)]
-pub struct Faults {
-    shares: Vec<(Fault, f64)>,
-    first: Vec<Option<Fault>>,
+pub struct FaultSchedule {
+    shares: Vec<(ServiceFault, f64)>,
+    first: Vec<Option<ServiceFault>>,
     /// After this number of requests was let in, the key is refused (401).
     pub key_refused_after: Option<u64>,
     /// After this number of requests was let in, the account is empty.
     pub quota_after: Option<u64>,
-    /// The wait that [`Fault::TooMany`] asks for. Forms in whole seconds round it up.
+    /// The wait that [`ServiceFault::TooMany`] asks for. Forms in whole seconds round it up.
     pub wait: Duration,
-    /// The time between two bytes of [`Fault::Trickle`].
+    /// The time between two bytes of [`ServiceFault::Trickle`].
     pub trickle: Duration,
 }
 
-impl Default for Faults {
+impl Default for FaultSchedule {
     fn default() -> Self {
         Self {
             shares: Vec::new(),
@@ -76,44 +76,44 @@ impl Default for Faults {
 }
 
 /// The faults after which the same request may succeed, without 429 in its forms.
-const PASSING: [Fault; 12] = [
-    Fault::Server,
-    Fault::Gateway,
-    Fault::Unavailable,
-    Fault::Overloaded,
-    Fault::Reset,
-    Fault::Closed,
-    Fault::Trickle,
-    Fault::Truncated,
-    Fault::NoChoices,
-    Fault::ErrorInOk,
-    Fault::WrongType,
-    Fault::EchoesKey,
+const PASSING_FAULTS: [ServiceFault; 12] = [
+    ServiceFault::Server,
+    ServiceFault::Gateway,
+    ServiceFault::Unavailable,
+    ServiceFault::Overloaded,
+    ServiceFault::Reset,
+    ServiceFault::Closed,
+    ServiceFault::Trickle,
+    ServiceFault::Truncated,
+    ServiceFault::NoChoices,
+    ServiceFault::ErrorInOk,
+    ServiceFault::WrongType,
+    ServiceFault::EchoesKey,
 ];
 
-impl Faults {
+impl FaultSchedule {
     /// All faults after which the same request may succeed, equally often, together at `share` (0 to 1) of the
     /// requests. There are thirteen: 500, 502, 503, 529, reset, closed, trickle, truncated, no choices, error under 200, wrong
     /// type, echoed key, and 429. The forms of 429 divide its part among themselves.
     #[must_use]
     pub fn storm(share: f64) -> Self {
-        let each = share / (PASSING.len() + 1) as f64;
+        let each = share / (PASSING_FAULTS.len() + 1) as f64;
         let each_form = each / RetryAfter::ALL.len() as f64;
-        let many = RetryAfter::ALL.iter().map(|form| (Fault::TooMany(*form), each_form));
-        let shares = PASSING.iter().map(|fault| (*fault, each)).chain(many).collect();
+        let many = RetryAfter::ALL.iter().map(|form| (ServiceFault::TooMany(*form), each_form));
+        let shares = PASSING_FAULTS.iter().map(|fault| (*fault, each)).chain(many).collect();
         Self { shares, ..Self::default() }
     }
 
     /// The same with one more fault, at a share (0 to 1) of all requests.
     #[must_use]
-    pub fn with(mut self, fault: Fault, share: f64) -> Self {
+    pub fn with_fault(mut self, fault: ServiceFault, share: f64) -> Self {
         self.shares.push((fault, share));
         self
     }
 
     /// The same, but the first requests that are let in get these faults, in order.
     #[must_use]
-    pub fn first(mut self, faults: &[Option<Fault>]) -> Self {
+    pub fn with_first_faults(mut self, faults: &[Option<ServiceFault>]) -> Self {
         self.first = faults.to_vec();
         self
     }
@@ -125,12 +125,12 @@ impl Faults {
     }
 
     /// The fault of a request: `index` requests were let in before it, `nth` of them equal to it.
-    pub(super) fn of(&self, seed: u64, index: u64, request: u64, nth: u64) -> Option<Fault> {
+    pub(super) fn for_request(&self, seed: u64, index: u64, request: u64, nth: u64) -> Option<ServiceFault> {
         if let Some(scripted) = usize::try_from(index).ok().and_then(|index| self.first.get(index)) {
             return *scripted;
         }
         let purpose = ["fault", &format!("{request:016x}"), &nth.to_string()];
-        let mut left: f64 = wayword_core::rng(seed, &purpose).random();
+        let mut left: f64 = wayword_core::seeded_rng(seed, &purpose).random();
         self.shares.iter().find_map(|(fault, share)| {
             left -= share;
             (left < 0.0).then_some(*fault)
@@ -145,24 +145,24 @@ mod tests {
 
     #[test]
     fn faults_come_at_their_shares_and_the_same_each_time() {
-        let faults = Faults::storm(0.3).with(Fault::Filtered, 0.1);
-        let draw = || (0..20_000).map(|request| faults.of(7, 0, request, 0)).collect::<Vec<_>>();
+        let faults = FaultSchedule::storm(0.3).with_fault(ServiceFault::Filtered, 0.1);
+        let draw = || (0..20_000).map(|request| faults.for_request(7, 0, request, 0)).collect::<Vec<_>>();
         let drawn = draw();
         assert_eq!(drawn, draw());
-        let mut counts: BTreeMap<Option<Fault>, i32> = BTreeMap::new();
+        let mut counts: BTreeMap<Option<ServiceFault>, i32> = BTreeMap::new();
         drawn.iter().for_each(|fault| *counts.entry(*fault).or_default() += 1);
         assert!((counts[&None] - 12_000).abs() < 300, "{counts:?}");
-        assert!((counts[&Some(Fault::Filtered)] - 2_000).abs() < 200, "{counts:?}");
-        assert!((counts[&Some(Fault::Reset)] - 461).abs() < 100, "{counts:?}");
-        let many = RetryAfter::ALL.iter().map(|form| counts[&Some(Fault::TooMany(*form))]).sum::<i32>();
+        assert!((counts[&Some(ServiceFault::Filtered)] - 2_000).abs() < 200, "{counts:?}");
+        assert!((counts[&Some(ServiceFault::Reset)] - 461).abs() < 100, "{counts:?}");
+        let many = RetryAfter::ALL.iter().map(|form| counts[&Some(ServiceFault::TooMany(*form))]).sum::<i32>();
         assert!((many - 461).abs() < 100, "{counts:?}");
         assert!((faults.free_share() - 0.6).abs() < 1e-9);
     }
 
     #[test]
     fn a_request_that_is_repeated_gets_through() {
-        let faults = Faults::storm(0.5);
-        let attempts = |request| (0..64).position(|nth| faults.of(1, 0, request, nth).is_none());
+        let faults = FaultSchedule::storm(0.5);
+        let attempts = |request| (0..64).position(|nth| faults.for_request(1, 0, request, nth).is_none());
         let needed: Vec<usize> = (0..500).map(|request| attempts(request).unwrap()).collect();
         let mean = needed.iter().sum::<usize>() as f64 / 500.0;
         assert!((0.8..1.2).contains(&mean), "half fail, so one more attempt is needed on average, not {mean}");
@@ -170,7 +170,7 @@ mod tests {
 
     #[test]
     fn a_list_of_faults_comes_first() {
-        let faults = Faults::default().first(&[Some(Fault::Reset), None]);
-        assert_eq!([0, 1, 2].map(|index| faults.of(0, index, 9, 0)), [Some(Fault::Reset), None, None]);
+        let faults = FaultSchedule::default().with_first_faults(&[Some(ServiceFault::Reset), None]);
+        assert_eq!([0, 1, 2].map(|index| faults.for_request(0, index, 9, 0)), [Some(ServiceFault::Reset), None, None]);
     }
 }

@@ -8,7 +8,7 @@ use std::{
 
 /// A thing in a picture.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Thing {
+pub struct GalleryThing {
     /// Its name.
     pub name: String,
     /// The third of the picture that it is in: 0 left, 1 middle, 2 right.
@@ -19,26 +19,26 @@ pub struct Thing {
 
 /// The contents of one picture.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Scenery {
+pub struct PictureScenery {
     /// The room.
     pub room: Option<String>,
     /// Things, the nearest first.
-    pub things: Vec<Thing>,
+    pub things: Vec<GalleryThing>,
 }
 
 /// The contents of all pictures, by the picture's number. Clones share one gallery.
 #[derive(Debug, Clone, Default)]
-pub struct Gallery(Arc<Mutex<BTreeMap<u64, Scenery>>>);
+pub struct PictureGallery(Arc<Mutex<BTreeMap<u64, PictureScenery>>>);
 
-impl Gallery {
+impl PictureGallery {
     /// Adds a picture.
-    pub fn hang(&self, id: u64, scenery: Scenery) {
+    pub fn add_picture(&self, id: u64, scenery: PictureScenery) {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).insert(id, scenery);
     }
 
     /// The contents of a picture; `None` if it was not added.
     #[must_use]
-    pub fn scenery(&self, id: u64) -> Option<Scenery> {
+    pub fn find_scenery(&self, id: u64) -> Option<PictureScenery> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).get(&id).cloned()
     }
 }

@@ -1,15 +1,15 @@
 //! Counts of requests, answers and faults, with which tests check that a client repeats and bills what it should.
 
-use super::Fault;
+use super::ServiceFault;
 use std::collections::BTreeMap;
 
 /// The counts of a provider so far.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Log {
+pub struct ProviderLog {
     /// Requests that came, refused ones too.
     pub received: u64,
     /// Requests that were let in: neither their key nor the rate was a reason to refuse them.
-    /// `Faults::key_refused_after` and `Faults::quota_after` count these.
+    /// `FaultSchedule::key_refused_after` and `FaultSchedule::quota_after` count these.
     pub admitted: u64,
     /// Requests that got a whole answer. A real service would bill these.
     pub answered: u64,
@@ -22,7 +22,7 @@ pub struct Log {
     /// Requests that are malformed, or name an unknown model.
     pub unfit: u64,
     /// How often each fault was committed.
-    pub faults: BTreeMap<Fault, u64>,
+    pub faults: BTreeMap<ServiceFault, u64>,
     /// Most requests that were in work at the same time.
     pub most_at_once: u64,
     /// The length of the longest chain of requests in which each came after the one before had ended: how often a client
@@ -30,13 +30,13 @@ pub struct Log {
     /// that are sent together arrive within the latency.
     pub rounds: u64,
     /// Each distinct request (its dialect, model and body), by hash.
-    pub bodies: BTreeMap<u64, Body>,
+    pub bodies: BTreeMap<u64, RequestCounts>,
     pub(super) at_once: u64,
 }
 
 /// How often one request came, was let in and was answered.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Body {
+pub struct RequestCounts {
     /// Times that it came.
     pub received: u32,
     /// Times that it was let in.
@@ -45,7 +45,7 @@ pub struct Body {
     pub answered: u32,
 }
 
-impl Log {
+impl ProviderLog {
     /// Answers beyond the first to the same request, which had to be paid again.
     #[must_use]
     pub fn answered_again(&self) -> u64 {
@@ -65,7 +65,7 @@ impl Log {
     }
 
     /// Counts a request that came, and returns its round.
-    pub(super) fn receive(&mut self, request: u64) -> u64 {
+    pub(super) fn count_arrival(&mut self, request: u64) -> u64 {
         self.received += 1;
         self.at_once += 1;
         self.most_at_once = self.most_at_once.max(self.at_once);
@@ -74,13 +74,13 @@ impl Log {
     }
 
     /// Counts the end of a request of a round.
-    pub(super) fn finish(&mut self, round: u64) {
+    pub(super) fn finish_round(&mut self, round: u64) {
         self.at_once -= 1;
         self.rounds = self.rounds.max(round);
     }
 
     /// Counts a request that is let in. Returns how many were let in before it, and how many of them were equal to it.
-    pub(super) fn admit(&mut self, request: u64) -> (u64, u64) {
+    pub(super) fn count_admission(&mut self, request: u64) -> (u64, u64) {
         let body = self.bodies.entry(request).or_default();
         let before = (self.admitted, u64::from(body.admitted));
         self.admitted += 1;
@@ -88,7 +88,7 @@ impl Log {
         before
     }
 
-    pub(super) fn answer(&mut self, request: u64) {
+    pub(super) fn count_answer(&mut self, request: u64) {
         self.answered += 1;
         self.bodies.entry(request).or_default().answered += 1;
     }

@@ -1,9 +1,9 @@
 //! Turns a drawn fault into the HTTP response, or the broken connection, that a failing service would give.
 
 use super::{
-    Dialect, Fault, Faults,
-    dialect::{End, Said, Wrong},
-    wire::{Break, Line},
+    FaultSchedule, ProviderDialect, ServiceFault,
+    dialect::{ReplyEnding, ScriptReply, ServiceErrorKind},
+    wire::{BreakSwitch, ConnectionBreak},
 };
 use axum::{
     http::{HeaderMap, StatusCode, header},
@@ -11,71 +11,80 @@ use axum::{
 };
 use serde_json::Value;
 
-const PAGE: &str = "<!DOCTYPE html><html><head><title>502 Bad Gateway</title></head><body>Bad Gateway</body></html>";
+const GATEWAY_ERROR_PAGE: &str =
+    "<!DOCTYPE html><html><head><title>502 Bad Gateway</title></head><body>Bad Gateway</body></html>";
 
 /// A request with its right answer, ready to be spoilt by a fault.
-pub(super) struct Misdeed<'a> {
-    pub(super) dialect: Dialect,
-    pub(super) faults: &'a Faults,
-    pub(super) line: &'a Line,
+pub(super) struct FaultResponder<'a> {
+    pub(super) dialect: ProviderDialect,
+    pub(super) faults: &'a FaultSchedule,
+    pub(super) line: &'a BreakSwitch,
     pub(super) headers: &'a HeaderMap,
     /// The answer without the fault.
-    pub(super) said: Said,
+    pub(super) said: ScriptReply,
 }
 
-impl Misdeed<'_> {
-    pub(super) fn commit(self, fault: Fault) -> Response {
+impl FaultResponder<'_> {
+    pub(super) fn respond_with_fault(self, fault: ServiceFault) -> Response {
         match fault {
-            Fault::TooMany(form) => self.dialect.too_many(form, self.faults.wait),
-            Fault::Server => {
-                self.dialect.refuse(Wrong::Server, "The server had an error while processing your request.")
+            ServiceFault::TooMany(form) => self.dialect.too_many(form, self.faults.wait),
+            ServiceFault::Server => self
+                .dialect
+                .error_response(ServiceErrorKind::Server, "The server had an error while processing your request."),
+            ServiceFault::Gateway => html_response(StatusCode::BAD_GATEWAY),
+            ServiceFault::Unavailable => {
+                self.dialect.error_response(ServiceErrorKind::Unavailable, "The model is not ready.")
             }
-            Fault::Gateway => html(StatusCode::BAD_GATEWAY),
-            Fault::Unavailable => self.dialect.refuse(Wrong::Unavailable, "The model is not ready."),
-            Fault::Overloaded => self.dialect.refuse(Wrong::Overloaded, "Overloaded"),
-            Fault::Reset => self.broken(Break::Reset),
-            Fault::Closed => self.broken(Break::Close),
-            Fault::Trickle => self.broken(Break::Trickle(self.faults.trickle)),
-            Fault::Endless => self.broken(Break::Endless),
-            Fault::Truncated => {
-                let whole = self.dialect.answer(&self.said).to_string();
+            ServiceFault::Overloaded => self.dialect.error_response(ServiceErrorKind::Overloaded, "Overloaded"),
+            ServiceFault::Reset => self.respond_and_break(ConnectionBreak::Reset),
+            ServiceFault::Closed => self.respond_and_break(ConnectionBreak::Close),
+            ServiceFault::Trickle => self.respond_and_break(ConnectionBreak::Trickle(self.faults.trickle)),
+            ServiceFault::Endless => self.respond_and_break(ConnectionBreak::Endless),
+            ServiceFault::Truncated => {
+                let whole = self.dialect.reply_body(&self.said).to_string();
                 let half: String = whole.chars().take(whole.chars().count() / 2).collect();
                 ([(header::CONTENT_TYPE, "application/json")], half).into_response()
             }
-            Fault::NoChoices => json(&self.dialect.no_choices()),
-            Fault::ErrorInOk => json(&self.dialect.error(Wrong::Server, "The upstream failed.", None)),
-            Fault::WrongType => html(StatusCode::OK),
-            Fault::EchoesKey => {
-                let message = format!("Upstream refused the key {}.", key_of(self.dialect, self.headers));
-                self.dialect.refuse(Wrong::Server, &message)
+            ServiceFault::NoChoices => json_response(&self.dialect.no_choices()),
+            ServiceFault::ErrorInOk => {
+                json_response(&self.dialect.error_body(ServiceErrorKind::Server, "The upstream failed.", None))
             }
-            Fault::CutOff => {
+            ServiceFault::WrongType => html_response(StatusCode::OK),
+            ServiceFault::EchoesKey => {
+                let message = format!("Upstream refused the key {}.", key_of(self.dialect, self.headers));
+                self.dialect.error_response(ServiceErrorKind::Server, &message)
+            }
+            ServiceFault::CutOff => {
                 let words: Vec<&str> = self.said.text.split_inclusive(' ').collect();
                 let text = words[..words.len() / 2].concat();
-                json(&self.dialect.answer(&Said { text, end: End::Length, ..self.said }))
+                json_response(&self.dialect.reply_body(&ScriptReply { text, end: ReplyEnding::Length, ..self.said }))
             }
-            Fault::Filtered => json(&self.dialect.answer(&Said { end: End::Filtered, ..self.said })),
-            Fault::Refused => json(&self.dialect.answer(&Said { end: End::Refused, ..self.said })),
+            ServiceFault::Filtered => {
+                json_response(&self.dialect.reply_body(&ScriptReply { end: ReplyEnding::Filtered, ..self.said }))
+            }
+            ServiceFault::Refused => {
+                json_response(&self.dialect.reply_body(&ScriptReply { end: ReplyEnding::Refused, ..self.said }))
+            }
         }
     }
 
     /// A good answer on a connection that breaks.
-    fn broken(&self, how: Break) -> Response {
-        self.line.breaks(how);
-        json(&self.dialect.answer(&self.said))
+    fn respond_and_break(&self, how: ConnectionBreak) -> Response {
+        self.line.order_break(how);
+        json_response(&self.dialect.reply_body(&self.said))
     }
 }
 
-pub(super) fn json(body: &Value) -> Response {
+pub(super) fn json_response(body: &Value) -> Response {
     ([(header::CONTENT_TYPE, "application/json")], body.to_string()).into_response()
 }
 
-fn html(status: StatusCode) -> Response {
-    (status, [(header::CONTENT_TYPE, "text/html; charset=utf-8")], PAGE).into_response()
+fn html_response(status: StatusCode) -> Response {
+    (status, [(header::CONTENT_TYPE, "text/html; charset=utf-8")], GATEWAY_ERROR_PAGE).into_response()
 }
 
 /// The key that came with a request.
-pub(super) fn key_of(dialect: Dialect, headers: &HeaderMap) -> String {
+pub(super) fn key_of(dialect: ProviderDialect, headers: &HeaderMap) -> String {
     let (name, before) = dialect.key_header();
     let value = headers.get(name).and_then(|value| value.to_str().ok()).unwrap_or_default();
     value.strip_prefix(before).unwrap_or_default().to_owned()

@@ -1,39 +1,39 @@
 //! Wraps a platform so that its pictures show barcodes instead of the scene. The labels of each view go into a gallery under the
 //! barcode's number, and so a [`FlawedEye`](super::scripts::FlawedEye) can answer questions about the picture.
 
-use super::{Gallery, Scenery, Thing, barcode};
+use super::{GalleryThing, PictureGallery, PictureScenery, barcode};
 use sha2::{Digest, Sha256};
 use std::{collections::BTreeSet, sync::Arc};
 use wayword_core::{
-    Depth, Frame, Gaze, ObjectId, Path, PathRequest, Placed, Platform, PlatformError, SceneId, View, ViewpointGraph,
-    ViewpointId, Where,
+    DepthImage, Frame, ObjectId, Path, PathRequest, PlacedObject, Platform, PlatformError, SceneId, View, ViewGaze,
+    ViewThird, ViewpointGraph, ViewpointId,
 };
 
 /// A platform with a barcode in each view instead of a picture of the scene.
-pub struct Pictured<P> {
+pub struct BarcodePlatform<P> {
     platform: P,
-    gallery: Gallery,
+    gallery: PictureGallery,
 }
 
-impl<P: Platform> Pictured<P> {
+impl<P: Platform> BarcodePlatform<P> {
     /// Wraps a platform. Each view that is looked at is added to the gallery.
     #[must_use]
-    pub fn new(platform: P, gallery: Gallery) -> Self {
+    pub fn new(platform: P, gallery: PictureGallery) -> Self {
         Self { platform, gallery }
     }
 }
 
-impl<P: Platform> Platform for Pictured<P> {
+impl<P: Platform> Platform for BarcodePlatform<P> {
     fn name(&self) -> &'static str {
         self.platform.name()
     }
 
-    fn scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
-        self.platform.scenes()
+    fn list_scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
+        self.platform.list_scenes()
     }
 
-    fn graph(&self, scene: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {
-        self.platform.graph(scene)
+    fn graph_for_scene(&self, scene: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {
+        self.platform.graph_for_scene(scene)
     }
 
     fn sample_path(&self, scene: &SceneId, request: &PathRequest, seed: u64) -> Result<Path, PlatformError> {
@@ -44,32 +44,32 @@ impl<P: Platform> Platform for Pictured<P> {
         self.platform.lists_everything()
     }
 
-    fn look(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
+    fn look_from(&self, scene: &SceneId, from: &Frame, gaze: ViewGaze) -> Result<View, PlatformError> {
         // The barcode replaces the picture, so the platform need not draw one.
         let view = self.platform.look_without_picture(scene, from, gaze)?;
         let truth = view.ground_truth().cloned();
-        let id = id(scene, from, gaze);
+        let id = view_number(scene, from, gaze);
         if let Some(truth) = &truth {
-            let third = |label: &wayword_core::Label| {
+            let third = |label: &wayword_core::ObjectLabel| {
                 let off_rad = view.pose.heading.turn_to(label.heading);
-                match Where::at(off_rad, view.horizontal_fov_rad) {
-                    Where::Left => 0,
-                    Where::Middle => 1,
-                    Where::Right => 2,
+                match ViewThird::from_offset(off_rad, view.horizontal_fov_rad) {
+                    ViewThird::Left => 0,
+                    ViewThird::Middle => 1,
+                    ViewThird::Right => 2,
                 }
             };
-            let things = truth.labels.iter().map(|label| Thing {
+            let things = truth.labels.iter().map(|label| GalleryThing {
                 name: label.name.clone(),
                 third: third(label),
                 colour: label.colour.clone(),
             });
-            self.gallery.hang(id, Scenery { room: truth.room.clone(), things: things.collect() });
+            self.gallery.add_picture(id, PictureScenery { room: truth.room.clone(), things: things.collect() });
         }
-        Ok(View::new(view.pose, view.horizontal_fov_rad, Some(Arc::new(barcode::image(id))), truth))
+        Ok(View::new(view.pose, view.horizontal_fov_rad, Some(Arc::new(barcode::draw_number(id))), truth))
     }
 
-    fn depth(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<Option<Depth>, PlatformError> {
-        self.platform.depth(scene, from, gaze)
+    fn view_depth(&self, scene: &SceneId, from: &Frame, gaze: ViewGaze) -> Result<Option<DepthImage>, PlatformError> {
+        self.platform.view_depth(scene, from, gaze)
     }
 
     fn object_name(&self, scene: &SceneId, near: &Frame, object: &ObjectId) -> Result<Option<String>, PlatformError> {
@@ -80,13 +80,13 @@ impl<P: Platform> Platform for Pictured<P> {
         self.platform.visible_from(scene, object)
     }
 
-    fn listed_objects(&self, scene: &SceneId) -> Result<Vec<Placed>, PlatformError> {
+    fn listed_objects(&self, scene: &SceneId) -> Result<Vec<PlacedObject>, PlatformError> {
         self.platform.listed_objects(scene)
     }
 }
 
 /// The number of a view, hashed from the scene, the position and the direction. Equal views have equal numbers.
-fn id(scene: &SceneId, from: &Frame, gaze: Gaze) -> u64 {
+fn view_number(scene: &SceneId, from: &Frame, gaze: ViewGaze) -> u64 {
     let mut hash = Sha256::new();
     hash.update(scene.as_str());
     for metres in from.pose.position.to_array() {
@@ -103,7 +103,7 @@ fn id(scene: &SceneId, from: &Frame, gaze: Gaze) -> u64 {
 mod tests {
     use super::*;
     use image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};
-    use wayword_core::{DVec3, GroundTruth, Heading, Label, Pose};
+    use wayword_core::{DVec3, GroundTruth, Heading, ObjectLabel, Pose};
 
     /// A platform with one place, which has a lamp ahead and a bed on the right.
     struct Cell;
@@ -113,11 +113,11 @@ mod tests {
             "cell"
         }
 
-        fn scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
+        fn list_scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
             Ok(vec![SceneId::new("cell").unwrap()])
         }
 
-        fn graph(&self, _: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {
+        fn graph_for_scene(&self, _: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {
             panic!("this test needs no graph")
         }
 
@@ -125,11 +125,11 @@ mod tests {
             panic!("this test needs no path")
         }
 
-        fn look(&self, _: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
-            let label = |name: &str, turn_rad: f64| Label {
+        fn look_from(&self, _: &SceneId, from: &Frame, gaze: ViewGaze) -> Result<View, PlatformError> {
+            let label = |name: &str, turn_rad: f64| ObjectLabel {
                 object: ObjectId::new(name).unwrap(),
                 name: name.to_owned(),
-                heading: gaze.heading.turned(turn_rad),
+                heading: gaze.heading.turned_by(turn_rad),
                 elevation_rad: 0.0,
                 box_px: None,
                 distance_m: None,
@@ -156,21 +156,24 @@ mod tests {
 
     #[test]
     fn gallery_has_the_contents_of_each_picture() {
-        let gallery = Gallery::default();
-        let world = Pictured::new(Cell, gallery.clone());
-        let scene = world.scenes().unwrap().remove(0);
+        let gallery = PictureGallery::default();
+        let world = BarcodePlatform::new(Cell, gallery.clone());
+        let scene = world.list_scenes().unwrap().remove(0);
         let pose = Pose { position: DVec3::ZERO, heading: Heading::NORTH, elevation_rad: 0.0 };
         let frame = Frame { pose, viewpoint: None, level: None };
-        let look = |rad: f64| world.look(&scene, &frame, Gaze::quarter(Heading::new(rad).unwrap())).unwrap();
+        let look =
+            |rad: f64| world.look_from(&scene, &frame, ViewGaze::quarter_view(Heading::new(rad).unwrap())).unwrap();
         let (first, second, again) = (look(0.0), look(1.0), look(0.0));
         assert_eq!(first.image, again.image);
         assert_ne!(first.image, second.image);
         let picture = first.image.unwrap();
         let mut file = Vec::new();
         let encoder = PngEncoder::new(&mut file);
-        encoder.write_image(picture.rgb(), picture.width_px(), picture.height_px(), ExtendedColorType::Rgb8).unwrap();
-        let scenery = gallery.scenery(barcode::read(&file).unwrap()).unwrap();
-        let thing = |name: &str, third| Thing { name: name.to_owned(), third, colour: None };
+        encoder
+            .write_image(picture.rgb_bytes(), picture.width_px(), picture.height_px(), ExtendedColorType::Rgb8)
+            .unwrap();
+        let scenery = gallery.find_scenery(barcode::read_number(&file).unwrap()).unwrap();
+        let thing = |name: &str, third| GalleryThing { name: name.to_owned(), third, colour: None };
         assert_eq!(scenery.things, [thing("lamp", 1), thing("bed", 2)]);
         assert_eq!(scenery.room.as_deref(), Some("cell"));
     }

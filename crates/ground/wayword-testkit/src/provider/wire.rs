@@ -21,7 +21,7 @@ use tokio::{
 
 /// How a connection breaks the responses that are written to it from now on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Break {
+pub(super) enum ConnectionBreak {
     /// Closes before any byte.
     Close,
     /// Sends the head and half of the body, then a TCP reset.
@@ -34,39 +34,42 @@ pub(super) enum Break {
 
 /// A switch, shared between a connection and the handler of its requests, with which the handler orders it to break.
 #[derive(Clone, Default)]
-pub(super) struct Line(Arc<Mutex<Option<Break>>>);
+pub(super) struct BreakSwitch(Arc<Mutex<Option<ConnectionBreak>>>);
 
-impl Line {
-    pub(super) fn breaks(&self, how: Break) {
+impl BreakSwitch {
+    pub(super) fn order_break(&self, how: ConnectionBreak) {
         *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(how);
     }
 
-    fn told(&self) -> Option<Break> {
+    fn ordered_break(&self) -> Option<ConnectionBreak> {
         *self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-impl Connected<IncomingStream<'_, Door>> for Line {
-    fn connect_info(stream: IncomingStream<'_, Door>) -> Self {
+impl Connected<IncomingStream<'_, BreakableListener>> for BreakSwitch {
+    fn connect_info(stream: IncomingStream<'_, BreakableListener>) -> Self {
         stream.io().line.clone()
     }
 }
 
-/// A listener that wraps every connection it accepts in a [`Wire`].
-pub(super) struct Door(pub(super) TcpListener);
+/// A listener that wraps every connection it accepts in a [`BreakableConnection`].
+pub(super) struct BreakableListener(pub(super) TcpListener);
 
-impl Listener for Door {
-    type Io = Wire;
+impl Listener for BreakableListener {
+    type Io = BreakableConnection;
     type Addr = SocketAddr;
 
-    async fn accept(&mut self) -> (Wire, SocketAddr) {
+    async fn accept(&mut self) -> (BreakableConnection, SocketAddr) {
         loop {
             match self.0.accept().await {
                 Ok((stream, address)) => {
                     // Otherwise an answer waits for the acknowledgement of the one before. If this cannot be set, answers are
                     // only slower.
                     let _ = stream.set_nodelay(true);
-                    return (Wire { stream, line: Line::default(), sent: 0, half: None, pause: None }, address);
+                    return (
+                        BreakableConnection { stream, line: BreakSwitch::default(), sent: 0, half: None, pause: None },
+                        address,
+                    );
                 }
                 // Out of sockets: wait until some are free again.
                 Err(_) => tokio::time::sleep(Duration::from_millis(50)).await,
@@ -79,10 +82,10 @@ impl Listener for Door {
     }
 }
 
-/// A TCP connection. Once its [`Line`] orders a break, it spoils the bytes that are written to it.
-pub(super) struct Wire {
+/// A TCP connection. Once its [`BreakSwitch`] orders a break, it spoils the bytes that are written to it.
+pub(super) struct BreakableConnection {
     stream: TcpStream,
-    line: Line,
+    line: BreakSwitch,
     /// Bytes sent since the order to break.
     sent: usize,
     /// Where sending changes: the end of the head for a trickle, the middle of the body for a reset; bytes from the start.
@@ -94,8 +97,8 @@ const ENDLESS_HEAD: &[u8] = b"HTTP/1.1 200 OK\r\ncontent-type: application/json\
     {\"choices\":[{\"message\":{\"role\":\"assistant\",\"content\":\"";
 const ENDLESS_WORDS: [u8; 16 * 1024] = [b'w'; 16 * 1024];
 
-impl Wire {
-    fn send(&mut self, cx: &mut Context<'_>, bytes: &[u8]) -> Poll<io::Result<usize>> {
+impl BreakableConnection {
+    fn send_bytes(&mut self, cx: &mut Context<'_>, bytes: &[u8]) -> Poll<io::Result<usize>> {
         let sent = Pin::new(&mut self.stream).poll_write(cx, bytes);
         if let Poll::Ready(Ok(count)) = sent {
             self.sent += count;
@@ -104,36 +107,36 @@ impl Wire {
     }
 
     /// Sends the head and half of the body, then resets. The response must be written in one piece, as small ones are.
-    fn reset(&mut self, cx: &mut Context<'_>, bytes: &[u8]) -> Poll<io::Result<usize>> {
+    fn send_half_and_reset(&mut self, cx: &mut Context<'_>, bytes: &[u8]) -> Poll<io::Result<usize>> {
         let half = *self.half.get_or_insert_with(|| head_bytes(bytes) + (bytes.len() - head_bytes(bytes)) / 2);
         match half.saturating_sub(self.sent) {
             0 => {
                 self.stream.set_zero_linger()?;
                 Poll::Ready(Err(io::ErrorKind::ConnectionReset.into()))
             }
-            left => self.send(cx, &bytes[..left.min(bytes.len())]),
+            left => self.send_bytes(cx, &bytes[..left.min(bytes.len())]),
         }
     }
 
-    fn trickle(&mut self, cx: &mut Context<'_>, bytes: &[u8], every: Duration) -> Poll<io::Result<usize>> {
+    fn send_trickle(&mut self, cx: &mut Context<'_>, bytes: &[u8], every: Duration) -> Poll<io::Result<usize>> {
         let head = *self.half.get_or_insert_with(|| head_bytes(bytes));
         if self.sent < head {
             let left = (head - self.sent).min(bytes.len());
-            return self.send(cx, &bytes[..left]);
+            return self.send_bytes(cx, &bytes[..left]);
         }
         let pause = self.pause.get_or_insert_with(|| Box::pin(tokio::time::sleep(every)));
         if pause.as_mut().poll(cx).is_pending() {
             return Poll::Pending;
         }
         self.pause = None;
-        self.send(cx, &bytes[..bytes.len().min(1)])
+        self.send_bytes(cx, &bytes[..bytes.len().min(1)])
     }
 
     /// Sends until the other side closes the connection.
-    fn endless(&mut self, cx: &mut Context<'_>) -> Poll<io::Result<usize>> {
+    fn send_endless(&mut self, cx: &mut Context<'_>) -> Poll<io::Result<usize>> {
         loop {
             let next = ENDLESS_HEAD.get(self.sent..).filter(|rest| !rest.is_empty()).unwrap_or(&ENDLESS_WORDS);
-            match self.send(cx, next) {
+            match self.send_bytes(cx, next) {
                 Poll::Ready(Ok(_)) => {}
                 stopped => return stopped,
             }
@@ -146,20 +149,20 @@ fn head_bytes(bytes: &[u8]) -> usize {
     bytes.windows(4).position(|window| window == b"\r\n\r\n").map_or(bytes.len(), |at| at + 4)
 }
 
-impl AsyncRead for Wire {
+impl AsyncRead for BreakableConnection {
     fn poll_read(mut self: Pin<&mut Self>, cx: &mut Context<'_>, buffer: &mut ReadBuf<'_>) -> Poll<io::Result<()>> {
         Pin::new(&mut self.stream).poll_read(cx, buffer)
     }
 }
 
-impl AsyncWrite for Wire {
+impl AsyncWrite for BreakableConnection {
     fn poll_write(mut self: Pin<&mut Self>, cx: &mut Context<'_>, bytes: &[u8]) -> Poll<io::Result<usize>> {
-        match self.line.told() {
+        match self.line.ordered_break() {
             None => Pin::new(&mut self.stream).poll_write(cx, bytes),
-            Some(Break::Close) => Poll::Ready(Err(io::ErrorKind::ConnectionAborted.into())),
-            Some(Break::Reset) => self.reset(cx, bytes),
-            Some(Break::Trickle(every)) => self.trickle(cx, bytes, every),
-            Some(Break::Endless) => self.endless(cx),
+            Some(ConnectionBreak::Close) => Poll::Ready(Err(io::ErrorKind::ConnectionAborted.into())),
+            Some(ConnectionBreak::Reset) => self.send_half_and_reset(cx, bytes),
+            Some(ConnectionBreak::Trickle(every)) => self.send_trickle(cx, bytes, every),
+            Some(ConnectionBreak::Endless) => self.send_endless(cx),
         }
     }
 
@@ -169,7 +172,7 @@ impl AsyncWrite for Wire {
 
     fn poll_shutdown(mut self: Pin<&mut Self>, cx: &mut Context<'_>) -> Poll<io::Result<()>> {
         // An orderly shutdown would be sent before the reset.
-        if self.line.told() == Some(Break::Reset) {
+        if self.line.ordered_break() == Some(ConnectionBreak::Reset) {
             return Poll::Ready(Ok(()));
         }
         Pin::new(&mut self.stream).poll_shutdown(cx)

@@ -8,7 +8,10 @@ use std::{
     net::TcpStream,
     time::Duration,
 };
-use wayword_testkit::provider::{Behaviour, Dialect, Fault, Faults, Heard, Provider, Rate, RetryAfter, Script};
+use wayword_testkit::provider::{
+    FaultSchedule, ModelScript, ProviderBehaviour, ProviderDialect, ProviderRequestRate, RetryAfter, ScriptRequest,
+    ScriptedProvider, ServiceFault,
+};
 
 /// Status, head and body of a POST.
 fn post(base: &str, path: &str, headers: &str, body: &Value) -> std::io::Result<(u16, String, String)> {
@@ -32,17 +35,17 @@ fn chat(text: &str) -> Value {
     json!({ "model": "words", "messages": [{ "role": "user", "content": text }], "max_tokens": 5 })
 }
 
-fn provider(behaviour: Behaviour) -> (Provider, String) {
-    let provider = Provider::start(behaviour).unwrap();
-    let base = provider.base_url(Dialect::OpenAi);
+fn provider(behaviour: ProviderBehaviour) -> (ScriptedProvider, String) {
+    let provider = ScriptedProvider::start(behaviour).unwrap();
+    let base = provider.base_url(ProviderDialect::OpenAi);
     (provider, base)
 }
 
-fn behaviour(script: impl Script + Clone + 'static) -> Behaviour {
-    Behaviour::of("words", script.clone()).and("m", script.clone()).and("g", script)
+fn behaviour(script: impl ModelScript + Clone + 'static) -> ProviderBehaviour {
+    ProviderBehaviour::for_model("words", script.clone()).and_model("m", script.clone()).and_model("g", script)
 }
 
-fn echo(heard: &Heard) -> String {
+fn echo(heard: &ScriptRequest) -> String {
     format!("{} {} {}", heard.model, heard.prompt(), heard.pictures.len())
 }
 
@@ -89,7 +92,7 @@ fn each_dialect_is_heard_and_answered_in_its_shape() {
 
 #[test]
 fn a_limit_of_tokens_cuts_the_reply_off() {
-    let (_provider, base) = provider(behaviour(|_: &Heard| "one two three four five six".to_owned()));
+    let (_provider, base) = provider(behaviour(|_: &ScriptRequest| "one two three four five six".to_owned()));
     let (_, _, answer) = post(&base, "/v1/chat/completions", "", &chat("go")).unwrap();
     let answer: Value = serde_json::from_str(&answer).unwrap();
     assert_eq!(answer["choices"][0]["finish_reason"], "length");
@@ -98,7 +101,7 @@ fn a_limit_of_tokens_cuts_the_reply_off() {
 
 #[test]
 fn a_wrong_key_is_refused_in_every_dialect() {
-    let (provider, base) = provider(Behaviour { key: Some("right".into()), ..behaviour(echo) });
+    let (provider, base) = provider(ProviderBehaviour { key: Some("right".into()), ..behaviour(echo) });
     for (path, header) in [("/v1/chat/completions", "authorization: Bearer "), ("/v1/messages", "x-api-key: ")] {
         assert_eq!(post(&base, path, &format!("{header}wrong\r\n"), &chat("x")).unwrap().0, 401);
         assert_eq!(post(&base, path, &format!("{header}right\r\n"), &chat("x")).unwrap().0, 200);
@@ -109,18 +112,18 @@ fn a_wrong_key_is_refused_in_every_dialect() {
 #[test]
 fn each_fault_breaks_the_response_as_its_name_promises() {
     let faults = [
-        Fault::Overloaded,
-        Fault::TooMany(RetryAfter::Milliseconds),
-        Fault::TooMany(RetryAfter::RetryInfo),
-        Fault::Truncated,
-        Fault::NoChoices,
-        Fault::ErrorInOk,
-        Fault::Filtered,
-        Fault::Reset,
-        Fault::Closed,
+        ServiceFault::Overloaded,
+        ServiceFault::TooMany(RetryAfter::Milliseconds),
+        ServiceFault::TooMany(RetryAfter::RetryInfo),
+        ServiceFault::Truncated,
+        ServiceFault::NoChoices,
+        ServiceFault::ErrorInOk,
+        ServiceFault::Filtered,
+        ServiceFault::Reset,
+        ServiceFault::Closed,
     ];
-    let faults = Faults::default().first(&faults.map(Some));
-    let (provider, base) = provider(Behaviour { faults, ..behaviour(echo) });
+    let faults = FaultSchedule::default().with_first_faults(&faults.map(Some));
+    let (provider, base) = provider(ProviderBehaviour { faults, ..behaviour(echo) });
     let ask = || post(&base, "/v1/chat/completions", "", &chat("hello"));
     assert_eq!(ask().unwrap().0, 529);
     assert!(ask().unwrap().1.contains("retry-after-ms: 50"));
@@ -139,8 +142,8 @@ fn each_fault_breaks_the_response_as_its_name_promises() {
 
 #[test]
 fn requests_above_the_rate_are_rejected_and_not_admitted() {
-    let rate = Rate { requests_per_s: 0.5, burst: 3, retry_after: RetryAfter::Seconds };
-    let (provider, base) = provider(Behaviour { rate: Some(rate), ..behaviour(echo) });
+    let rate = ProviderRequestRate { requests_per_s: 0.5, burst: 3, retry_after: RetryAfter::Seconds };
+    let (provider, base) = provider(ProviderBehaviour { rate: Some(rate), ..behaviour(echo) });
     let statuses: Vec<u16> = (0..6).map(|_| post(&base, "/v1/chat/completions", "", &chat("x")).unwrap().0).collect();
     assert_eq!(statuses, [200, 200, 200, 429, 429, 429]);
     assert_eq!((provider.log().rate_limited, provider.log().admitted), (3, 3));

@@ -8,40 +8,57 @@ use std::{
     net::TcpStream,
     time::{Duration, Instant},
 };
-use wayword_testkit::provider::{Behaviour, Dialect, Fault, Faults, Heard, Provider, RetryAfter};
+use wayword_testkit::provider::{
+    FaultSchedule, ProviderBehaviour, ProviderDialect, RetryAfter, ScriptRequest, ScriptedProvider, ServiceFault,
+};
 
 const KEY: &str = "a-key-of-nobody";
 
-fn provider(faults: Faults) -> Provider {
-    let words = |_: &Heard| "one two three four five six".to_owned();
-    Provider::start(Behaviour { faults, key: Some(KEY.into()), ..Behaviour::of("m", words) }).unwrap()
+fn provider(faults: FaultSchedule) -> ScriptedProvider {
+    let words = |_: &ScriptRequest| "one two three four five six".to_owned();
+    ScriptedProvider::start(ProviderBehaviour {
+        faults,
+        key: Some(KEY.into()),
+        ..ProviderBehaviour::for_model("m", words)
+    })
+    .unwrap()
 }
 
-fn changed(mut faults: Faults, change: impl FnOnce(&mut Faults)) -> Faults {
+fn changed(mut faults: FaultSchedule, change: impl FnOnce(&mut FaultSchedule)) -> FaultSchedule {
     change(&mut faults);
     faults
 }
 
 /// The path, the key's header and a request, for each dialect.
-fn requests() -> [(Dialect, &'static str, &'static str, Value); 5] {
+fn requests() -> [(ProviderDialect, &'static str, &'static str, Value); 5] {
     let messages = json!([{ "role": "user", "content": "hi" }]);
     [
-        (Dialect::OpenAi, "/chat/completions", "authorization: Bearer", json!({ "model": "m", "messages": messages })),
-        (Dialect::Completions, "/completions", "authorization: Bearer", json!({ "model": "m", "prompt": "hi" })),
         (
-            Dialect::Anthropic,
+            ProviderDialect::OpenAi,
+            "/chat/completions",
+            "authorization: Bearer",
+            json!({ "model": "m", "messages": messages }),
+        ),
+        (
+            ProviderDialect::Completions,
+            "/completions",
+            "authorization: Bearer",
+            json!({ "model": "m", "prompt": "hi" }),
+        ),
+        (
+            ProviderDialect::Anthropic,
             "/messages",
             "x-api-key:",
             json!({ "model": "m", "max_tokens": 99, "messages": messages }),
         ),
         (
-            Dialect::Gemini,
+            ProviderDialect::Gemini,
             "/models/m:generateContent",
             "x-goog-api-key:",
             json!({ "contents": [{ "role": "user", "parts": [{ "text": "hi" }] }] }),
         ),
         (
-            Dialect::Ollama,
+            ProviderDialect::Ollama,
             "/api/chat",
             "authorization: Bearer",
             json!({ "model": "m", "messages": messages, "stream": false }),
@@ -71,14 +88,14 @@ fn answered(mut stream: TcpStream) -> (u16, String, String) {
     (head[9..12].parse().unwrap(), head.to_lowercase(), body.to_owned())
 }
 
-fn ask(provider: &Provider) -> TcpStream {
+fn ask(provider: &ScriptedProvider) -> TcpStream {
     let (dialect, path, header, body) = &requests()[0];
     sent(&provider.base_url(*dialect), path, &format!("{header} {KEY}"), Some(body))
 }
 
 #[test]
 fn every_dialect_requires_its_key_and_counts_its_tokens() {
-    let provider = provider(Faults::default());
+    let provider = provider(FaultSchedule::default());
     for (dialect, path, header, body) in requests() {
         let base = provider.base_url(dialect);
         assert_eq!(answered(sent(&base, path, &format!("{header} wrong"), Some(&body))).0, 401, "{dialect:?}");
@@ -86,14 +103,14 @@ fn every_dialect_requires_its_key_and_counts_its_tokens() {
         assert_eq!(status, 200, "{dialect:?}: {text}");
         let answer: Value = serde_json::from_str(&text).unwrap();
         let (tokens_in, tokens_out, finish) = match dialect {
-            Dialect::OpenAi | Dialect::Completions => {
+            ProviderDialect::OpenAi | ProviderDialect::Completions => {
                 ("/usage/prompt_tokens", "/usage/completion_tokens", "/choices/0/finish_reason")
             }
-            Dialect::Anthropic => ("/usage/input_tokens", "/usage/output_tokens", "/stop_reason"),
-            Dialect::Gemini => {
+            ProviderDialect::Anthropic => ("/usage/input_tokens", "/usage/output_tokens", "/stop_reason"),
+            ProviderDialect::Gemini => {
                 ("/usageMetadata/promptTokenCount", "/usageMetadata/candidatesTokenCount", "/candidates/0/finishReason")
             }
-            Dialect::Ollama => ("/prompt_eval_count", "/eval_count", "/done_reason"),
+            ProviderDialect::Ollama => ("/prompt_eval_count", "/eval_count", "/done_reason"),
         };
         assert_eq!(answer.pointer(tokens_in), Some(&json!(1)), "{dialect:?}");
         assert_eq!(answer.pointer(tokens_out), Some(&json!(7)), "{dialect:?}");
@@ -105,12 +122,12 @@ fn every_dialect_requires_its_key_and_counts_its_tokens() {
 
 #[test]
 fn models_are_listed_as_each_dialect_does() {
-    let provider = provider(Faults::default());
+    let provider = provider(FaultSchedule::default());
     for (dialect, path, header, pointer) in [
-        (Dialect::OpenAi, "/models", "authorization: Bearer", "/data/0/id"),
-        (Dialect::Anthropic, "/models?limit=1000", "x-api-key:", "/data/0/id"),
-        (Dialect::Gemini, "/models?pageSize=1000", "x-goog-api-key:", "/models/0/name"),
-        (Dialect::Ollama, "/api/tags", "authorization: Bearer", "/models/0/name"),
+        (ProviderDialect::OpenAi, "/models", "authorization: Bearer", "/data/0/id"),
+        (ProviderDialect::Anthropic, "/models?limit=1000", "x-api-key:", "/data/0/id"),
+        (ProviderDialect::Gemini, "/models?pageSize=1000", "x-goog-api-key:", "/models/0/name"),
+        (ProviderDialect::Ollama, "/api/tags", "authorization: Bearer", "/models/0/name"),
     ] {
         let base = provider.base_url(dialect);
         assert_eq!(answered(sent(&base, path, &format!("{header} wrong"), None)).0, 401, "{dialect:?}");
@@ -123,8 +140,8 @@ fn models_are_listed_as_each_dialect_does() {
 
 #[test]
 fn a_429_announces_its_wait_in_every_form() {
-    let faults = RetryAfter::ALL.map(|form| Some(Fault::TooMany(form)));
-    let provider = provider(Faults::default().first(&faults));
+    let faults = RetryAfter::ALL.map(|form| Some(ServiceFault::TooMany(form)));
+    let provider = provider(FaultSchedule::default().with_first_faults(&faults));
     for form in RetryAfter::ALL {
         let (status, head, body) = answered(ask(&provider));
         assert_eq!(status, 429);
@@ -146,7 +163,8 @@ fn a_429_announces_its_wait_in_every_form() {
 
 #[test]
 fn a_reset_comes_in_the_middle_of_the_body_and_a_close_before_any_byte() {
-    let provider = provider(Faults::default().first(&[Some(Fault::Reset), Some(Fault::Closed)]));
+    let provider =
+        provider(FaultSchedule::default().with_first_faults(&[Some(ServiceFault::Reset), Some(ServiceFault::Closed)]));
     let mut got = Vec::new();
     let error = ask(&provider).read_to_end(&mut got).unwrap_err();
     assert_eq!(error.kind(), ErrorKind::ConnectionReset);
@@ -160,8 +178,8 @@ fn a_reset_comes_in_the_middle_of_the_body_and_a_close_before_any_byte() {
 
 #[test]
 fn a_trickle_takes_its_time_and_an_endless_body_does_not_end() {
-    let faults = changed(Faults::default(), |faults| faults.trickle = Duration::from_millis(2));
-    let provider = provider(faults.first(&[Some(Fault::Trickle), Some(Fault::Endless)]));
+    let faults = changed(FaultSchedule::default(), |faults| faults.trickle = Duration::from_millis(2));
+    let provider = provider(faults.with_first_faults(&[Some(ServiceFault::Trickle), Some(ServiceFault::Endless)]));
     let start = Instant::now();
     let (_, _, body) = answered(ask(&provider));
     assert!(start.elapsed() >= Duration::from_millis(2) * u32::try_from(body.len()).unwrap());
@@ -176,9 +194,9 @@ fn a_trickle_takes_its_time_and_an_endless_body_does_not_end() {
 
 #[test]
 fn keys_and_quotas_run_out_and_errors_can_repeat_the_key() {
-    let revoked = provider(changed(Faults::default(), |faults| faults.key_refused_after = Some(2)));
+    let revoked = provider(changed(FaultSchedule::default(), |faults| faults.key_refused_after = Some(2)));
     assert_eq!([0; 4].map(|_| answered(ask(&revoked)).0), [200, 200, 401, 401]);
-    let empty = provider(changed(Faults::default(), |faults| faults.quota_after = Some(1)));
+    let empty = provider(changed(FaultSchedule::default(), |faults| faults.quota_after = Some(1)));
     assert_eq!(answered(ask(&empty)).0, 200);
     for ((dialect, path, header, body), (status, mark)) in requests().into_iter().zip([
         (429, "insufficient_quota"),
@@ -191,25 +209,25 @@ fn keys_and_quotas_run_out_and_errors_can_repeat_the_key() {
         assert!(got.0 == status && got.2.contains(mark), "{dialect:?}: {got:?}");
     }
     assert_eq!(empty.log().out_of_quota, 5);
-    let echoing = provider(Faults::default().first(&[Some(Fault::EchoesKey)]));
+    let echoing = provider(FaultSchedule::default().with_first_faults(&[Some(ServiceFault::EchoesKey)]));
     let (status, _, body) = answered(ask(&echoing));
     assert!(status == 500 && body.contains(KEY));
 }
 
 #[test]
 fn equal_requests_are_counted_by_their_outcome() {
-    let provider = provider(Faults::default().first(&[Some(Fault::Server), None, None]));
+    let provider = provider(FaultSchedule::default().with_first_faults(&[Some(ServiceFault::Server), None, None]));
     assert_eq!([0; 3].map(|_| answered(ask(&provider)).0), [500, 200, 200]);
     let log = provider.log();
     let bodies: Vec<_> = log.bodies.values().map(|body| (body.received, body.admitted, body.answered)).collect();
     assert_eq!((bodies.as_slice(), log.answered_again(), log.distinct_answered()), ([(3, 3, 2)].as_slice(), 1, 1));
-    assert_eq!(provider.requests(), 3);
+    assert_eq!(provider.request_count(), 3);
 }
 
 #[test]
 fn two_runs_of_a_storm_meet_the_same_faults_in_any_order() {
     let storm = |reversed: bool| {
-        let provider = provider(changed(Faults::storm(0.6), |faults| faults.trickle = Duration::ZERO));
+        let provider = provider(changed(FaultSchedule::storm(0.6), |faults| faults.trickle = Duration::ZERO));
         let (dialect, path, header, _) = &requests()[0];
         let base = provider.base_url(*dialect);
         let mut numbers: Vec<usize> = (0..120).collect();

@@ -23,8 +23,8 @@ fn files(folder: &std::path::Path) -> BTreeMap<std::path::PathBuf, Vec<u8>> {
 fn the_episodes_are_read_by_the_formats_readers() {
     let folder = tempfile::tempdir().unwrap();
     write_building(folder.path()).unwrap();
-    let with_targets = reverie::read(&folder.path().join("reverie/REVERIE_val_seen.json")).unwrap();
-    let without = r2r::read(&folder.path().join("r2r/R2R_val_seen.json")).unwrap();
+    let with_targets = reverie::read_reverie_file(&folder.path().join("reverie/REVERIE_val_seen.json")).unwrap();
+    let without = r2r::read_r2r_file(&folder.path().join("r2r/R2R_val_seen.json")).unwrap();
     assert_eq!((with_targets.len(), without.len()), (10, 10));
     for (with_target, without) in with_targets.iter().zip(&without) {
         assert_eq!(with_target.scene.as_str(), SCAN);

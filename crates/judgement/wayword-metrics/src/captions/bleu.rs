@@ -1,32 +1,32 @@
 //! BLEU-1 to BLEU-4 as `pycocoevalcap`'s `bleu_scorer.py` computes them: the share of a text's n-grams that a reference has too,
 //! over the whole corpus, less if the text is shorter than the reference closest in length.
 
-use super::text::{ORDERS, Text};
+use super::text::{GRAM_ORDER_COUNT, NumberedText};
 use std::ops::{Add, AddAssign};
 
 /// Added to denominators so that none is zero, as `pycocoevalcap` does.
-const SMALL: f64 = 1e-9;
+const DENOMINATOR_EPSILON: f64 = 1e-9;
 /// Added to numerators so that no product is zero, as `pycocoevalcap` does.
-const TINY: f64 = 1e-15;
+const NUMERATOR_EPSILON: f64 = 1e-15;
 
 /// The counts that BLEU divides. For a corpus, the counts of all texts are added first.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Counts {
+pub struct BleuCounts {
     /// N-grams that a reference has too, by their length.
-    pub correct: [u64; ORDERS],
+    pub correct: [u64; GRAM_ORDER_COUNT],
     /// N-grams, by their length.
-    pub guessed: [u64; ORDERS],
+    pub guessed: [u64; GRAM_ORDER_COUNT],
     /// Words.
     pub words: u64,
     /// Words of the reference that is closest in length.
     pub reference: u64,
 }
 
-impl Counts {
+impl BleuCounts {
     /// Counts a text against its references.
     #[must_use]
-    pub fn of(text: &Text, references: &[&Text]) -> Self {
-        let mut correct = [0; ORDERS];
+    pub fn for_text(text: &NumberedText, references: &[&NumberedText]) -> Self {
+        let mut correct = [0; GRAM_ORDER_COUNT];
         for (gram, most) in text.grams().iter().zip(most_in(text, references)) {
             correct[gram.order()] += u64::from(gram.count.min(most));
         }
@@ -41,19 +41,20 @@ impl Counts {
 
     /// BLEU-1 to BLEU-4 of these counts.
     #[must_use]
-    pub fn bleu(&self) -> [f64; ORDERS] {
-        let ratio = (self.words as f64 + TINY) / (self.reference as f64 + SMALL);
+    pub fn bleu_scores(&self) -> [f64; GRAM_ORDER_COUNT] {
+        let ratio = (self.words as f64 + NUMERATOR_EPSILON) / (self.reference as f64 + DENOMINATOR_EPSILON);
         let brevity = if ratio < 1.0 { (1.0 - 1.0 / ratio).exp() } else { 1.0 };
         let mut product = 1.0;
         std::array::from_fn(|order| {
-            product *= (self.correct[order] as f64 + TINY) / (self.guessed[order] as f64 + SMALL);
+            product *=
+                (self.correct[order] as f64 + NUMERATOR_EPSILON) / (self.guessed[order] as f64 + DENOMINATOR_EPSILON);
             f64::powf(product, 1.0 / (order as f64 + 1.0)) * brevity
         })
     }
 }
 
 /// For each n-gram of a text, its highest count in any one reference.
-fn most_in(text: &Text, references: &[&Text]) -> Vec<u32> {
+fn most_in(text: &NumberedText, references: &[&NumberedText]) -> Vec<u32> {
     let mut most = vec![0; text.grams().len()];
     for reference in references {
         let mut there = reference.grams().iter().peekable();
@@ -67,11 +68,11 @@ fn most_in(text: &Text, references: &[&Text]) -> Vec<u32> {
     most
 }
 
-impl Add for Counts {
+impl Add for BleuCounts {
     type Output = Self;
 
     fn add(self, other: Self) -> Self {
-        let sum = |a: [u64; ORDERS], b: [u64; ORDERS]| std::array::from_fn(|at| a[at] + b[at]);
+        let sum = |a: [u64; GRAM_ORDER_COUNT], b: [u64; GRAM_ORDER_COUNT]| std::array::from_fn(|at| a[at] + b[at]);
         Self {
             correct: sum(self.correct, other.correct),
             guessed: sum(self.guessed, other.guessed),
@@ -81,7 +82,7 @@ impl Add for Counts {
     }
 }
 
-impl AddAssign for Counts {
+impl AddAssign for BleuCounts {
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
     }

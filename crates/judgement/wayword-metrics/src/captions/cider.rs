@@ -1,27 +1,27 @@
 //! CIDEr-D as `pycocoevalcap`'s `cider_scorer.py` computes it (under the name CIDEr): the cosine of two texts' n-gram counts,
 //! with weights that make n-grams count more if few items' references have them.
 
-use super::text::{Gram, ORDERS, Text};
+use super::text::{CountedGram, GRAM_ORDER_COUNT, NumberedText};
 use std::{
     collections::HashMap,
     hash::{BuildHasherDefault, Hasher},
 };
 
 /// Standard deviation of the Gaussian penalty for a difference in length, words.
-const SIGMA: f64 = 6.0;
+const LENGTH_SIGMA_WORDS: f64 = 6.0;
 /// Scores are ten times a cosine.
-const SCALE: f64 = 10.0;
+const CIDER_SCALE: f64 = 10.0;
 
 /// For each n-gram, the number of items with a reference that contains it.
 #[derive(Debug, Default)]
-struct Occurrences(HashMap<u128, u32, BuildHasherDefault<Mixed>>);
+struct GramOccurrences(HashMap<u128, u32, BuildHasherDefault<GramKeyHasher>>);
 
 /// Hashes the key of an n-gram by two multiplications. That is fast, and safe enough: keys come from our own numbering of words,
 /// so an attacker cannot choose keys that collide.
 #[derive(Debug, Default)]
-struct Mixed(u64);
+struct GramKeyHasher(u64);
 
-impl Hasher for Mixed {
+impl Hasher for GramKeyHasher {
     fn finish(&self) -> u64 {
         self.0
     }
@@ -37,8 +37,8 @@ impl Hasher for Mixed {
     }
 }
 
-impl Occurrences {
-    fn add(&mut self, references: &[&Text]) {
+impl GramOccurrences {
+    fn count_references(&mut self, references: &[&NumberedText]) {
         let mut keys: Vec<u128> = references.iter().flat_map(|text| text.grams()).map(|gram| gram.key).collect();
         keys.sort_unstable();
         keys.dedup();
@@ -48,9 +48,9 @@ impl Occurrences {
     }
 
     /// The text's n-grams, weighted by how rare they are among `items` items.
-    fn weigh<'a>(&self, text: &'a Text, items: f64) -> Weighed<'a> {
-        let mut squares = [0.0; ORDERS];
-        let weight = |gram: &Gram| {
+    fn weigh_text<'a>(&self, text: &'a NumberedText, items: f64) -> WeightedText<'a> {
+        let mut squares = [0.0; GRAM_ORDER_COUNT];
+        let weight = |gram: &CountedGram| {
             let found = self.0.get(&gram.key).map_or(1.0, |count| f64::from(*count));
             let weight = f64::from(gram.count) * (items.ln() - found.ln());
             squares[gram.order()] += weight * weight;
@@ -59,21 +59,21 @@ impl Occurrences {
         let weights = text.grams().iter().map(weight).collect();
         // `pycocoevalcap` counts pairs of words here where it should count words; we do the same.
         let length = text.len().saturating_sub(1) as f64;
-        Weighed { grams: text.grams(), weights, norms: squares.map(f64::sqrt), length }
+        WeightedText { grams: text.grams(), weights, norms: squares.map(f64::sqrt), length }
     }
 }
 
-struct Weighed<'a> {
-    grams: &'a [Gram],
+struct WeightedText<'a> {
+    grams: &'a [CountedGram],
     weights: Vec<f64>,
-    norms: [f64; ORDERS],
+    norms: [f64; GRAM_ORDER_COUNT],
     length: f64,
 }
 
-impl Weighed<'_> {
+impl WeightedText<'_> {
     /// The sum over the lengths of n-grams of the clipped cosines, times the penalty for a difference in length.
-    fn like(&self, reference: &Self) -> f64 {
-        let mut products = [0.0; ORDERS];
+    fn similarity_to(&self, reference: &Self) -> f64 {
+        let mut products = [0.0; GRAM_ORDER_COUNT];
         let mut there = reference.grams.iter().zip(&reference.weights).peekable();
         for (gram, weight) in self.grams.iter().zip(&self.weights) {
             while there.next_if(|(other, _)| other.key < gram.key).is_some() {}
@@ -82,26 +82,27 @@ impl Weighed<'_> {
             }
         }
         let apart = self.length - reference.length;
-        let penalty = (-(apart * apart) / (2.0 * SIGMA * SIGMA)).exp();
+        let penalty = (-(apart * apart) / (2.0 * LENGTH_SIGMA_WORDS * LENGTH_SIGMA_WORDS)).exp();
         let cosine = |order: usize| match self.norms[order] * reference.norms[order] {
             norms if norms > 0.0 => products[order] / norms,
             _ => products[order],
         };
-        (0..ORDERS).map(cosine).sum::<f64>() * penalty
+        (0..GRAM_ORDER_COUNT).map(cosine).sum::<f64>() * penalty
     }
 }
 
 /// CIDEr-D of each text against its references. How rare an n-gram is comes from the references of all these texts, so the
 /// figure of one text depends on the others.
 #[must_use]
-pub fn cider_d(rows: &[super::Row<'_>]) -> Vec<f64> {
-    let mut occurrences = Occurrences::default();
-    rows.iter().for_each(|row| occurrences.add(&row.references));
+pub fn cider_d(rows: &[super::CaptionRow<'_>]) -> Vec<f64> {
+    let mut occurrences = GramOccurrences::default();
+    rows.iter().for_each(|row| occurrences.count_references(&row.references));
     let items = rows.len() as f64;
-    let of_row = |row: &super::Row<'_>| {
-        let text = occurrences.weigh(row.text, items);
-        let alike = row.references.iter().map(|reference| text.like(&occurrences.weigh(reference, items)));
-        alike.sum::<f64>() / ORDERS as f64 / row.references.len().max(1) as f64 * SCALE
+    let of_row = |row: &super::CaptionRow<'_>| {
+        let text = occurrences.weigh_text(row.text, items);
+        let alike =
+            row.references.iter().map(|reference| text.similarity_to(&occurrences.weigh_text(reference, items)));
+        alike.sum::<f64>() / GRAM_ORDER_COUNT as f64 / row.references.len().max(1) as f64 * CIDER_SCALE
     };
     rows.iter().map(of_row).collect()
 }

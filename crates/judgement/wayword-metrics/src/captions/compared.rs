@@ -1,24 +1,24 @@
 //! Compares a set of texts with people's texts. BLEU and its like have no meaning by themselves, so the same figures are
 //! computed for two anchors: another person's text about the item, and a person's text about another path.
 
-use super::{Counts, Row, Scores, Text, scores};
-use crate::{Drawing, Estimate, bootstrap::interval_of};
+use super::{BleuCounts, CaptionRow, CaptionScores, NumberedText, score_rows};
+use crate::{MeanEstimate, ResamplingOptions, bootstrap::interval_of};
 use rand::Rng;
 use serde::Serialize;
 use std::collections::BTreeMap;
-use wayword_core::rng;
+use wayword_core::seeded_rng;
 
 /// The texts about one item.
 #[derive(Debug, Clone)]
-pub struct Described<'a> {
+pub struct CaptionItem<'a> {
     /// The item's id. Draws for the item depend only on it and the seed.
     pub id: &'a str,
     /// The path that it is about: items of one path are not independent.
     pub cluster: &'a str,
     /// The text that is judged.
-    pub text: &'a Text,
+    pub text: &'a NumberedText,
     /// People's texts.
-    pub references: Vec<&'a Text>,
+    pub references: Vec<&'a NumberedText>,
 }
 
 /// BLEU, ROUGE-L and CIDEr-D of a set of texts, each with its interval.
@@ -26,67 +26,67 @@ pub struct Described<'a> {
 /// Intervals draw paths. BLEU is computed anew from the counts of each draw; CIDEr-D and ROUGE-L are means of the texts' own
 /// figures, where CIDEr-D keeps the weights of n-grams that it has from all references.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Figures {
+pub struct CaptionFigures {
     /// BLEU-1 to BLEU-4.
-    pub bleu: [Estimate; 4],
+    pub bleu: [MeanEstimate; 4],
     /// ROUGE-L.
-    pub rouge_l: Estimate,
+    pub rouge_l: MeanEstimate,
     /// CIDEr-D; often printed times 100.
-    pub cider_d: Estimate,
+    pub cider_d: MeanEstimate,
 }
 
 /// Figures of a set of texts and of the two anchors. `rest`, `person` and `other_path` can be compared with each other: all three
 /// use the items with at least two references, and each item's references without the first.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Anchored {
+pub struct AnchoredCaptionFigures {
     /// The texts against all references, as papers report it.
-    pub all: Option<Figures>,
+    pub all: Option<CaptionFigures>,
     /// The texts against all references but the first.
-    pub rest: Option<Figures>,
+    pub rest: Option<CaptionFigures>,
     /// The first reference against the others: another person's text.
-    pub person: Option<Figures>,
+    pub person: Option<CaptionFigures>,
     /// The first reference of an item of another path, drawn at random, against the others. `None` where there is
     /// a single path.
-    pub other_path: Option<Figures>,
+    pub other_path: Option<CaptionFigures>,
     /// Items with a single reference, which are only in the first figures.
     pub single: usize,
 }
 
 /// The texts of all items and of the anchors, each with the references that it is compared with.
 #[derive(Debug, Clone)]
-pub struct Sets<'a> {
+pub struct CaptionRowSets<'a> {
     /// The texts against all references.
-    pub all: Vec<Row<'a>>,
+    pub all: Vec<CaptionRow<'a>>,
     /// The texts against all references but the first, of the items that have several. The rows of the anchors are of the same
     /// items, in the same order.
-    pub rest: Vec<Row<'a>>,
+    pub rest: Vec<CaptionRow<'a>>,
     /// The first reference against the others.
-    pub person: Vec<Row<'a>>,
+    pub person: Vec<CaptionRow<'a>>,
     /// The first reference of another path against the others. `None` where there is a single path.
-    pub other_path: Option<Vec<Row<'a>>>,
+    pub other_path: Option<Vec<CaptionRow<'a>>>,
     /// The path of each item.
     clusters: Vec<&'a str>,
     /// The path of each item that has several references.
     clusters_of_several: Vec<&'a str>,
 }
 
-impl<'a> Sets<'a> {
+impl<'a> CaptionRowSets<'a> {
     /// The sets of items. Other paths are drawn by the seed.
     #[must_use]
-    pub fn of(items: &[Described<'a>], seed: u64) -> Self {
-        let items: Vec<&Described<'a>> = items.iter().filter(|item| !item.references.is_empty()).collect();
-        let several: Vec<&Described<'a>> = items.iter().copied().filter(|item| item.references.len() > 1).collect();
-        let against_rest = |texts: Vec<&'a Text>| -> Vec<Row<'a>> {
+    pub fn from_items(items: &[CaptionItem<'a>], seed: u64) -> Self {
+        let items: Vec<&CaptionItem<'a>> = items.iter().filter(|item| !item.references.is_empty()).collect();
+        let several: Vec<&CaptionItem<'a>> = items.iter().copied().filter(|item| item.references.len() > 1).collect();
+        let against_rest = |texts: Vec<&'a NumberedText>| -> Vec<CaptionRow<'a>> {
             let rows = several.iter().zip(texts);
-            rows.map(|(item, text)| Row { text, references: item.references[1..].to_vec() }).collect()
+            rows.map(|(item, text)| CaptionRow { text, references: item.references[1..].to_vec() }).collect()
         };
-        let all = items.iter().map(|item| Row { text: item.text, references: item.references.clone() });
-        let clusters = |items: &[&Described<'a>]| items.iter().map(|item| item.cluster).collect();
+        let all = items.iter().map(|item| CaptionRow { text: item.text, references: item.references.clone() });
+        let clusters = |items: &[&CaptionItem<'a>]| items.iter().map(|item| item.cluster).collect();
         Self {
             all: all.collect(),
             rest: against_rest(several.iter().map(|item| item.text).collect()),
             person: against_rest(several.iter().map(|item| item.references[0]).collect()),
-            other_path: strangers(&several, seed).map(against_rest),
+            other_path: other_path_texts(&several, seed).map(against_rest),
             clusters: clusters(&items),
             clusters_of_several: clusters(&several),
         }
@@ -95,10 +95,11 @@ impl<'a> Sets<'a> {
 
 /// The figures of items' texts, and of the anchors.
 #[must_use]
-pub fn anchored(sets: &Sets<'_>, drawing: &Drawing) -> Anchored {
-    let of_several = |rows: &[Row<'_>]| Figures::of(&sets.clusters_of_several, &scores(rows), drawing);
-    Anchored {
-        all: Figures::of(&sets.clusters, &scores(&sets.all), drawing),
+pub fn anchored_caption_figures(sets: &CaptionRowSets<'_>, drawing: &ResamplingOptions) -> AnchoredCaptionFigures {
+    let of_several =
+        |rows: &[CaptionRow<'_>]| CaptionFigures::from_scores(&sets.clusters_of_several, &score_rows(rows), drawing);
+    AnchoredCaptionFigures {
+        all: CaptionFigures::from_scores(&sets.clusters, &score_rows(&sets.all), drawing),
         rest: of_several(&sets.rest),
         person: of_several(&sets.person),
         other_path: sets.other_path.as_deref().and_then(of_several),
@@ -107,15 +108,15 @@ pub fn anchored(sets: &Sets<'_>, drawing: &Drawing) -> Anchored {
 }
 
 /// For each item, the first reference of an item of another path.
-fn strangers<'a>(items: &[&Described<'a>], seed: u64) -> Option<Vec<&'a Text>> {
+fn other_path_texts<'a>(items: &[&CaptionItem<'a>], seed: u64) -> Option<Vec<&'a NumberedText>> {
     let names: Vec<(&str, &str)> = items.iter().map(|item| (item.id, item.cluster)).collect();
-    Some(elsewhere(&names, seed)?.into_iter().map(|at| items[at].references[0]).collect())
+    Some(draw_other_paths(&names, seed)?.into_iter().map(|at| items[at].references[0]).collect())
 }
 
 /// For each item, given by its id and its path, the number of an item of another path, drawn by the seed; `None` where there is
 /// a single path.
 #[must_use]
-pub fn elsewhere(items: &[(&str, &str)], seed: u64) -> Option<Vec<usize>> {
+pub fn draw_other_paths(items: &[(&str, &str)], seed: u64) -> Option<Vec<usize>> {
     let mut of_path: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
     for (at, (_, path)) in items.iter().enumerate() {
         of_path.entry(path).or_default().push(at);
@@ -130,7 +131,7 @@ pub fn elsewhere(items: &[(&str, &str)], seed: u64) -> Option<Vec<usize>> {
     let draw = |(id, path): &(&str, &str)| {
         let (first, count) = (start[path], of_path[path].len());
         let others = ordered.len() - count;
-        let at = (others > 0).then(|| rng(seed, &["another path", id]).random_range(0..others))?;
+        let at = (others > 0).then(|| seeded_rng(seed, &["another path", id]).random_range(0..others))?;
         Some(ordered[if at < first { at } else { at + count }])
     };
     items.iter().map(draw).collect()
@@ -138,14 +139,14 @@ pub fn elsewhere(items: &[(&str, &str)], seed: u64) -> Option<Vec<usize>> {
 
 /// Sums over the texts of one path.
 #[derive(Debug, Clone, Copy, Default)]
-struct Sum {
-    counts: Counts,
+struct CaptionSum {
+    counts: BleuCounts,
     rouge_l: f64,
     cider_d: f64,
     texts: usize,
 }
 
-impl Sum {
+impl CaptionSum {
     fn plus(mut self, other: Self) -> Self {
         self.counts += other.counts;
         self.rouge_l += other.rouge_l;
@@ -155,32 +156,32 @@ impl Sum {
     }
 
     /// BLEU-1 to BLEU-4, ROUGE-L and CIDEr-D.
-    fn figures(&self) -> [f64; 6] {
-        let [one, two, three, four] = self.counts.bleu();
+    fn mean_figures(&self) -> [f64; 6] {
+        let [one, two, three, four] = self.counts.bleu_scores();
         [one, two, three, four, self.rouge_l / self.texts as f64, self.cider_d / self.texts as f64]
     }
 }
 
-impl Figures {
+impl CaptionFigures {
     /// The figures of texts, each with the path that it is about; `None` without a text.
     #[must_use]
-    pub fn of(clusters: &[&str], scores: &[Scores], drawing: &Drawing) -> Option<Self> {
-        let mut sums: BTreeMap<&str, Sum> = BTreeMap::new();
+    pub fn from_scores(clusters: &[&str], scores: &[CaptionScores], drawing: &ResamplingOptions) -> Option<Self> {
+        let mut sums: BTreeMap<&str, CaptionSum> = BTreeMap::new();
         for (cluster, score) in clusters.iter().zip(scores) {
-            let one = Sum { counts: score.counts, rouge_l: score.rouge_l, cider_d: score.cider_d, texts: 1 };
+            let one = CaptionSum { counts: score.counts, rouge_l: score.rouge_l, cider_d: score.cider_d, texts: 1 };
             let sum = sums.entry(cluster).or_default();
             *sum = sum.plus(one);
         }
-        let sums: Vec<Sum> = sums.into_values().collect();
-        let total = |of: &mut dyn Iterator<Item = Sum>| of.fold(Sum::default(), Sum::plus);
+        let sums: Vec<CaptionSum> = sums.into_values().collect();
+        let total = |of: &mut dyn Iterator<Item = CaptionSum>| of.fold(CaptionSum::default(), CaptionSum::plus);
         let means = total(&mut sums.iter().copied());
         if means.texts == 0 {
             return None;
         }
-        let figures = |drawn: &[usize]| total(&mut drawn.iter().map(|at| sums[*at])).figures();
+        let figures = |drawn: &[usize]| total(&mut drawn.iter().map(|at| sums[*at])).mean_figures();
         let intervals = interval_of(sums.len(), drawing, figures);
-        let estimate = |at: usize| Estimate {
-            mean: means.figures()[at],
+        let estimate = |at: usize| MeanEstimate {
+            mean: means.mean_figures()[at],
             low: intervals[at].0,
             high: intervals[at].1,
             values: means.texts,

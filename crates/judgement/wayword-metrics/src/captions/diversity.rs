@@ -1,24 +1,24 @@
 //! How diverse a set of texts is: how little they repeat themselves and each other.
 
 use super::{
-    bleu::Counts,
+    bleu::BleuCounts,
     rouge::rouge_l,
-    text::{ORDERS, Text, order},
+    text::{GRAM_ORDER_COUNT, NumberedText, gram_order},
 };
 use rand::Rng;
 use serde::Serialize;
 use std::collections::{BTreeMap, HashSet};
-use wayword_core::rng;
+use wayword_core::seeded_rng;
 
 /// Words in a window of the type-token ratio.
-const WINDOW: usize = 50;
+const WINDOW_WORDS: usize = 50;
 /// Pairs of texts that are compared at random.
-const PAIRS: usize = 2_000;
+const RANDOM_PAIR_COUNT: usize = 2_000;
 
 /// How diverse texts are. There are no intervals: all but the last are figures of the whole set, and grow or fall with
 /// its size, so that only sets of about the same size can be compared.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Diversity {
+pub struct TextDiversity {
     /// How many texts.
     pub texts: usize,
     /// Mean BLEU-4 of each text against all others (Zhu 2018); lower is more diverse.
@@ -33,56 +33,56 @@ pub struct Diversity {
 
 /// How diverse texts are, each with the path that it is about.
 #[must_use]
-pub fn diversity(texts: &[(&str, &Text)], seed: u64) -> Diversity {
-    let all: Vec<&Text> = texts.iter().map(|(_, text)| *text).collect();
-    Diversity {
+pub fn measure_diversity(texts: &[(&str, &NumberedText)], seed: u64) -> TextDiversity {
+    let all: Vec<&NumberedText> = texts.iter().map(|(_, text)| *text).collect();
+    TextDiversity {
         texts: all.len(),
         self_bleu_4: self_bleu_4(&all),
-        distinct: std::array::from_fn(|order| distinct(&all, order)),
-        mattr_50: mattr(&all),
-        homogenisation: homogenisation(texts, seed),
+        distinct: std::array::from_fn(|order| distinct_share(&all, order)),
+        mattr_50: type_token_ratio(&all),
+        homogenisation: measure_homogenisation(texts, seed),
     }
 }
 
 /// The two highest counts of an n-gram in any text, and which text has the highest. A text is compared with all others, so for the
 /// owner of the highest count the second highest is used.
 #[derive(Debug, Clone, Copy, Default)]
-struct Most {
+struct TopGramCounts {
     first: u32,
     owner: usize,
     second: u32,
 }
 
-fn self_bleu_4(texts: &[&Text]) -> Option<f64> {
-    let mut most: BTreeMap<u128, Most> = BTreeMap::new();
+fn self_bleu_4(texts: &[&NumberedText]) -> Option<f64> {
+    let mut most: BTreeMap<u128, TopGramCounts> = BTreeMap::new();
     let mut lengths: BTreeMap<usize, usize> = BTreeMap::new();
     for (owner, text) in texts.iter().enumerate() {
         *lengths.entry(text.len()).or_default() += 1;
         for gram in text.grams() {
             let of_gram = most.entry(gram.key).or_default();
             *of_gram = if gram.count > of_gram.first {
-                Most { first: gram.count, owner, second: of_gram.first }
+                TopGramCounts { first: gram.count, owner, second: of_gram.first }
             } else {
-                Most { second: of_gram.second.max(gram.count), ..*of_gram }
+                TopGramCounts { second: of_gram.second.max(gram.count), ..*of_gram }
             };
         }
     }
-    let of_text = |(owner, text): (usize, &&Text)| {
-        let mut counts = Counts::of(text, &[]);
+    let of_text = |(owner, text): (usize, &&NumberedText)| {
+        let mut counts = BleuCounts::for_text(text, &[]);
         for gram in text.grams() {
             let found = most.get(&gram.key).copied().unwrap_or_default();
             let others = if found.owner == owner { found.second } else { found.first };
             counts.correct[gram.order()] += u64::from(gram.count.min(others));
         }
-        counts.reference = closest(&lengths, text.len()) as u64;
-        counts.bleu()[ORDERS - 1]
+        counts.reference = closest_length(&lengths, text.len()) as u64;
+        counts.bleu_scores()[GRAM_ORDER_COUNT - 1]
     };
     let scores: Vec<f64> = texts.iter().enumerate().map(of_text).collect();
     (texts.len() > 1).then(|| scores.iter().sum::<f64>() / scores.len() as f64)
 }
 
 /// The closest length among the other texts; of two equally close ones the shorter.
-fn closest(lengths: &BTreeMap<usize, usize>, length: usize) -> usize {
+fn closest_length(lengths: &BTreeMap<usize, usize>, length: usize) -> usize {
     let shared = lengths.get(&length).is_some_and(|count| *count > 1);
     let below = lengths.range(..length).next_back();
     let above = lengths.range(length + 1..).next();
@@ -90,8 +90,8 @@ fn closest(lengths: &BTreeMap<usize, usize>, length: usize) -> usize {
     if shared { length } else { near.map_or(0, |(_, other)| other) }
 }
 
-fn distinct(texts: &[&Text], of_order: usize) -> Option<f64> {
-    let grams = texts.iter().flat_map(|text| text.grams()).filter(|gram| order(gram.key) == of_order);
+fn distinct_share(texts: &[&NumberedText], of_order: usize) -> Option<f64> {
+    let grams = texts.iter().flat_map(|text| text.grams()).filter(|gram| gram_order(gram.key) == of_order);
     let (mut different, mut all) = (HashSet::new(), 0u64);
     for gram in grams {
         different.insert(gram.key);
@@ -100,9 +100,9 @@ fn distinct(texts: &[&Text], of_order: usize) -> Option<f64> {
     (all > 0).then(|| different.len() as f64 / all as f64)
 }
 
-fn mattr(texts: &[&Text]) -> Option<f64> {
+fn type_token_ratio(texts: &[&NumberedText]) -> Option<f64> {
     let words: Vec<u32> = texts.iter().flat_map(|text| text.words()).copied().collect();
-    let width = WINDOW.min(words.len());
+    let width = WINDOW_WORDS.min(words.len());
     if width == 0 {
         return None;
     }
@@ -126,14 +126,14 @@ fn mattr(texts: &[&Text]) -> Option<f64> {
     Some(types as f64 / (words.len() - width + 1) as f64 / width as f64)
 }
 
-fn homogenisation(texts: &[(&str, &Text)], seed: u64) -> Option<f64> {
+fn measure_homogenisation(texts: &[(&str, &NumberedText)], seed: u64) -> Option<f64> {
     let paths: HashSet<&str> = texts.iter().map(|(path, _)| *path).collect();
     if paths.len() < 2 {
         return None;
     }
-    let mut rng = rng(seed, &["homogenisation"]);
-    let mut drawn = Vec::with_capacity(PAIRS);
-    while drawn.len() < PAIRS {
+    let mut rng = seeded_rng(seed, &["homogenisation"]);
+    let mut drawn = Vec::with_capacity(RANDOM_PAIR_COUNT);
+    while drawn.len() < RANDOM_PAIR_COUNT {
         let [(path, text), (other_path, other)] = [0; 2].map(|_| texts[rng.random_range(0..texts.len())]);
         if path != other_path {
             drawn.push(rouge_l(text, &[other]));
@@ -145,18 +145,18 @@ fn homogenisation(texts: &[(&str, &Text)], seed: u64) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::captions::Vocabulary;
+    use crate::captions::CaptionVocabulary;
 
-    fn texts(said: &[&str]) -> Vec<Text> {
-        let mut vocabulary = Vocabulary::default();
-        said.iter().map(|text| vocabulary.text(&text.split(' ').collect::<Vec<_>>())).collect()
+    fn texts(said: &[&str]) -> Vec<NumberedText> {
+        let mut vocabulary = CaptionVocabulary::default();
+        said.iter().map(|text| vocabulary.number_text(&text.split(' ').collect::<Vec<_>>())).collect()
     }
 
-    fn of(said: &[&str]) -> Diversity {
+    fn of(said: &[&str]) -> TextDiversity {
         let texts = texts(said);
         let names: Vec<String> = (0..texts.len()).map(|at| at.to_string()).collect();
-        let pairs: Vec<(&str, &Text)> = names.iter().map(String::as_str).zip(&texts).collect();
-        diversity(&pairs, 7)
+        let pairs: Vec<(&str, &NumberedText)> = names.iter().map(String::as_str).zip(&texts).collect();
+        measure_diversity(&pairs, 7)
     }
 
     #[test]
@@ -179,10 +179,11 @@ mod tests {
     fn self_bleu_is_the_mean_against_all_others() {
         let texts =
             texts(&["go up the stairs", "go up the long stairs", "go past the the door", "wait by the door up"]);
-        let all: Vec<&Text> = texts.iter().collect();
+        let all: Vec<&NumberedText> = texts.iter().collect();
         let one = |at: usize| {
-            let others: Vec<&Text> = (0..all.len()).filter(|other| *other != at).map(|other| all[other]).collect();
-            Counts::of(all[at], &others).bleu()[3]
+            let others: Vec<&NumberedText> =
+                (0..all.len()).filter(|other| *other != at).map(|other| all[other]).collect();
+            BleuCounts::for_text(all[at], &others).bleu_scores()[3]
         };
         let expected = (0..all.len()).map(one).sum::<f64>() / all.len() as f64;
         assert!((self_bleu_4(&all).unwrap() - expected).abs() < 1e-15);
@@ -200,7 +201,7 @@ mod tests {
 
     #[test]
     fn diversity_is_none_for_too_few_texts() {
-        let nothing = diversity(&[], 0);
+        let nothing = measure_diversity(&[], 0);
         assert_eq!((nothing.self_bleu_4, nothing.mattr_50, nothing.homogenisation), (None, None, None));
         assert_eq!(of(&["alone"]).self_bleu_4, None);
     }

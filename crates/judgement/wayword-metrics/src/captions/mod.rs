@@ -2,7 +2,7 @@
 //! texts is.
 //!
 //! All figures equal those of `pycocoevalcap` to the last digit that it prints. A figure can only be compared with others of
-//! the same protocol: the tokens ([`ptb`] or [`split`]), the references, and whether texts were cut off.
+//! the same protocol: the tokens ([`ptb_tokens`] or [`split_tokens`]), the references, and whether texts were cut off.
 
 mod bleu;
 mod cider;
@@ -13,29 +13,31 @@ mod rouge;
 mod split;
 mod text;
 
-pub use bleu::Counts;
+pub use bleu::BleuCounts;
 pub use cider::cider_d;
-pub use compared::{Anchored, Described, Figures, Sets, anchored, elsewhere};
-pub use diversity::{Diversity, diversity};
-pub use ptb::ptb;
+pub use compared::{
+    AnchoredCaptionFigures, CaptionFigures, CaptionItem, CaptionRowSets, anchored_caption_figures, draw_other_paths,
+};
+pub use diversity::{TextDiversity, measure_diversity};
+pub use ptb::ptb_tokens;
 pub use rouge::rouge_l;
-pub use split::split;
-pub use text::{Text, Vocabulary};
+pub use split::split_tokens;
+pub use text::{CaptionVocabulary, NumberedText};
 
 /// A text and the references that it is compared with.
 #[derive(Debug, Clone)]
-pub struct Row<'a> {
+pub struct CaptionRow<'a> {
     /// The text.
-    pub text: &'a Text,
+    pub text: &'a NumberedText,
     /// People's texts about the same item; at least one.
-    pub references: Vec<&'a Text>,
+    pub references: Vec<&'a NumberedText>,
 }
 
 /// The figures of one text.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Scores {
-    /// The counts for BLEU. [`Counts::bleu`] gives the text's own BLEU; of the sum of several counts it gives the corpus's BLEU.
-    pub counts: Counts,
+pub struct CaptionScores {
+    /// The counts for BLEU. [`BleuCounts::bleu_scores`] gives the text's own BLEU; of the sum of several counts it gives the corpus's BLEU.
+    pub counts: BleuCounts,
     /// ROUGE-L.
     pub rouge_l: f64,
     /// CIDEr-D among the texts that were scored together.
@@ -44,9 +46,9 @@ pub struct Scores {
 
 /// The figures of each text.
 #[must_use]
-pub fn scores(rows: &[Row<'_>]) -> Vec<Scores> {
-    let of_row = |(row, cider_d): (&Row<'_>, f64)| Scores {
-        counts: Counts::of(row.text, &row.references),
+pub fn score_rows(rows: &[CaptionRow<'_>]) -> Vec<CaptionScores> {
+    let of_row = |(row, cider_d): (&CaptionRow<'_>, f64)| CaptionScores {
+        counts: BleuCounts::for_text(row.text, &row.references),
         rouge_l: rouge_l(row.text, &row.references),
         cider_d,
     };
@@ -56,7 +58,7 @@ pub fn scores(rows: &[Row<'_>]) -> Vec<Scores> {
 /// White space collapsed to single blanks, without any at the ends. Line breaks within a text shift all later texts
 /// in a tokenizer that reads line by line, so this comes before any tokenizer. White space is what Python's `str.split` splits at.
 #[must_use]
-pub fn collapsed(text: &str) -> String {
+pub fn collapse_white_space(text: &str) -> String {
     let words = text.split(is_white).filter(|word| !word.is_empty());
     words.collect::<Vec<_>>().join(" ")
 }

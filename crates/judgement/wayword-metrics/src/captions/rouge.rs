@@ -1,13 +1,13 @@
 //! ROUGE-L as `pycocoevalcap`'s `rouge.py` computes it: how long a common subsequence of words a text has with a reference.
 
-use super::text::Text;
+use super::text::NumberedText;
 
 /// How much more recall counts than precision.
-const BETA: f64 = 1.2;
+const ROUGE_BETA: f64 = 1.2;
 
 /// ROUGE-L of a text: from the best precision and the best recall against any reference, which may be two references.
 #[must_use]
-pub fn rouge_l(text: &Text, references: &[&Text]) -> f64 {
+pub fn rouge_l(text: &NumberedText, references: &[&NumberedText]) -> f64 {
     let mut before = Vec::new();
     let [mut precision, mut recall] = [0.0, 0.0];
     for reference in references {
@@ -18,7 +18,7 @@ pub fn rouge_l(text: &Text, references: &[&Text]) -> f64 {
     if precision == 0.0 || recall == 0.0 {
         return 0.0;
     }
-    (1.0 + BETA * BETA) * precision * recall / (recall + BETA * BETA * precision)
+    (1.0 + ROUGE_BETA * ROUGE_BETA) * precision * recall / (recall + ROUGE_BETA * ROUGE_BETA * precision)
 }
 
 /// The length of the longest common subsequence. `row` is a buffer that the caller reuses.

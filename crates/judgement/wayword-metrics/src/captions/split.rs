@@ -3,15 +3,15 @@
 /// Splits a text into words in lower case and the marks between them. A run of punctuation marks is split into single marks, unless
 /// all are full stops.
 #[must_use]
-pub fn split(text: &str) -> Vec<String> {
-    let text = super::collapsed(text);
+pub fn split_tokens(text: &str) -> Vec<String> {
+    let text = super::collapse_white_space(text);
     let mut tokens = Vec::new();
     let mut rest = text.as_str();
     while let Some(first) = rest.chars().next() {
         let is_word = is_of_word(first);
         let end = rest.find(|c| is_of_word(c) != is_word).unwrap_or(rest.len());
         let (run, after) = rest.split_at(end);
-        between(run.trim(), &mut tokens);
+        push_run(run.trim(), &mut tokens);
         rest = after;
     }
     tokens
@@ -21,7 +21,7 @@ fn is_of_word(c: char) -> bool {
     c.is_alphanumeric() || c == '_'
 }
 
-fn between(run: &str, tokens: &mut Vec<String>) {
+fn push_run(run: &str, tokens: &mut Vec<String>) {
     let is_marks = run.chars().all(|c| c.is_ascii_punctuation()) && run.chars().any(|c| c != '.');
     if is_marks {
         tokens.extend(run.chars().map(String::from));
@@ -37,18 +37,18 @@ mod tests {
 
     #[test]
     fn punctuation_marks_are_tokens() {
-        assert_eq!(split("Turn Left, stop?! Wait..."), ["turn", "left", ",", "stop", "?", "!", "wait", "..."]);
-        assert_eq!(split("it's the left-hand door"), ["it", "'", "s", "the", "left", "-", "hand", "door"]);
-        assert_eq!(split("__ a_b é½"), ["_", "_", "a_b", "é½"]);
+        assert_eq!(split_tokens("Turn Left, stop?! Wait..."), ["turn", "left", ",", "stop", "?", "!", "wait", "..."]);
+        assert_eq!(split_tokens("it's the left-hand door"), ["it", "'", "s", "the", "left", "-", "hand", "door"]);
+        assert_eq!(split_tokens("__ a_b é½"), ["_", "_", "a_b", "é½"]);
     }
 
     #[test]
     fn marks_with_a_blank_among_them_are_split_there_alone() {
-        assert_eq!(split("stop.) (Then"), ["stop", ".)", "(", "then"]);
+        assert_eq!(split_tokens("stop.) (Then"), ["stop", ".)", "(", "then"]);
     }
 
     #[test]
     fn split_gives_no_tokens_for_an_empty_text() {
-        assert!(split(" \n ").is_empty());
+        assert!(split_tokens(" \n ").is_empty());
     }
 }

@@ -1,14 +1,14 @@
 //! Krippendorff's alpha: how far persons agree about items, beyond chance. It is 1 minus the observed disagreement within items
 //! over the disagreement that random pairs of answers would have.
 
-use super::{Answer, Interval, is_level, quantile};
+use super::{ConfidenceInterval, StudyAnswer, is_level, quantile};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// The scale of the answers, which defines the distance between two of them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Scale {
+pub enum AnswerScale {
     /// Names: two answers are the same or not.
     Nominal,
     /// Ordered levels: the distance depends on how many answers lie between them.
@@ -19,15 +19,15 @@ pub enum Scale {
 
 /// Krippendorff's alpha with its interval.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Agreement {
+pub struct RaterAgreement {
     /// 1 if all agree, 0 if they agree only as often as chance would make them.
     pub alpha: f64,
     /// Its interval; `None` where leaving out a person or an item never changes alpha.
-    pub interval: Option<Interval>,
+    pub interval: Option<ConfidenceInterval>,
     /// Its standard error, where it is above 0.
     pub se: Option<f64>,
     /// The scale of the answers.
-    pub scale: Scale,
+    pub scale: AnswerScale,
     /// Answers to items that have at least two.
     pub answers: usize,
     /// Persons who gave these answers.
@@ -47,38 +47,44 @@ pub struct Agreement {
 /// `None` where no item has two answers, where all answers are the same, where a value is not finite, and where the level is
 /// not between 0 and 1.
 #[must_use]
-pub fn agreement<P: Ord, I: Ord>(answers: &[Answer<P, I>], scale: Scale, level: f64) -> Option<Agreement> {
+pub fn krippendorff_alpha<P: Ord, I: Ord>(
+    answers: &[StudyAnswer<P, I>],
+    scale: AnswerScale,
+    level: f64,
+) -> Option<RaterAgreement> {
     let is_fine = is_level(level) && answers.iter().all(|answer| answer.value.is_finite());
-    let ratings = is_fine.then(|| Ratings::new(answers, scale));
+    let ratings = is_fine.then(|| RatingTable::new(answers, scale));
     let ratings = ratings?;
     let alpha = ratings.alpha_without(&[])?;
     let [persons, items] = [&ratings.by_person, &ratings.by_item].map(Vec::len);
-    let se = ratings.se().filter(|se| *se > 0.0 && alpha < 1.0);
-    let t = quantile::student(0.5 + level / 2.0, persons.min(items).saturating_sub(1));
+    let se = ratings.standard_error().filter(|se| *se > 0.0 && alpha < 1.0);
+    let t = quantile::student_quantile(0.5 + level / 2.0, persons.min(items).saturating_sub(1));
     let half = se.zip(t).map(|(se, t)| t * se / (1.0 - alpha));
-    let interval =
-        half.map(|half| Interval { low: 1.0 - (1.0 - alpha) * half.exp(), high: 1.0 - (1.0 - alpha) * (-half).exp() });
-    Some(Agreement { alpha, interval, se, scale, answers: ratings.answers.len(), persons, items })
+    let interval = half.map(|half| ConfidenceInterval {
+        low: 1.0 - (1.0 - alpha) * half.exp(),
+        high: 1.0 - (1.0 - alpha) * (-half).exp(),
+    });
+    Some(RaterAgreement { alpha, interval, se, scale, answers: ratings.answers.len(), persons, items })
 }
 
 /// An answer by the numbers of its item and its value.
-type Place = (usize, usize);
+type AnswerPosition = (usize, usize);
 
 /// Answers to the items that have at least two.
-struct Ratings {
-    scale: Scale,
+struct RatingTable {
+    scale: AnswerScale,
     /// The values that occur, in order.
     levels: Vec<f64>,
     /// How often each item has each value, by the number of the value.
     items: Vec<Vec<(usize, f64)>>,
-    answers: Vec<Place>,
-    by_person: Vec<Vec<Place>>,
-    by_item: Vec<Vec<Place>>,
+    answers: Vec<AnswerPosition>,
+    by_person: Vec<Vec<AnswerPosition>>,
+    by_item: Vec<Vec<AnswerPosition>>,
 }
 
-impl Ratings {
-    fn new<P: Ord, I: Ord>(answers: &[Answer<P, I>], scale: Scale) -> Self {
-        let mut items: BTreeMap<&I, Vec<&Answer<P, I>>> = BTreeMap::new();
+impl RatingTable {
+    fn new<P: Ord, I: Ord>(answers: &[StudyAnswer<P, I>], scale: AnswerScale) -> Self {
+        let mut items: BTreeMap<&I, Vec<&StudyAnswer<P, I>>> = BTreeMap::new();
         for answer in answers {
             items.entry(&answer.item).or_default().push(answer);
         }
@@ -86,7 +92,7 @@ impl Ratings {
         let mut levels: Vec<f64> = items.values().flatten().map(|answer| answer.value).collect();
         levels.sort_unstable_by(f64::total_cmp);
         levels.dedup_by(|a, b| a == b);
-        let mut by_person: BTreeMap<&P, Vec<Place>> = BTreeMap::new();
+        let mut by_person: BTreeMap<&P, Vec<AnswerPosition>> = BTreeMap::new();
         let mut by_item = vec![Vec::new(); items.len()];
         for (item, answer) in
             items.values().enumerate().flat_map(|(item, of)| of.iter().map(move |answer| (item, answer)))
@@ -98,7 +104,7 @@ impl Ratings {
         Self {
             scale,
             levels,
-            items: by_item.iter().map(|of| counts(of)).collect(),
+            items: by_item.iter().map(|of| count_levels(of)).collect(),
             answers: by_item.iter().flatten().copied().collect(),
             by_person: by_person.into_values().collect(),
             by_item,
@@ -106,14 +112,15 @@ impl Ratings {
     }
 
     /// The standard error by the jackknife; `None` if too few of the reduced sets of answers have an alpha.
-    fn se(&self) -> Option<f64> {
-        let single: Vec<Vec<Place>> = self.answers.iter().map(|place| vec![*place]).collect();
-        let [item, person, answer] = [&self.by_item, &self.by_person, &single].map(|groups| self.jackknife(groups));
+    fn standard_error(&self) -> Option<f64> {
+        let single: Vec<Vec<AnswerPosition>> = self.answers.iter().map(|place| vec![*place]).collect();
+        let [item, person, answer] =
+            [&self.by_item, &self.by_person, &single].map(|groups| self.jackknife_variance(groups));
         Some((item? + (person? - answer?).max(0.0)).sqrt())
     }
 
     /// The jackknife variance of alpha: each group of answers is left out in turn.
-    fn jackknife(&self, groups: &[Vec<Place>]) -> Option<f64> {
+    fn jackknife_variance(&self, groups: &[Vec<AnswerPosition>]) -> Option<f64> {
         let alphas: Vec<f64> = groups.iter().filter_map(|group| self.alpha_without(group)).collect();
         let count = alphas.len() as f64;
         let mean = alphas.iter().sum::<f64>() / count;
@@ -122,29 +129,29 @@ impl Ratings {
     }
 
     /// Alpha without some answers. `None` where no item has two answers, or all answers are the same.
-    fn alpha_without(&self, out: &[Place]) -> Option<f64> {
+    fn alpha_without(&self, out: &[AnswerPosition]) -> Option<f64> {
         let mut items = self.items.clone();
         for (item, level) in out {
             items[*item].iter_mut().filter(|(at, _)| at == level).for_each(|(_, count)| *count -= 1.0);
         }
-        items.retain(|of| size(of) > 1.0);
+        items.retain(|of| answer_total(of) > 1.0);
         let mut totals = vec![0.0; self.levels.len()];
         items.iter().flatten().for_each(|(level, count)| totals[*level] += count);
-        let places = self.places(&totals);
+        let places = self.level_positions(&totals);
         let apart = |a: usize, b: usize| match self.scale {
-            Scale::Nominal => f64::from(u8::from(a != b)),
-            Scale::Ordinal | Scale::Interval => (places[a] - places[b]) * (places[a] - places[b]),
+            AnswerScale::Nominal => f64::from(u8::from(a != b)),
+            AnswerScale::Ordinal | AnswerScale::Interval => (places[a] - places[b]) * (places[a] - places[b]),
         };
-        let observed: f64 = items.iter().map(|of| disagreement(of, apart) / (size(of) - 1.0)).sum();
+        let observed: f64 = items.iter().map(|of| total_disagreement(of, apart) / (answer_total(of) - 1.0)).sum();
         let all: Vec<(usize, f64)> = totals.iter().copied().enumerate().filter(|(_, total)| *total > 0.0).collect();
-        let expected = disagreement(&all, apart) / (size(&all) - 1.0);
+        let expected = total_disagreement(&all, apart) / (answer_total(&all) - 1.0);
         (expected > 0.0).then(|| 1.0 - observed / expected)
     }
 
     /// A coordinate for each level, such that the squared difference of two coordinates is their distance. On an ordinal scale
     /// this is the number of answers below the level plus half of those at it.
-    fn places(&self, totals: &[f64]) -> Vec<f64> {
-        if self.scale != Scale::Ordinal {
+    fn level_positions(&self, totals: &[f64]) -> Vec<f64> {
+        if self.scale != AnswerScale::Ordinal {
             return self.levels.clone();
         }
         let below = totals.iter().scan(0.0, |below, total| {
@@ -156,7 +163,7 @@ impl Ratings {
 }
 
 /// Sum of the distances of all ordered pairs.
-fn disagreement(counts: &[(usize, f64)], apart: impl Fn(usize, usize) -> f64) -> f64 {
+fn total_disagreement(counts: &[(usize, f64)], apart: impl Fn(usize, usize) -> f64) -> f64 {
     let mut sum = 0.0;
     for (at, (level, count)) in counts.iter().enumerate() {
         for (other, others) in &counts[..at] {
@@ -166,11 +173,11 @@ fn disagreement(counts: &[(usize, f64)], apart: impl Fn(usize, usize) -> f64) ->
     2.0 * sum
 }
 
-fn size(counts: &[(usize, f64)]) -> f64 {
+fn answer_total(counts: &[(usize, f64)]) -> f64 {
     counts.iter().map(|(_, count)| count).sum()
 }
 
-fn counts(answers: &[Place]) -> Vec<(usize, f64)> {
+fn count_levels(answers: &[AnswerPosition]) -> Vec<(usize, f64)> {
     let mut counts: BTreeMap<usize, f64> = BTreeMap::new();
     answers.iter().for_each(|(_, level)| *counts.entry(*level).or_default() += 1.0);
     counts.into_iter().collect()
@@ -181,7 +188,7 @@ mod tests {
     use super::*;
 
     /// Krippendorff's own example, "Computing Krippendorff's Alpha-Reliability" (2011), section C: four observers, twelve units.
-    fn example() -> Vec<Answer<u32, u32>> {
+    fn example() -> Vec<StudyAnswer<u32, u32>> {
         let table = [
             [1, 2, 3, 3, 2, 1, 4, 1, 2, 0, 0, 0],
             [1, 2, 3, 3, 2, 2, 4, 1, 2, 5, 0, 3],
@@ -194,51 +201,54 @@ mod tests {
             .flat_map(|(row, person)| row.iter().zip(0..).map(move |(value, item)| (person, item, *value)));
         cells
             .filter(|(_, _, value)| *value > 0)
-            .map(|(person, item, value)| Answer { person, item, value: f64::from(value) })
+            .map(|(person, item, value)| StudyAnswer { person, item, value: f64::from(value) })
             .collect()
     }
 
     #[test]
     fn the_published_example_has_its_alphas() {
-        for (scale, expected) in [(Scale::Nominal, "0.743"), (Scale::Ordinal, "0.815"), (Scale::Interval, "0.849")] {
-            let found = agreement(&example(), scale, 0.95).unwrap();
+        for (scale, expected) in
+            [(AnswerScale::Nominal, "0.743"), (AnswerScale::Ordinal, "0.815"), (AnswerScale::Interval, "0.849")]
+        {
+            let found = krippendorff_alpha(&example(), scale, 0.95).unwrap();
             assert_eq!(format!("{:.3}", found.alpha), expected);
             assert_eq!((found.answers, found.persons, found.items), (40, 4, 11));
-            let Interval { low, high } = found.interval.unwrap();
+            let ConfidenceInterval { low, high } = found.interval.unwrap();
             assert!(low < found.alpha && found.alpha <= high && high <= 1.0, "{found:?}");
         }
     }
 
     #[test]
     fn alpha_is_one_for_full_agreement() {
-        let all: Vec<Answer<u8, u8>> =
-            (0..20).map(|n| Answer { person: n % 2, item: n / 2, value: f64::from(n / 2 % 3) }).collect();
-        for scale in [Scale::Nominal, Scale::Ordinal, Scale::Interval] {
-            let found = agreement(&all, scale, 0.95).unwrap();
+        let all: Vec<StudyAnswer<u8, u8>> =
+            (0..20).map(|n| StudyAnswer { person: n % 2, item: n / 2, value: f64::from(n / 2 % 3) }).collect();
+        for scale in [AnswerScale::Nominal, AnswerScale::Ordinal, AnswerScale::Interval] {
+            let found = krippendorff_alpha(&all, scale, 0.95).unwrap();
             assert_eq!((found.alpha, found.interval), (1.0, None));
         }
     }
 
     #[test]
     fn alpha_is_none_without_answers_to_compare() {
-        let of = |value: fn(u8) -> f64, per_item: u8| -> Vec<Answer<u8, u8>> {
-            (0..20).map(|n| Answer { person: n, item: n / per_item, value: value(n) }).collect()
+        let of = |value: fn(u8) -> f64, per_item: u8| -> Vec<StudyAnswer<u8, u8>> {
+            (0..20).map(|n| StudyAnswer { person: n, item: n / per_item, value: value(n) }).collect()
         };
-        assert_eq!(agreement(&of(f64::from, 1), Scale::Interval, 0.95), None);
-        assert_eq!(agreement(&of(|_| 4.0, 2), Scale::Interval, 0.95), None);
-        assert_eq!(agreement(&of(|_| f64::NAN, 2), Scale::Interval, 0.95), None);
-        let one_item = agreement(&of(f64::from, 20), Scale::Interval, 0.95).unwrap();
+        assert_eq!(krippendorff_alpha(&of(f64::from, 1), AnswerScale::Interval, 0.95), None);
+        assert_eq!(krippendorff_alpha(&of(|_| 4.0, 2), AnswerScale::Interval, 0.95), None);
+        assert_eq!(krippendorff_alpha(&of(|_| f64::NAN, 2), AnswerScale::Interval, 0.95), None);
+        let one_item = krippendorff_alpha(&of(f64::from, 20), AnswerScale::Interval, 0.95).unwrap();
         assert_eq!((one_item.items, one_item.interval), (1, None));
     }
 
     #[test]
     fn more_items_narrow_the_interval() {
-        let of = |items: u32| -> Agreement {
+        let of = |items: u32| -> RaterAgreement {
             let value = |n: u32| f64::from((n.wrapping_mul(2_654_435_761) >> 16) % 3 + n / 3 % 3);
-            let all: Vec<_> = (0..3 * items).map(|n| Answer { person: n % 30, item: n / 3, value: value(n) }).collect();
-            agreement(&all, Scale::Ordinal, 0.95).unwrap()
+            let all: Vec<_> =
+                (0..3 * items).map(|n| StudyAnswer { person: n % 30, item: n / 3, value: value(n) }).collect();
+            krippendorff_alpha(&all, AnswerScale::Ordinal, 0.95).unwrap()
         };
-        let width = |found: &Agreement| found.interval.map(|interval| interval.high - interval.low).unwrap();
+        let width = |found: &RaterAgreement| found.interval.map(|interval| interval.high - interval.low).unwrap();
         let (few, many) = (of(20), of(200));
         assert!(width(&few) > 2.0 * width(&many), "{few:?} {many:?}");
     }

@@ -7,16 +7,16 @@
 /// error is far below 1e-12.
 #[must_use]
 pub fn mean_share(logit: f64, sd: f64) -> f64 {
-    over(logit, sd, expit)
+    mean_over_normal(logit, sd, expit)
 }
 
 /// The mean of a function of a normal variable.
-pub(super) fn over(mean: f64, sd: f64, of: impl Fn(f64) -> f64) -> f64 {
-    const STEPS: i32 = 144;
-    const STEP: f64 = 1.0 / 16.0;
+pub(super) fn mean_over_normal(mean: f64, sd: f64, of: impl Fn(f64) -> f64) -> f64 {
+    const STEPS_PER_SIDE: i32 = 144;
+    const STEP_DEVIATIONS: f64 = 1.0 / 16.0;
     let (mut sum, mut weights) = (0.0, 0.0);
-    for step in -STEPS..=STEPS {
-        let at = f64::from(step) * STEP;
+    for step in -STEPS_PER_SIDE..=STEPS_PER_SIDE {
+        let at = f64::from(step) * STEP_DEVIATIONS;
         let weight = (-at * at / 2.0).exp();
         sum += weight * of(mean + sd * at);
         weights += weight;
@@ -25,7 +25,7 @@ pub(super) fn over(mean: f64, sd: f64, of: impl Fn(f64) -> f64) -> f64 {
 }
 
 /// The inverse of [`mean_share`]: the logit for which the mean share, with standard deviation `sd`, is `share`; by bisection.
-pub(super) fn centre(share: f64, sd: f64) -> f64 {
+pub(super) fn centre_logit(share: f64, sd: f64) -> f64 {
     let (mut low, mut high) = (-60.0, 60.0);
     for _ in 0..100 {
         let middle = f64::midpoint(low, high);
@@ -68,7 +68,7 @@ mod tests {
     #[test]
     fn the_centre_gives_the_share_back() {
         for share in [0.02, 0.3, 0.5, 0.8, 0.99] {
-            assert!((mean_share(centre(share, 1.7), 1.7) - share).abs() < 1e-12);
+            assert!((mean_share(centre_logit(share, 1.7), 1.7) - share).abs() < 1e-12);
         }
     }
 

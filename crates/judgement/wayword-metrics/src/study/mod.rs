@@ -11,17 +11,21 @@ mod power;
 mod quantile;
 mod share;
 
-pub use agreement::{Agreement, Scale, agreement};
-pub use bradley_terry::{BradleyTerry, Comparison, NoStrength, Preference, Strength, Term, bradley_terry};
-pub use crossed::{Difference, Figure, Method, mean, mean_difference, share, share_difference};
+pub use agreement::{AnswerScale, RaterAgreement, krippendorff_alpha};
+pub use bradley_terry::{
+    BradleyTerry, FittedTerm, NoStrength, PairPreference, SystemComparison, SystemStrength, bradley_terry,
+};
+pub use crossed::{
+    FigureDifference, IntervalMethod, StudyFigure, answer_mean, answer_share, mean_difference, share_difference,
+};
 pub use logit_normal::mean_share;
-pub use power::{Detectable, Plan, detectable};
+pub use power::{DetectableShareDifference, PowerPlan, detectable_difference};
 use serde::{Deserialize, Serialize};
-pub use share::wilson;
+pub use share::wilson_interval;
 
 /// One person's answer to one item.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Answer<P, I> {
+pub struct StudyAnswer<P, I> {
     /// The person.
     pub person: P,
     /// The item.
@@ -32,7 +36,7 @@ pub struct Answer<P, I> {
 
 /// The ends of an interval.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Interval {
+pub struct ConfidenceInterval {
     /// Lower end.
     pub low: f64,
     /// Upper end.

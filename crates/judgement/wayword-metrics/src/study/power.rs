@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 /// A planned study of two conditions.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Plan {
+pub struct PowerPlan {
     /// All persons, those of both conditions together.
     pub persons: usize,
     /// Items, those of both conditions together where no item is in both.
@@ -26,7 +26,7 @@ pub struct Plan {
 
 /// The smallest difference between two shares that a plan detects.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Detectable {
+pub struct DetectableShareDifference {
     /// The difference.
     pub difference: f64,
     /// Answers in each condition.
@@ -49,7 +49,7 @@ pub struct Detectable {
 /// in both conditions, their effects cancel from the difference, and `a - 1` (or `b - 1`) becomes -1. `None` where no difference
 /// has that power, and for impossible plans.
 #[must_use]
-pub fn detectable(plan: &Plan, power: f64, significance: f64) -> Option<Detectable> {
+pub fn detectable_difference(plan: &PowerPlan, power: f64, significance: f64) -> Option<DetectableShareDifference> {
     let answers_per_condition = (plan.persons * plan.answers_per_person) as f64 / 2.0;
     let is_inside = |share: f64| share > 0.0 && share < 1.0;
     let is_sd = |sd: f64| (0.0..=MOST_SD).contains(&sd);
@@ -59,19 +59,19 @@ pub fn detectable(plan: &Plan, power: f64, significance: f64) -> Option<Detectab
         && plan.items > 0
         && answers_per_condition > 0.0;
     let design_effect = can_be.then(|| design_effect(plan, answers_per_condition))?;
-    let z = [quantile::normal(1.0 - significance / 2.0), quantile::normal(power)];
-    let difference = smallest(plan.base_share, answers_per_condition / design_effect, z)?;
-    Some(Detectable { difference, answers_per_condition, design_effect })
+    let z = [quantile::normal_quantile(1.0 - significance / 2.0), quantile::normal_quantile(power)];
+    let difference = smallest_difference(plan.base_share, answers_per_condition / design_effect, z)?;
+    Some(DetectableShareDifference { difference, answers_per_condition, design_effect })
 }
 
 /// Largest standard deviation of logits that is accepted. Beyond it a person gives nearly always the same answer.
 const MOST_SD: f64 = 10.0;
 
-fn design_effect(plan: &Plan, answers: f64) -> f64 {
+fn design_effect(plan: &PowerPlan, answers: f64) -> f64 {
     let conditions = |in_both: bool| if in_both { 1.0 } else { 2.0 };
     let per_person = answers * conditions(plan.persons_see_both) / plan.persons as f64;
     let per_item = answers * conditions(plan.items_in_both) / plan.items as f64;
-    let [person, item] = correlations(plan);
+    let [person, item] = answer_correlations(plan);
     let effect = |in_both: bool, of_one: f64| if in_both { -1.0 } else { (of_one - 1.0).max(0.0) };
     1.0 + effect(plan.persons_see_both, per_person) * person + effect(plan.items_in_both, per_item) * item
 }
@@ -80,19 +80,19 @@ fn design_effect(plan: &Plan, answers: f64) -> f64 {
 ///
 /// Two answers of one person share the person's part of the logit and differ in the rest. Their covariance is the variance, over
 /// the shared part, of the expected share given that part. Divided by p (1 - p) it is their correlation.
-fn correlations(plan: &Plan) -> [f64; 2] {
+fn answer_correlations(plan: &PowerPlan) -> [f64; 2] {
     let all = plan.person_sd.hypot(plan.item_sd);
-    let centre = logit_normal::centre(plan.base_share, all);
+    let centre = logit_normal::centre_logit(plan.base_share, all);
     let total = plan.base_share * (1.0 - plan.base_share);
     let of = |shared: f64, rest: f64| {
-        let square = logit_normal::over(centre, shared, |at| mean_share(at, rest).powi(2));
+        let square = logit_normal::mean_over_normal(centre, shared, |at| mean_share(at, rest).powi(2));
         (square - plan.base_share * plan.base_share) / total
     };
     [of(plan.person_sd, plan.item_sd), of(plan.item_sd, plan.person_sd)]
 }
 
 /// Solves the formula for the difference, by bisection.
-fn smallest(mean: f64, answers: f64, [significance, power]: [f64; 2]) -> Option<f64> {
+fn smallest_difference(mean: f64, answers: f64, [significance, power]: [f64; 2]) -> Option<f64> {
     let variance = |share: f64| (share * (1.0 - share)).max(0.0);
     let is_detected = |difference: f64| {
         let apart = variance(mean + difference / 2.0) + variance(mean - difference / 2.0);
@@ -117,7 +117,7 @@ mod tests {
     use super::*;
     use rand::Rng;
 
-    const PLAN: Plan = Plan {
+    const PLAN: PowerPlan = PowerPlan {
         persons: 60,
         items: 60,
         answers_per_person: 1,
@@ -128,8 +128,8 @@ mod tests {
         items_in_both: false,
     };
 
-    fn found(plan: Plan) -> Detectable {
-        detectable(&plan, 0.8, 0.05).unwrap()
+    fn found(plan: PowerPlan) -> DetectableShareDifference {
+        detectable_difference(&plan, 0.8, 0.05).unwrap()
     }
 
     #[test]
@@ -142,21 +142,21 @@ mod tests {
     /// The size that detects 0.6 against 0.7 by Fleiss's formula is 356 (Fleiss, Levin and Paik 2003).
     #[test]
     fn a_known_size_detects_its_difference() {
-        let found = found(Plan { persons: 2 * 356, items: 2 * 356, base_share: 0.65, ..PLAN });
+        let found = found(PowerPlan { persons: 2 * 356, items: 2 * 356, base_share: 0.65, ..PLAN });
         assert!((found.difference - 0.1).abs() < 1e-4, "{found:?}");
     }
 
     #[test]
     fn one_person_each_with_one_item_each_is_independent_whatever_they_are_like() {
-        let found = found(Plan { person_sd: 1.5, item_sd: 1.0, ..PLAN });
+        let found = found(PowerPlan { person_sd: 1.5, item_sd: 1.0, ..PLAN });
         assert_eq!(found.design_effect, 1.0);
     }
 
     #[test]
     fn clusters_cost_and_conditions_within_persons_gain() {
-        let several = Plan { persons: 30, answers_per_person: 10, person_sd: 1.0, item_sd: 1.0, ..PLAN };
-        let within = Plan { persons_see_both: true, items_in_both: true, ..several };
-        let free = Plan { person_sd: 0.0, item_sd: 0.0, ..several };
+        let several = PowerPlan { persons: 30, answers_per_person: 10, person_sd: 1.0, item_sd: 1.0, ..PLAN };
+        let within = PowerPlan { persons_see_both: true, items_in_both: true, ..several };
+        let free = PowerPlan { person_sd: 0.0, item_sd: 0.0, ..several };
         let [several, within, free] = [several, within, free].map(found);
         assert!(several.design_effect > 2.0, "{several:?}");
         assert!(within.design_effect < 1.0, "{within:?}");
@@ -164,13 +164,13 @@ mod tests {
     }
 
     /// The variance of a difference between equal shares, over simulated studies: the plan's persons in order, items in turns.
-    fn simulated_variance(plan: Plan) -> f64 {
+    fn simulated_variance(plan: PowerPlan) -> f64 {
         const STUDIES: u32 = 2000;
-        let mut rng = wayword_core::rng(1, &["power"]);
-        let centre = logit_normal::centre(plan.base_share, plan.person_sd.hypot(plan.item_sd));
+        let mut rng = wayword_core::seeded_rng(1, &["power"]);
+        let centre = logit_normal::centre_logit(plan.base_share, plan.person_sd.hypot(plan.item_sd));
         let one = |_| {
             let mut normals = |count, sd: f64| -> Vec<f64> {
-                (0..count).map(|_| sd * quantile::normal(rng.random_range(1e-12..1.0))).collect()
+                (0..count).map(|_| sd * quantile::normal_quantile(rng.random_range(1e-12..1.0))).collect()
             };
             let (persons, items) = (normals(plan.persons, plan.person_sd), normals(plan.items, plan.item_sd));
             let mut ones = [0.0; 2];
@@ -192,7 +192,7 @@ mod tests {
 
     #[test]
     fn the_design_effect_is_that_of_simulated_studies() {
-        let plan = Plan {
+        let plan = PowerPlan {
             persons: 30,
             items: 60,
             answers_per_person: 10,
@@ -202,8 +202,8 @@ mod tests {
             ..PLAN
         };
         for (persons_see_both, items_in_both) in [(false, false), (false, true), (true, false)] {
-            let plan = Plan { persons_see_both, items_in_both, ..plan };
-            let Detectable { design_effect, answers_per_condition, .. } = found(plan);
+            let plan = PowerPlan { persons_see_both, items_in_both, ..plan };
+            let DetectableShareDifference { design_effect, answers_per_condition, .. } = found(plan);
             let independent = 2.0 * plan.base_share * (1.0 - plan.base_share) / answers_per_condition;
             let simulated = simulated_variance(plan) / independent;
             assert!((simulated / design_effect - 1.0).abs() < 0.12, "{plan:?}: {simulated} for {design_effect}");
@@ -213,13 +213,13 @@ mod tests {
     #[test]
     fn detectable_is_none_for_impossible_plans() {
         for plan in [
-            Plan { persons: 0, ..PLAN },
-            Plan { items: 0, ..PLAN },
-            Plan { base_share: 1.0, ..PLAN },
-            Plan { person_sd: f64::NAN, ..PLAN },
-            Plan { persons: 2, ..PLAN },
+            PowerPlan { persons: 0, ..PLAN },
+            PowerPlan { items: 0, ..PLAN },
+            PowerPlan { base_share: 1.0, ..PLAN },
+            PowerPlan { person_sd: f64::NAN, ..PLAN },
+            PowerPlan { persons: 2, ..PLAN },
         ] {
-            assert_eq!(detectable(&plan, 0.8, 0.05), None);
+            assert_eq!(detectable_difference(&plan, 0.8, 0.05), None);
         }
     }
 }

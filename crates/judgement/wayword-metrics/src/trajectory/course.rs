@@ -2,9 +2,9 @@
 //! computed once.
 
 use super::{
-    Demand, Distances, Grounding, Outcome, Score,
-    fidelity::Apart,
-    invalid::{Invalid, path, walked},
+    EpisodeDemand, SceneDistances, SuccessOutcome, TargetGrounding, TrajectoryScore,
+    fidelity::PathDistances,
+    invalid::{TrajectoryError, reference_places, trajectory_places},
 };
 use std::collections::BTreeSet;
 use wayword_core::{ObjectId, ViewpointId};
@@ -14,7 +14,7 @@ const SUCCESS_M: f64 = 3.0;
 
 /// An episode's demand, prepared for scoring many trajectories.
 #[derive(Debug, Clone)]
-pub struct Course {
+pub struct EpisodeScorer {
     start: usize,
     /// The annotated path; never empty.
     path: Vec<usize>,
@@ -26,46 +26,46 @@ pub struct Course {
     visible_from: Option<Vec<usize>>,
 }
 
-impl Course {
+impl EpisodeScorer {
     /// Prepares a demand. `distances` are those of its scene.
     ///
     /// # Errors
     /// Each problem of the annotated path.
-    pub fn new(distances: &Distances, demand: &Demand) -> Result<Self, Vec<Invalid>> {
-        let path = path(distances, demand)?;
-        let ([start, .., goal] | [start @ goal]) = path[..] else { return Err(vec![Invalid::NoReference]) };
+    pub fn new(distances: &SceneDistances, demand: &EpisodeDemand) -> Result<Self, Vec<TrajectoryError>> {
+        let path = reference_places(distances, demand)?;
+        let ([start, .., goal] | [start @ goal]) = path[..] else { return Err(vec![TrajectoryError::NoReference]) };
         let seen = demand.visible_from.as_ref().filter(|_| demand.object.is_some());
         let places = |from: &BTreeSet<ViewpointId>| {
             // Places are numbered in the order of their names, so these are in order too.
-            from.iter().filter_map(|viewpoint| distances.place(viewpoint.as_str())).collect()
+            from.iter().filter_map(|viewpoint| distances.place_number(viewpoint.as_str())).collect()
         };
         Ok(Self {
             start,
             path_m: length_m(distances, &path),
-            shortest_m: distances.between(start, goal),
+            shortest_m: distances.metres_between_places(start, goal),
             object: demand.object.clone(),
             visible_from: seen.map(places),
             path,
         })
     }
 
-    /// The figures of a trajectory, as [`score`](super::score) gives them. `names` are its viewpoints, `object` is the object that
-    /// the agent names, and `distances` must be those that were given to [`Course::new`].
+    /// The figures of a trajectory, as [`score_trajectory`](super::score_trajectory) gives them. `names` are its viewpoints, `object` is the object that
+    /// the agent names, and `distances` must be those that were given to [`EpisodeScorer::new`].
     ///
     /// # Errors
     /// Each problem of the trajectory.
-    pub fn score<'n>(
+    pub fn score_trajectory<'n>(
         &self,
-        distances: &Distances,
+        distances: &SceneDistances,
         names: impl Iterator<Item = &'n str> + Clone,
         object: Option<&str>,
-    ) -> Result<Score, Vec<Invalid>> {
-        let taken = walked(distances, Some(self.start), names)?;
-        let apart = Apart::new(distances, &taken, &self.path);
+    ) -> Result<TrajectoryScore, Vec<TrajectoryError>> {
+        let taken = trajectory_places(distances, Some(self.start), names)?;
+        let apart = PathDistances::new(distances, &taken, &self.path);
         let length_m = length_m(distances, &taken);
-        let weight = efficiency(self.shortest_m, length_m);
+        let weight = path_efficiency(self.shortest_m, length_m);
         let ndtw = apart.ndtw();
-        let outcome = |success, oracle_success| Outcome {
+        let outcome = |success, oracle_success| SuccessOutcome {
             success,
             oracle_success,
             spl: if success { weight } else { 0.0 },
@@ -79,9 +79,9 @@ impl Course {
         });
         let grounding = self.object.as_ref().map(|target| {
             let rgs = object == Some(target.as_str());
-            Grounding { rgs, rgspl: if rgs { weight } else { 0.0 } }
+            TargetGrounding { rgs, rgspl: if rgs { weight } else { 0.0 } }
         });
-        Ok(Score {
+        Ok(TrajectoryScore {
             length_m,
             navigation_error_m: error_m.is_finite().then_some(error_m),
             oracle_error_m: oracle_m.is_finite().then_some(oracle_m),
@@ -95,12 +95,12 @@ impl Course {
 }
 
 /// Sum of the distances between places in a row, metres.
-fn length_m(distances: &Distances, places: &[usize]) -> f64 {
-    places.windows(2).map(|hop| distances.between(hop[0], hop[1])).sum()
+fn length_m(distances: &SceneDistances, places: &[usize]) -> f64 {
+    places.windows(2).map(|hop| distances.metres_between_places(hop[0], hop[1])).sum()
 }
 
 /// The shortest length as a share of the length that was walked, at most 1.
-fn efficiency(shortest_m: f64, length_m: f64) -> f64 {
+fn path_efficiency(shortest_m: f64, length_m: f64) -> f64 {
     let longer_m = shortest_m.max(length_m);
     if longer_m.is_infinite() {
         0.0

@@ -1,6 +1,6 @@
 //! All shortest distances between the viewpoints of a scene.
 
-use super::places::Places;
+use super::places::NumberedViewpoints;
 use std::{cmp::Ordering, collections::BinaryHeap};
 use wayword_core::{ViewpointGraph, ViewpointId};
 
@@ -8,19 +8,19 @@ use wayword_core::{ViewpointGraph, ViewpointId};
 ///
 /// They take eight bytes for each pair: 1 MB for the largest of Matterport's buildings.
 #[derive(Debug, Clone)]
-pub struct Distances {
-    places: Places,
-    roads: Roads,
+pub struct SceneDistances {
+    places: NumberedViewpoints,
+    roads: EdgeLists,
     /// From one place to all, place after place; infinite where there is no way.
     metres: Vec<f64>,
 }
 
-impl Distances {
+impl SceneDistances {
     /// All distances of a graph: a shortest-path tree (Dijkstra 1959) from each viewpoint.
     #[must_use]
     pub fn new(graph: &ViewpointGraph) -> Self {
-        let places = Places::new(graph.viewpoints());
-        let roads = Roads::new(graph, &places);
+        let places = NumberedViewpoints::new(graph.viewpoints());
+        let roads = EdgeLists::new(graph, &places);
         let mut metres = vec![f64::INFINITY; places.len() * places.len()];
         let mut frontier = BinaryHeap::new();
         for (start, row) in metres.chunks_exact_mut(places.len().max(1)).enumerate() {
@@ -32,55 +32,55 @@ impl Distances {
     /// The length of the shortest way from one viewpoint to another, metres; `None` where there is no way, or where the
     /// scene lacks one of them.
     #[must_use]
-    pub fn metres(&self, a: &ViewpointId, b: &ViewpointId) -> Option<f64> {
-        let metres = self.between(self.place(a.as_str())?, self.place(b.as_str())?);
+    pub fn metres_between(&self, a: &ViewpointId, b: &ViewpointId) -> Option<f64> {
+        let metres = self.metres_between_places(self.place_number(a.as_str())?, self.place_number(b.as_str())?);
         metres.is_finite().then_some(metres)
     }
 
     /// Whether the scene has this viewpoint.
     #[must_use]
-    pub fn has(&self, viewpoint: &ViewpointId) -> bool {
-        self.place(viewpoint.as_str()).is_some()
+    pub fn has_viewpoint(&self, viewpoint: &ViewpointId) -> bool {
+        self.place_number(viewpoint.as_str()).is_some()
     }
 
     /// Whether an edge joins two viewpoints. No edge joins a viewpoint to itself.
     #[must_use]
     pub fn has_edge(&self, a: &ViewpointId, b: &ViewpointId) -> bool {
-        let ends = self.place(a.as_str()).zip(self.place(b.as_str()));
-        ends.is_some_and(|(a, b)| self.joins(a, b))
+        let ends = self.place_number(a.as_str()).zip(self.place_number(b.as_str()));
+        ends.is_some_and(|(a, b)| self.are_joined(a, b))
     }
 
     /// The number of a viewpoint, for the other functions.
-    pub(super) fn place(&self, viewpoint: &str) -> Option<usize> {
+    pub(super) fn place_number(&self, viewpoint: &str) -> Option<usize> {
         self.places.find(viewpoint)
     }
 
     /// The name of a place.
-    pub(super) fn name(&self, place: usize) -> &ViewpointId {
+    pub(super) fn place_name(&self, place: usize) -> &ViewpointId {
         self.places.name(place)
     }
 
     /// From one place to another, metres; infinite where there is no way.
-    pub(super) fn between(&self, a: usize, b: usize) -> f64 {
+    pub(super) fn metres_between_places(&self, a: usize, b: usize) -> f64 {
         self.metres[a * self.places.len() + b]
     }
 
-    pub(super) fn joins(&self, a: usize, b: usize) -> bool {
-        self.roads.from(a).iter().any(|(other, _)| *other == b)
+    pub(super) fn are_joined(&self, a: usize, b: usize) -> bool {
+        self.roads.edges_from(a).iter().any(|(other, _)| *other == b)
     }
 }
 
 /// The edges of all places in one vector, grouped by place: those of place `n` are from `first[n]` to `first[n + 1]`.
 #[derive(Debug, Clone)]
-struct Roads {
+struct EdgeLists {
     first: Vec<usize>,
     /// The other end, and the length in metres.
     to: Vec<(usize, f64)>,
 }
 
-impl Roads {
+impl EdgeLists {
     /// Collects the edges of a graph. Edges of infinite length are left out, because sums over them would be meaningless.
-    fn new(graph: &ViewpointGraph, places: &Places) -> Self {
+    fn new(graph: &ViewpointGraph, places: &NumberedViewpoints) -> Self {
         let mut ends: Vec<(usize, usize, f64)> = graph
             .edges()
             .filter(|(_, _, length_m)| length_m.is_finite())
@@ -92,24 +92,24 @@ impl Roads {
         Self { first, to: ends.into_iter().map(|(_, b, length_m)| (b, length_m)).collect() }
     }
 
-    fn from(&self, place: usize) -> &[(usize, f64)] {
+    fn edges_from(&self, place: usize) -> &[(usize, f64)] {
         &self.to[self.first[place]..self.first[place + 1]]
     }
 
     /// Writes the distances from `start` into a row that is infinite everywhere. The frontier is empty before and
     /// after.
-    fn walk_all(&self, start: usize, row: &mut [f64], frontier: &mut BinaryHeap<Reached>) {
+    fn walk_all(&self, start: usize, row: &mut [f64], frontier: &mut BinaryHeap<FrontierPlace>) {
         row[start] = 0.0;
-        frontier.push(Reached { metres: 0.0, place: start });
-        while let Some(Reached { metres, place }) = frontier.pop() {
+        frontier.push(FrontierPlace { metres: 0.0, place: start });
+        while let Some(FrontierPlace { metres, place }) = frontier.pop() {
             if metres > row[place] {
                 continue;
             }
-            for (next, length_m) in self.from(place) {
+            for (next, length_m) in self.edges_from(place) {
                 let through = metres + length_m;
                 if through < row[*next] {
                     row[*next] = through;
-                    frontier.push(Reached { metres: through, place: *next });
+                    frontier.push(FrontierPlace { metres: through, place: *next });
                 }
             }
         }
@@ -119,30 +119,30 @@ impl Roads {
 /// An entry of Dijkstra's priority queue. The order is reversed, because `BinaryHeap` pops its greatest element and the nearest place
 /// must come first.
 #[derive(Debug, Clone, Copy)]
-struct Reached {
+struct FrontierPlace {
     metres: f64,
     place: usize,
 }
 
-impl Ord for Reached {
+impl Ord for FrontierPlace {
     fn cmp(&self, other: &Self) -> Ordering {
         other.metres.total_cmp(&self.metres).then(other.place.cmp(&self.place))
     }
 }
 
-impl PartialOrd for Reached {
+impl PartialOrd for FrontierPlace {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl PartialEq for Reached {
+impl PartialEq for FrontierPlace {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other).is_eq()
     }
 }
 
-impl Eq for Reached {}
+impl Eq for FrontierPlace {}
 
 #[cfg(test)]
 mod tests {
@@ -152,38 +152,38 @@ mod tests {
 
     #[test]
     fn a_way_round_is_as_long_as_its_edges() {
-        let line = Distances::new(&graph(&[[0.0, 0.0], [3.0, 4.0], [3.0, 0.0]], &[(0, 1), (1, 2)]));
-        assert_eq!(line.metres(&id(0), &id(2)), Some(9.0));
-        assert_eq!(line.metres(&id(2), &id(2)), Some(0.0));
+        let line = SceneDistances::new(&graph(&[[0.0, 0.0], [3.0, 4.0], [3.0, 0.0]], &[(0, 1), (1, 2)]));
+        assert_eq!(line.metres_between(&id(0), &id(2)), Some(9.0));
+        assert_eq!(line.metres_between(&id(2), &id(2)), Some(0.0));
         assert!(line.has_edge(&id(2), &id(1)) && !line.has_edge(&id(0), &id(2)) && !line.has_edge(&id(1), &id(1)));
     }
 
     #[test]
     fn metres_is_none_for_unreachable_and_unknown_viewpoints() {
-        let parts = Distances::new(&graph(&[[0.0, 0.0], [1.0, 0.0], [9.0, 9.0]], &[(0, 1)]));
-        assert_eq!(parts.metres(&id(0), &id(2)), None);
-        assert_eq!(parts.metres(&id(0), &id(7)), None);
-        assert!(parts.has(&id(2)) && !parts.has(&id(7)) && !parts.has_edge(&id(0), &id(7)));
-        assert_eq!(Distances::new(&ViewpointGraph::default()).metres(&id(0), &id(0)), None);
+        let parts = SceneDistances::new(&graph(&[[0.0, 0.0], [1.0, 0.0], [9.0, 9.0]], &[(0, 1)]));
+        assert_eq!(parts.metres_between(&id(0), &id(2)), None);
+        assert_eq!(parts.metres_between(&id(0), &id(7)), None);
+        assert!(parts.has_viewpoint(&id(2)) && !parts.has_viewpoint(&id(7)) && !parts.has_edge(&id(0), &id(7)));
+        assert_eq!(SceneDistances::new(&ViewpointGraph::default()).metres_between(&id(0), &id(0)), None);
     }
 
     #[test]
     fn edges_of_infinite_length_are_left_out() {
-        let far = Distances::new(&graph(&[[-1e300, 0.0], [1e300, 0.0]], &[(0, 1)]));
+        let far = SceneDistances::new(&graph(&[[-1e300, 0.0], [1e300, 0.0]], &[(0, 1)]));
         assert!(!far.has_edge(&id(0), &id(1)));
     }
 
     proptest! {
         #[test]
         fn distances_are_those_of_the_shortest_paths(graph in any_graph()) {
-            let distances = Distances::new(&graph);
+            let distances = SceneDistances::new(&graph);
             for a in graph.viewpoints() {
                 for b in graph.viewpoints() {
                     let route = graph.shortest_path(a, b).unwrap().map(|route| route.length_m);
-                    let found = distances.metres(a, b);
+                    let found = distances.metres_between(a, b);
                     prop_assert_eq!(found.is_some(), route.is_some());
                     prop_assert!((found.unwrap_or(0.0) - route.unwrap_or(0.0)).abs() < 1e-9);
-                    prop_assert_eq!(distances.has_edge(a, b), graph.neighbours(a).contains(&b));
+                    prop_assert_eq!(distances.has_edge(a, b), graph.neighbours_of(a).contains(&b));
                 }
             }
         }

@@ -1,24 +1,24 @@
 //! How closely a trajectory follows the annotated path: nDTW and CLS.
 
-use super::Distances;
+use super::SceneDistances;
 
 /// The scale for distances from the path, metres: `threshold` in VLN-DUET's `map_nav_src/r2r/eval_utils.py`.
 const THRESHOLD_M: f64 = 3.0;
 
 /// The matrix of distances between the viewpoints of a trajectory (rows) and of the annotated path (columns). All figures except
 /// lengths are computed from it.
-pub(super) struct Apart {
+pub(super) struct PathDistances {
     /// Metres, infinite where there is no way; a row for each viewpoint of the trajectory.
     metres: Vec<f64>,
     /// Viewpoints of the annotated path.
     on_path: usize,
 }
 
-impl Apart {
-    pub(super) fn new(distances: &Distances, taken: &[usize], reference: &[usize]) -> Self {
+impl PathDistances {
+    pub(super) fn new(distances: &SceneDistances, taken: &[usize], reference: &[usize]) -> Self {
         let mut metres = Vec::with_capacity(taken.len() * reference.len());
         for place in taken {
-            metres.extend(reference.iter().map(|on_path| distances.between(*place, *on_path)));
+            metres.extend(reference.iter().map(|on_path| distances.metres_between_places(*place, *on_path)));
         }
         Self { metres, on_path: reference.len() }
     }
@@ -42,7 +42,7 @@ impl Apart {
             let mut diagonal = std::mem::replace(&mut before_all, f64::INFINITY);
             let mut left = f64::INFINITY;
             for (cost, metres) in costs.iter_mut().zip(row) {
-                left = metres + least(least(diagonal, *cost), left);
+                left = metres + lesser_distance(lesser_distance(diagonal, *cost), left);
                 diagonal = std::mem::replace(cost, left);
             }
         }
@@ -52,7 +52,7 @@ impl Apart {
     /// Coverage weighted by length score (Jain et al. 2019, arXiv 1905.12255), for the lengths of the trajectory and of the path.
     pub(super) fn cls(&self, length_m: f64, path_m: f64) -> f64 {
         let to_path_m = |at: usize| self.metres[at..].iter().step_by(self.on_path);
-        let nearest_m = |at| to_path_m(at).copied().fold(f64::INFINITY, least);
+        let nearest_m = |at| to_path_m(at).copied().fold(f64::INFINITY, lesser_distance);
         let covered: f64 = (0..self.on_path).map(|at| (-nearest_m(at) / THRESHOLD_M).exp()).sum();
         let coverage = covered / self.on_path as f64;
         let expected_m = coverage * path_m;
@@ -69,6 +69,6 @@ impl Apart {
 
 /// The lesser of two distances. Unlike `f64::min` it does not handle NaN, which distances never are; so it compiles to one
 /// instruction instead of three.
-fn least(a: f64, b: f64) -> f64 {
+fn lesser_distance(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }

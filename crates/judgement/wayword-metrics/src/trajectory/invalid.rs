@@ -1,11 +1,11 @@
 //! Checks a trajectory and its episode, and lists every problem that makes scoring impossible.
 
-use super::{Demand, Distances, Trajectory};
+use super::{AgentTrajectory, EpisodeDemand, SceneDistances};
 use wayword_core::ViewpointId;
 
 /// A problem of a trajectory or of its episode that makes scoring impossible. Steps count from 0, the start.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum Invalid {
+pub enum TrajectoryError {
     /// It holds no viewpoint.
     #[error("the trajectory is empty: list its viewpoints from the start on, or only the start if the agent stays")]
     Empty,
@@ -56,70 +56,85 @@ pub enum Invalid {
 
 /// All problems that make it impossible to score a trajectory; empty if it can be scored.
 #[must_use]
-pub fn problems(distances: &Distances, demand: &Demand, trajectory: &Trajectory) -> Vec<Invalid> {
-    let mut wrong = path(distances, demand).err().unwrap_or_default();
+pub fn find_problems(
+    distances: &SceneDistances,
+    demand: &EpisodeDemand,
+    trajectory: &AgentTrajectory,
+) -> Vec<TrajectoryError> {
+    let mut wrong = reference_places(distances, demand).err().unwrap_or_default();
     let names = trajectory.viewpoints.iter().map(ViewpointId::as_str);
-    let start = demand.reference.first().and_then(|start| distances.place(start.as_str()));
-    wrong.extend(walked(distances, start, names).err().into_iter().flatten());
+    let start = demand.reference.first().and_then(|start| distances.place_number(start.as_str()));
+    wrong.extend(trajectory_places(distances, start, names).err().into_iter().flatten());
     wrong
 }
 
 /// The places of the annotated path; never empty.
-pub(super) fn path(distances: &Distances, demand: &Demand) -> Result<Vec<usize>, Vec<Invalid>> {
+pub(super) fn reference_places(
+    distances: &SceneDistances,
+    demand: &EpisodeDemand,
+) -> Result<Vec<usize>, Vec<TrajectoryError>> {
     if demand.reference.is_empty() {
-        return Err(vec![Invalid::NoReference]);
+        return Err(vec![TrajectoryError::NoReference]);
     }
     let mut wrong = Vec::new();
     let mut places = Vec::with_capacity(demand.reference.len());
     for (step, viewpoint) in demand.reference.iter().enumerate() {
-        match distances.place(viewpoint.as_str()) {
+        match distances.place_number(viewpoint.as_str()) {
             Some(place) => places.push(place),
-            None => wrong.push(Invalid::UnknownInReference { step, viewpoint: viewpoint.clone() }),
+            None => wrong.push(TrajectoryError::UnknownInReference { step, viewpoint: viewpoint.clone() }),
         }
     }
     if wrong.is_empty() { Ok(places) } else { Err(wrong) }
 }
 
 /// The places of a trajectory; never empty, and the first is `start`, where that is known.
-pub(super) fn walked<'n>(
-    distances: &Distances,
+pub(super) fn trajectory_places<'n>(
+    distances: &SceneDistances,
     start: Option<usize>,
     names: impl Iterator<Item = &'n str> + Clone,
-) -> Result<Vec<usize>, Vec<Invalid>> {
-    let places: Vec<usize> = names.clone().map(|name| distances.place(name).unwrap_or(NOWHERE)).collect();
+) -> Result<Vec<usize>, Vec<TrajectoryError>> {
+    let places: Vec<usize> = names.clone().map(|name| distances.place_number(name).unwrap_or(UNKNOWN_PLACE)).collect();
     let starts = match (places.first(), start) {
         (Some(first), Some(start)) => *first == start,
         (first, _) => first.is_some(),
     };
-    let is_broken = |hop: &[usize]| hop[0] != hop[1] && !distances.joins(hop[0], hop[1]);
-    if starts && !places.contains(&NOWHERE) && !places.windows(2).any(is_broken) {
+    let is_broken = |hop: &[usize]| hop[0] != hop[1] && !distances.are_joined(hop[0], hop[1]);
+    if starts && !places.contains(&UNKNOWN_PLACE) && !places.windows(2).any(is_broken) {
         return Ok(places);
     }
     Err(wrong_with(distances, start, &places, &names.collect::<Vec<_>>()))
 }
 
 /// Every problem of a trajectory.
-fn wrong_with(distances: &Distances, start: Option<usize>, places: &[usize], names: &[&str]) -> Vec<Invalid> {
-    let unknown = places.iter().zip(names).enumerate().filter(|(_, (place, _))| **place == NOWHERE);
-    let mut wrong: Vec<Invalid> =
-        unknown.map(|(step, (_, name))| Invalid::Unknown { step, viewpoint: (*name).to_owned() }).collect();
+fn wrong_with(
+    distances: &SceneDistances,
+    start: Option<usize>,
+    places: &[usize],
+    names: &[&str],
+) -> Vec<TrajectoryError> {
+    let unknown = places.iter().zip(names).enumerate().filter(|(_, (place, _))| **place == UNKNOWN_PLACE);
+    let mut wrong: Vec<TrajectoryError> =
+        unknown.map(|(step, (_, name))| TrajectoryError::Unknown { step, viewpoint: (*name).to_owned() }).collect();
     match (places.iter().zip(names).next(), start) {
-        (None, _) => wrong.push(Invalid::Empty),
+        (None, _) => wrong.push(TrajectoryError::Empty),
         (Some((first, found)), Some(start)) if *first != start => {
-            wrong.push(Invalid::Start { found: (*found).to_owned(), expected: distances.name(start).clone() });
+            wrong.push(TrajectoryError::Start {
+                found: (*found).to_owned(),
+                expected: distances.place_name(start).clone(),
+            });
         }
         _ => {}
     }
     for (at, hop) in places.windows(2).enumerate() {
         // Unknown viewpoints are already in the list, so their hops are not reported again.
-        let is_told = hop.contains(&NOWHERE);
-        if !is_told && hop[0] != hop[1] && !distances.joins(hop[0], hop[1]) {
-            let [from, to] = [hop[0], hop[1]].map(|place| distances.name(place).clone());
-            wrong.push(Invalid::NoEdge { step: at + 1, from, to });
+        let is_told = hop.contains(&UNKNOWN_PLACE);
+        if !is_told && hop[0] != hop[1] && !distances.are_joined(hop[0], hop[1]) {
+            let [from, to] = [hop[0], hop[1]].map(|place| distances.place_name(place).clone());
+            wrong.push(TrajectoryError::NoEdge { step: at + 1, from, to });
         }
     }
     wrong
 }
 
 /// Marks a viewpoint that the scene does not have. No real place has this number, and the mark is used only within this file.
-const NOWHERE: usize = usize::MAX;
+const UNKNOWN_PLACE: usize = usize::MAX;

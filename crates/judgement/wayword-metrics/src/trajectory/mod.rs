@@ -13,11 +13,11 @@ mod testing;
 #[cfg(test)]
 mod tests;
 
-pub use atlas::Atlas;
-pub use course::Course;
-pub use distances::Distances;
-pub use invalid::{Invalid, problems};
-pub use score::score;
+pub use atlas::DistanceAtlas;
+pub use course::EpisodeScorer;
+pub use distances::SceneDistances;
+pub use invalid::{TrajectoryError, find_problems};
+pub use score::score_trajectory;
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
@@ -26,7 +26,7 @@ use wayword_core::{ObjectId, ViewpointId};
 /// The rule that decides what counts as success. Every figure is shown with its rule.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Rule {
+pub enum TrajectorySuccessRule {
     /// The last viewpoint lies under 3 m (graph distance, strictly) from the goal (R2R, `tasks/R2R/eval.py`). On a REVERIE item this is
     /// the lenient rule.
     Distance,
@@ -36,7 +36,7 @@ pub enum Rule {
 
 /// The demand of an episode: the annotated path, and the target object if there is one.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Demand {
+pub struct EpisodeDemand {
     /// The annotated path, from start to goal; never empty.
     pub reference: Vec<ViewpointId>,
     /// The target object, where one is named.
@@ -47,7 +47,7 @@ pub struct Demand {
 
 /// A trajectory to score.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Trajectory {
+pub struct AgentTrajectory {
     /// Every viewpoint, from the start; a stay is the same one again. Never empty.
     pub viewpoints: Vec<ViewpointId>,
     /// The object that the agent takes for the target.
@@ -56,7 +56,7 @@ pub struct Trajectory {
 
 /// All figures of one trajectory.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Score {
+pub struct TrajectoryScore {
     /// Length over the graph, metres.
     pub length_m: f64,
     /// Distance from the last viewpoint to the goal, metres; `None` where there is no way.
@@ -64,11 +64,11 @@ pub struct Score {
     /// The same from the viewpoint of the trajectory that is nearest to the goal.
     pub oracle_error_m: Option<f64>,
     /// By the distance rule.
-    pub distance: Outcome,
+    pub distance: SuccessOutcome,
     /// By the rule of visibility; `None` if the episode names no object, or it is not known from where the object is visible.
-    pub visible: Option<Outcome>,
+    pub visible: Option<SuccessOutcome>,
     /// Whether the agent named the target object; `None` if the episode has none.
-    pub grounding: Option<Grounding>,
+    pub grounding: Option<TargetGrounding>,
     /// Normalised dynamic time warping, in [0, 1].
     pub ndtw: f64,
     /// Coverage weighted by length score, in [0, 1].
@@ -77,7 +77,7 @@ pub struct Score {
 
 /// The figures of a trajectory that depend on the rule of success.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Outcome {
+pub struct SuccessOutcome {
     /// At the last viewpoint.
     pub success: bool,
     /// At any viewpoint, the start included.
@@ -90,7 +90,7 @@ pub struct Outcome {
 
 /// Whether the right object was named.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Grounding {
+pub struct TargetGrounding {
     /// Remote grounding success, whatever the navigation.
     pub rgs: bool,
     /// The same weighted by path length, as in SPL.
@@ -100,7 +100,7 @@ pub struct Grounding {
 /// A figure of a trajectory, by its usual name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Metric {
+pub enum TrajectoryMetric {
     /// SR, success rate.
     SuccessRate,
     /// OSR, oracle success rate.
@@ -123,7 +123,7 @@ pub enum Metric {
     Rgspl,
 }
 
-impl Metric {
+impl TrajectoryMetric {
     /// All of them, in the order of tables.
     pub const ALL: [Self; 10] = [
         Self::SuccessRate,
@@ -140,7 +140,7 @@ impl Metric {
 
     /// Its abbreviation in tables.
     #[must_use]
-    pub fn short(self) -> &'static str {
+    pub fn table_name(self) -> &'static str {
         match self {
             Self::SuccessRate => "SR",
             Self::OracleSuccessRate => "OSR",
@@ -156,27 +156,27 @@ impl Metric {
     }
 }
 
-impl Score {
+impl TrajectoryScore {
     /// A figure by its name. Figures that depend on success use `rule`. `None` where the trajectory has none: a goal
     /// that cannot be reached, an episode without an object, a rule that cannot be applied.
     #[must_use]
-    pub fn get(&self, metric: Metric, rule: Rule) -> Option<f64> {
+    pub fn get(&self, metric: TrajectoryMetric, rule: TrajectorySuccessRule) -> Option<f64> {
         let outcome = match rule {
-            Rule::Distance => Some(self.distance),
-            Rule::Visible => self.visible,
+            TrajectorySuccessRule::Distance => Some(self.distance),
+            TrajectorySuccessRule::Visible => self.visible,
         };
         let share = |is: bool| f64::from(u8::from(is));
         match metric {
-            Metric::SuccessRate => outcome.map(|outcome| share(outcome.success)),
-            Metric::OracleSuccessRate => outcome.map(|outcome| share(outcome.oracle_success)),
-            Metric::Spl => outcome.map(|outcome| outcome.spl),
-            Metric::Sdtw => outcome.map(|outcome| outcome.sdtw),
-            Metric::NavigationErrorM => self.navigation_error_m,
-            Metric::TrajectoryLengthM => Some(self.length_m),
-            Metric::Ndtw => Some(self.ndtw),
-            Metric::Cls => Some(self.cls),
-            Metric::Rgs => self.grounding.map(|grounding| share(grounding.rgs)),
-            Metric::Rgspl => self.grounding.map(|grounding| grounding.rgspl),
+            TrajectoryMetric::SuccessRate => outcome.map(|outcome| share(outcome.success)),
+            TrajectoryMetric::OracleSuccessRate => outcome.map(|outcome| share(outcome.oracle_success)),
+            TrajectoryMetric::Spl => outcome.map(|outcome| outcome.spl),
+            TrajectoryMetric::Sdtw => outcome.map(|outcome| outcome.sdtw),
+            TrajectoryMetric::NavigationErrorM => self.navigation_error_m,
+            TrajectoryMetric::TrajectoryLengthM => Some(self.length_m),
+            TrajectoryMetric::Ndtw => Some(self.ndtw),
+            TrajectoryMetric::Cls => Some(self.cls),
+            TrajectoryMetric::Rgs => self.grounding.map(|grounding| share(grounding.rgs)),
+            TrajectoryMetric::Rgspl => self.grounding.map(|grounding| grounding.rgspl),
         }
     }
 }

@@ -7,25 +7,27 @@ use wayword_core::ViewpointId;
 /// Looking up names is the most frequent operation here. Searching their first bytes as numbers is quicker than hashing
 /// whole names, and no choice of names can make it slow.
 #[derive(Debug, Clone)]
-pub(super) struct Places {
+pub(super) struct NumberedViewpoints {
     /// The first bytes of each name, as a number that sorts as they do.
     heads: Vec<u64>,
     /// The bytes after the head of each name, so that short names are compared without following a pointer. Long names have here
     /// 255 in every byte, which is not valid UTF-8 and so equals no name.
-    tails: Vec<[u8; TAIL]>,
+    tails: Vec<[u8; TAIL_BYTES]>,
     names: Vec<ViewpointId>,
 }
 
 /// Bytes of the head and of the tail of a name: together the length of Matterport3D's names, 32.
-const HEAD: usize = 8;
-const TAIL: usize = 24;
+const HEAD_BYTES: usize = 8;
+const TAIL_BYTES: usize = 24;
 
-impl Places {
+impl NumberedViewpoints {
     pub(super) fn new<'a>(names: impl Iterator<Item = &'a ViewpointId>) -> Self {
         let mut names: Vec<ViewpointId> = names.cloned().collect();
         names.sort_unstable();
-        let heads = names.iter().map(|name| head(name.as_str())).collect();
-        let kept = |name: &ViewpointId| if is_short(name.as_str()) { tail(name.as_str()) } else { [u8::MAX; TAIL] };
+        let heads = names.iter().map(|name| head_number(name.as_str())).collect();
+        let kept = |name: &ViewpointId| {
+            if is_short(name.as_str()) { tail_bytes(name.as_str()) } else { [u8::MAX; TAIL_BYTES] }
+        };
         Self { heads, tails: names.iter().map(kept).collect(), names }
     }
 
@@ -38,10 +40,10 @@ impl Places {
     }
 
     pub(super) fn find(&self, name: &str) -> Option<usize> {
-        let head = head(name);
+        let head = head_number(name);
         let first = self.heads.partition_point(|other| *other < head);
         // A short name, padded with zeros, equals a full-length name that ends in zeros. Real names contain no zeros.
-        if is_short(name) && *self.heads.get(first)? == head && self.tails[first] == tail(name) {
+        if is_short(name) && *self.heads.get(first)? == head && self.tails[first] == tail_bytes(name) {
             return Some(first);
         }
         // Names may begin alike.
@@ -52,19 +54,19 @@ impl Places {
 }
 
 fn is_short(name: &str) -> bool {
-    name.len() == HEAD + TAIL || name.len() < HEAD + TAIL && !name.as_bytes().contains(&0)
+    name.len() == HEAD_BYTES + TAIL_BYTES || name.len() < HEAD_BYTES + TAIL_BYTES && !name.as_bytes().contains(&0)
 }
 
-fn head(name: &str) -> u64 {
-    u64::from_be_bytes(filled::<HEAD>(name.as_bytes()))
+fn head_number(name: &str) -> u64 {
+    u64::from_be_bytes(zero_padded::<HEAD_BYTES>(name.as_bytes()))
 }
 
-fn tail(name: &str) -> [u8; TAIL] {
-    filled(name.as_bytes().get(HEAD..).unwrap_or_default())
+fn tail_bytes(name: &str) -> [u8; TAIL_BYTES] {
+    zero_padded(name.as_bytes().get(HEAD_BYTES..).unwrap_or_default())
 }
 
 /// The first bytes, filled up with zeros.
-fn filled<const N: usize>(bytes: &[u8]) -> [u8; N] {
+fn zero_padded<const N: usize>(bytes: &[u8]) -> [u8; N] {
     bytes.first_chunk().copied().unwrap_or_else(|| {
         let mut filled = [0; N];
         filled[..bytes.len()].copy_from_slice(bytes);
@@ -85,7 +87,7 @@ mod tests {
             other in "[ab]{0,3}(long_head)?(and_a_tail_of_32_bytes)?[ab]{1,4}",
         ) {
             let ids: Vec<ViewpointId> = names.iter().rev().map(|name| ViewpointId::new(name).unwrap()).collect();
-            let places = Places::new(ids.iter());
+            let places = NumberedViewpoints::new(ids.iter());
             prop_assert_eq!(places.len(), names.len());
             for (at, name) in names.iter().enumerate() {
                 prop_assert_eq!(places.find(name), Some(at));

@@ -1,6 +1,8 @@
 //! Scores one trajectory, and defines what the figures are in cases that the reference implementations leave open.
 
-use super::{Course, Demand, Distances, Invalid, Score, Trajectory, problems};
+use super::{
+    AgentTrajectory, EpisodeDemand, EpisodeScorer, SceneDistances, TrajectoryError, TrajectoryScore, find_problems,
+};
 use wayword_core::{ObjectId, ViewpointId};
 
 /// The figures of a trajectory, or all problems that make it impossible to score.
@@ -20,12 +22,16 @@ use wayword_core::{ObjectId, ViewpointId};
 /// # Errors
 /// Each problem of the trajectory, when it does not start at the episode's start, or does not follow the edges of the
 /// scene's graph.
-pub fn score(distances: &Distances, demand: &Demand, trajectory: &Trajectory) -> Result<Score, Vec<Invalid>> {
+pub fn score_trajectory(
+    distances: &SceneDistances,
+    demand: &EpisodeDemand,
+    trajectory: &AgentTrajectory,
+) -> Result<TrajectoryScore, Vec<TrajectoryError>> {
     let names = trajectory.viewpoints.iter().map(ViewpointId::as_str);
     let object = trajectory.object.as_ref().map(ObjectId::as_str);
-    match Course::new(distances, demand) {
-        Ok(course) => course.score(distances, names, object),
+    match EpisodeScorer::new(distances, demand) {
+        Ok(course) => course.score_trajectory(distances, names, object),
         // The episode has problems. Report those of the trajectory as well.
-        Err(_) => Err(problems(distances, demand, trajectory)),
+        Err(_) => Err(find_problems(distances, demand, trajectory)),
     }
 }

@@ -1,6 +1,6 @@
 //! Graphs, episodes and trajectories for the property tests of this folder.
 
-use super::{Demand, Trajectory};
+use super::{AgentTrajectory, EpisodeDemand};
 use proptest::prelude::*;
 use wayword_core::{DVec3, ObjectId, ViewpointGraph, ViewpointId};
 
@@ -19,10 +19,10 @@ pub(super) fn object(name: &str) -> ObjectId {
 pub(super) fn graph(points: &[[f64; 2]], edges: &[(usize, usize)]) -> ViewpointGraph {
     let mut graph = ViewpointGraph::default();
     for (n, [x, y]) in points.iter().enumerate() {
-        graph.add(id(n), DVec3::new(*x, *y, 0.0), Some(1)).unwrap();
+        graph.add_viewpoint(id(n), DVec3::new(*x, *y, 0.0), Some(1)).unwrap();
     }
     for (a, b) in edges {
-        graph.join(&id(*a), &id(*b)).unwrap();
+        graph.join_viewpoints(&id(*a), &id(*b)).unwrap();
     }
     graph
 }
@@ -43,7 +43,7 @@ fn walk(graph: &ViewpointGraph, start: usize, choices: &[usize]) -> Vec<Viewpoin
     let mut taken = vec![id(start)];
     for choice in choices {
         let here = &taken[taken.len() - 1];
-        let ways = graph.neighbours(here);
+        let ways = graph.neighbours_of(here);
         let next = ways.get(choice % (ways.len() + 1)).map_or_else(|| here.clone(), |way| (*way).clone());
         taken.push(next);
     }
@@ -51,7 +51,7 @@ fn walk(graph: &ViewpointGraph, start: usize, choices: &[usize]) -> Vec<Viewpoin
 }
 
 /// A graph, an episode on it, and a trajectory that can be scored. Sometimes the goal cannot be reached.
-pub(super) fn any_case() -> impl Strategy<Value = (ViewpointGraph, Demand, Trajectory)> {
+pub(super) fn any_case() -> impl Strategy<Value = (ViewpointGraph, EpisodeDemand, AgentTrajectory)> {
     let choices = || prop::collection::vec(0..20usize, 0..12);
     let seen = prop::collection::btree_set(0..14usize, 0..8);
     let far_goal = prop::option::weighted(0.2, 0..14usize);
@@ -60,13 +60,13 @@ pub(super) fn any_case() -> impl Strategy<Value = (ViewpointGraph, Demand, Traje
             let start = start % graph.len();
             let mut reference = walk(&graph, start, &on_path);
             reference.extend(far_goal.map(|goal| id(goal % graph.len())));
-            let demand = Demand {
+            let demand = EpisodeDemand {
                 reference,
                 object: is_named.then(|| object("lamp")),
                 visible_from: Some(seen.into_iter().map(id).collect()),
             };
             let named = Some(object(if names_it { "lamp" } else { "door" }));
-            let trajectory = Trajectory { viewpoints: walk(&graph, start, &taken), object: named };
+            let trajectory = AgentTrajectory { viewpoints: walk(&graph, start, &taken), object: named };
             (graph, demand, trajectory)
         },
     )

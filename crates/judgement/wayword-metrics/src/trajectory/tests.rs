@@ -5,31 +5,31 @@ use super::{
 use proptest::prelude::*;
 
 /// Five places in a row, 2 m apart, and a sixth that cannot be reached.
-fn corridor() -> Distances {
+fn corridor() -> SceneDistances {
     let points = [[0.0, 0.0], [2.0, 0.0], [4.0, 0.0], [6.0, 0.0], [8.0, 0.0], [0.0, 9.0]];
-    Distances::new(&graph(&points, &[(0, 1), (1, 2), (2, 3), (3, 4)]))
+    SceneDistances::new(&graph(&points, &[(0, 1), (1, 2), (2, 3), (3, 4)]))
 }
 
-fn demand(reference: &[usize], visible_from: &[usize]) -> Demand {
-    Demand {
+fn demand(reference: &[usize], visible_from: &[usize]) -> EpisodeDemand {
+    EpisodeDemand {
         reference: ids(reference),
         object: Some(object("lamp")),
         visible_from: Some(visible_from.iter().map(|n| id(*n)).collect()),
     }
 }
 
-fn walked(places: &[usize]) -> Trajectory {
-    Trajectory { viewpoints: ids(places), object: None }
+fn walked(places: &[usize]) -> AgentTrajectory {
+    AgentTrajectory { viewpoints: ids(places), object: None }
 }
 
-fn scored(reference: &[usize], visible_from: &[usize], places: &[usize]) -> Score {
-    score(&corridor(), &demand(reference, visible_from), &walked(places)).unwrap()
+fn scored(reference: &[usize], visible_from: &[usize], places: &[usize]) -> TrajectoryScore {
+    score_trajectory(&corridor(), &demand(reference, visible_from), &walked(places)).unwrap()
 }
 
-fn wrong(reference: &[usize], places: &[usize]) -> Vec<Invalid> {
+fn wrong(reference: &[usize], places: &[usize]) -> Vec<TrajectoryError> {
     let (demand, trajectory) = (demand(reference, &[]), walked(places));
-    let found = problems(&corridor(), &demand, &trajectory);
-    assert_eq!(score(&corridor(), &demand, &trajectory).err().unwrap_or_default(), found);
+    let found = find_problems(&corridor(), &demand, &trajectory);
+    assert_eq!(score_trajectory(&corridor(), &demand, &trajectory).err().unwrap_or_default(), found);
     found
 }
 
@@ -40,7 +40,7 @@ fn close(found: f64, expected: f64) -> bool {
 #[test]
 fn the_annotated_path_itself_has_the_best_of_all_figures() {
     let found = scored(&[0, 1, 2, 3], &[3], &[0, 1, 2, 3]);
-    let best = Outcome { success: true, oracle_success: true, spl: 1.0, sdtw: 1.0 };
+    let best = SuccessOutcome { success: true, oracle_success: true, spl: 1.0, sdtw: 1.0 };
     assert_eq!((found.distance, found.visible), (best, Some(best)));
     assert_eq!((found.ndtw, found.cls, found.length_m), (1.0, 1.0, 6.0));
     assert_eq!((found.navigation_error_m, found.oracle_error_m), (Some(0.0), Some(0.0)));
@@ -50,16 +50,17 @@ fn the_annotated_path_itself_has_the_best_of_all_figures() {
 fn passing_the_goal_gives_only_oracle_success() {
     let found = scored(&[0, 1], &[1], &[0, 1, 2, 3]);
     assert_eq!((found.navigation_error_m, found.oracle_error_m), (Some(4.0), Some(0.0)));
-    let passed =
-        |outcome: Outcome| !outcome.success && outcome.oracle_success && outcome.spl == 0.0 && outcome.sdtw == 0.0;
+    let passed = |outcome: SuccessOutcome| {
+        !outcome.success && outcome.oracle_success && outcome.spl == 0.0 && outcome.sdtw == 0.0
+    };
     assert!(passed(found.distance) && passed(found.visible.unwrap()));
 }
 
 #[test]
 fn success_by_distance_ends_before_three_metres() {
     let line = |last_m| {
-        let distances = Distances::new(&graph(&[[0.0, 0.0], [last_m, 0.0]], &[(0, 1)]));
-        score(&distances, &demand(&[0, 1], &[]), &walked(&[0])).unwrap().distance.success
+        let distances = SceneDistances::new(&graph(&[[0.0, 0.0], [last_m, 0.0]], &[(0, 1)]));
+        score_trajectory(&distances, &demand(&[0, 1], &[]), &walked(&[0])).unwrap().distance.success
     };
     assert!(line(2.999_999) && !line(3.0));
 }
@@ -111,48 +112,48 @@ fn a_goal_that_cannot_be_reached_has_no_errors_and_no_success_by_distance() {
     assert!(!found.distance.oracle_success);
     assert_eq!(found.visible.map(|visible| (visible.success, visible.spl)), Some((true, 0.0)));
     assert_eq!((found.ndtw, found.cls), (0.0, 0.0));
-    assert_eq!(found.get(Metric::NavigationErrorM, Rule::Distance), None);
+    assert_eq!(found.get(TrajectoryMetric::NavigationErrorM, TrajectorySuccessRule::Distance), None);
 }
 
 #[test]
 fn the_right_object_counts_wherever_one_stands() {
     let grounded = |named: Option<&str>| {
-        let trajectory = Trajectory { object: named.map(object), ..walked(&[0, 1, 0]) };
-        score(&corridor(), &demand(&[0, 1, 2], &[2]), &trajectory).unwrap().grounding.unwrap()
+        let trajectory = AgentTrajectory { object: named.map(object), ..walked(&[0, 1, 0]) };
+        score_trajectory(&corridor(), &demand(&[0, 1, 2], &[2]), &trajectory).unwrap().grounding.unwrap()
     };
-    assert_eq!(grounded(Some("lamp")), Grounding { rgs: true, rgspl: 1.0 });
-    assert_eq!(grounded(Some("door")), Grounding { rgs: false, rgspl: 0.0 });
-    assert_eq!(grounded(None), Grounding { rgs: false, rgspl: 0.0 });
+    assert_eq!(grounded(Some("lamp")), TargetGrounding { rgs: true, rgspl: 1.0 });
+    assert_eq!(grounded(Some("door")), TargetGrounding { rgs: false, rgspl: 0.0 });
+    assert_eq!(grounded(None), TargetGrounding { rgs: false, rgspl: 0.0 });
 }
 
 #[test]
 fn an_episode_without_an_object_is_judged_by_distance_alone() {
-    let demand = Demand { object: None, ..demand(&[0, 1], &[1]) };
-    let found = score(&corridor(), &demand, &walked(&[0, 1])).unwrap();
+    let demand = EpisodeDemand { object: None, ..demand(&[0, 1], &[1]) };
+    let found = score_trajectory(&corridor(), &demand, &walked(&[0, 1])).unwrap();
     assert_eq!((found.visible, found.grounding), (None, None));
-    assert_eq!(found.get(Metric::SuccessRate, Rule::Visible), None);
-    assert_eq!(found.get(Metric::SuccessRate, Rule::Distance), Some(1.0));
+    assert_eq!(found.get(TrajectoryMetric::SuccessRate, TrajectorySuccessRule::Visible), None);
+    assert_eq!(found.get(TrajectoryMetric::SuccessRate, TrajectorySuccessRule::Distance), Some(1.0));
 }
 
 #[test]
 fn score_reports_every_problem() {
-    let no_edge = |step, from, to| Invalid::NoEdge { step, from: id(from), to: id(to) };
+    let no_edge = |step, from, to| TrajectoryError::NoEdge { step, from: id(from), to: id(to) };
     assert_eq!(
         wrong(&[0, 1], &[0, 2, 2, 9, 1, 4]),
-        [Invalid::Unknown { step: 3, viewpoint: id(9).to_string() }, no_edge(1, 0, 2), no_edge(5, 1, 4),]
+        [TrajectoryError::Unknown { step: 3, viewpoint: id(9).to_string() }, no_edge(1, 0, 2), no_edge(5, 1, 4),]
     );
-    assert_eq!(wrong(&[0, 1], &[1]), [Invalid::Start { found: id(1).to_string(), expected: id(0) }]);
-    assert_eq!(wrong(&[0, 1], &[]), [Invalid::Empty]);
-    assert_eq!(wrong(&[], &[0]), [Invalid::NoReference]);
-    assert_eq!(wrong(&[0, 8], &[0]), [Invalid::UnknownInReference { step: 1, viewpoint: id(8) }]);
+    assert_eq!(wrong(&[0, 1], &[1]), [TrajectoryError::Start { found: id(1).to_string(), expected: id(0) }]);
+    assert_eq!(wrong(&[0, 1], &[]), [TrajectoryError::Empty]);
+    assert_eq!(wrong(&[], &[0]), [TrajectoryError::NoReference]);
+    assert_eq!(wrong(&[0, 8], &[0]), [TrajectoryError::UnknownInReference { step: 1, viewpoint: id(8) }]);
     assert_eq!(wrong(&[0, 1], &[0, 0, 1]), []);
 }
 
 proptest! {
     #[test]
     fn figures_keep_to_their_ranges_and_to_each_other((graph, demand, trajectory) in any_case()) {
-        let distances = Distances::new(&graph);
-        let found = score(&distances, &demand, &trajectory).unwrap();
+        let distances = SceneDistances::new(&graph);
+        let found = score_trajectory(&distances, &demand, &trajectory).unwrap();
         prop_assert!((0.0..=1.0).contains(&found.ndtw) && (0.0..=1.0).contains(&found.cls), "{:?}", found);
         prop_assert!(found.length_m.is_finite() && found.length_m >= 0.0);
         prop_assert_eq!(found.visible.is_some(), demand.object.is_some());
@@ -171,9 +172,9 @@ proptest! {
 
     #[test]
     fn walking_the_annotated_path_gives_full_fidelity((graph, demand, _) in any_case()) {
-        let trajectory = Trajectory { viewpoints: demand.reference.clone(), object: None };
+        let trajectory = AgentTrajectory { viewpoints: demand.reference.clone(), object: None };
         // A path with a hop that is no edge cannot be walked.
-        if let Ok(found) = score(&Distances::new(&graph), &demand, &trajectory) {
+        if let Ok(found) = score_trajectory(&SceneDistances::new(&graph), &demand, &trajectory) {
             prop_assert_eq!(found.ndtw, 1.0);
             prop_assert!((found.cls - 1.0).abs() < 1e-12);
             prop_assert!(found.distance.success);
@@ -182,14 +183,14 @@ proptest! {
 
     #[test]
     fn a_stay_changes_only_ndtw((graph, demand, trajectory) in any_case(), at in 0..12usize) {
-        let distances = Distances::new(&graph);
-        let brisk = score(&distances, &demand, &trajectory).unwrap();
+        let distances = SceneDistances::new(&graph);
+        let brisk = score_trajectory(&distances, &demand, &trajectory).unwrap();
         let mut slow = trajectory;
         let at = at % slow.viewpoints.len();
         slow.viewpoints.insert(at, slow.viewpoints[at].clone());
-        let slow = score(&distances, &demand, &slow).unwrap();
-        let but_ndtw = |of: &Score| {
-            let outcome = |of: Outcome| (of.success, of.oracle_success, of.spl);
+        let slow = score_trajectory(&distances, &demand, &slow).unwrap();
+        let but_ndtw = |of: &TrajectoryScore| {
+            let outcome = |of: SuccessOutcome| (of.success, of.oracle_success, of.spl);
             (of.length_m, of.navigation_error_m, of.oracle_error_m, of.cls, outcome(of.distance), of.visible.map(outcome))
         };
         prop_assert_eq!(but_ndtw(&slow), but_ndtw(&brisk));

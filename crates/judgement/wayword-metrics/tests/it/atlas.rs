@@ -5,22 +5,23 @@
 use std::{sync::Arc, thread};
 use wayword_core::{Platform, PlatformError, SceneId};
 use wayword_house::HousePlatform;
-use wayword_metrics::{Atlas, Distances};
+use wayword_metrics::{DistanceAtlas, SceneDistances};
 
 #[test]
 fn threads_share_one_and_the_same_distances_of_a_scene() {
     let platform = HousePlatform::default();
-    let atlas = Atlas::new(&platform);
-    let scenes: Vec<SceneId> = platform.scenes().unwrap().into_iter().take(2).collect();
-    let ask = || -> Vec<Arc<Distances>> { scenes.iter().map(|scene| atlas.scene(scene).unwrap()).collect() };
+    let atlas = DistanceAtlas::new(&platform);
+    let scenes: Vec<SceneId> = platform.list_scenes().unwrap().into_iter().take(2).collect();
+    let ask =
+        || -> Vec<Arc<SceneDistances>> { scenes.iter().map(|scene| atlas.scene_distances(scene).unwrap()).collect() };
     let asked = thread::scope(|scope| {
         let threads: Vec<_> = (0..4).map(|_| scope.spawn(ask)).collect();
         threads.into_iter().map(|thread| thread.join().unwrap()).collect::<Vec<_>>()
     });
     for (at, scene) in scenes.iter().enumerate() {
         assert!(asked.iter().all(|by| Arc::ptr_eq(&by[at], &asked[0][at])));
-        let graph = platform.graph(scene).unwrap();
-        assert!(graph.viewpoints().all(|viewpoint| asked[0][at].has(viewpoint)));
+        let graph = platform.graph_for_scene(scene).unwrap();
+        assert!(graph.viewpoints().all(|viewpoint| asked[0][at].has_viewpoint(viewpoint)));
     }
     assert!(!Arc::ptr_eq(&asked[0][0], &asked[0][1]), "each scene has its own");
 }
@@ -28,6 +29,6 @@ fn threads_share_one_and_the_same_distances_of_a_scene() {
 #[test]
 fn atlas_passes_on_the_platforms_error_for_unknown_scenes() {
     let platform = HousePlatform::default();
-    let found = Atlas::new(&platform).scene(&SceneId::new("no-such-scene").unwrap());
+    let found = DistanceAtlas::new(&platform).scene_distances(&SceneId::new("no-such-scene").unwrap());
     assert!(matches!(found, Err(PlatformError::UnknownScene { .. })));
 }

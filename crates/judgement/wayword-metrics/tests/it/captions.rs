@@ -10,12 +10,14 @@
 
 use serde_json::Value;
 use std::path::{Path, PathBuf};
-use wayword_metrics::captions::{Counts, Row, Text, Vocabulary, ptb, scores, split};
+use wayword_metrics::captions::{
+    BleuCounts, CaptionRow, CaptionVocabulary, NumberedText, ptb_tokens, score_rows, split_tokens,
+};
 
 /// Makes words of a text.
 type Tokenizer = fn(&str) -> Vec<String>;
 
-const TOKENIZERS: [(&str, Tokenizer); 2] = [("ptb", ptb), ("split", split)];
+const TOKENIZERS: [(&str, Tokenizer); 2] = [("ptb", ptb_tokens), ("split", split_tokens)];
 
 /// How far figures may differ from those of the reference, which adds numbers in another order.
 const TOLERANCE: f64 = 1e-9;
@@ -35,24 +37,29 @@ fn all_of(item: &Value) -> Vec<&str> {
 
 /// The greatest difference to the expected figures, of BLEU, ROUGE-L and CIDEr-D, over the corpus and its items.
 fn differences(items: &[Vec<Vec<String>>], expected: &Value) -> [f64; 3] {
-    let mut vocabulary = Vocabulary::default();
-    let texts: Vec<Vec<Text>> =
-        items.iter().map(|item| item.iter().map(|tokens| vocabulary.text(tokens)).collect()).collect();
-    let row = |texts: &'static [Text]| Row { text: &texts[0], references: texts[1..].iter().collect() };
-    let rows: Vec<Row<'_>> = texts.leak().iter().map(|texts| row(texts)).collect();
-    let found = scores(&rows);
+    let mut vocabulary = CaptionVocabulary::default();
+    let texts: Vec<Vec<NumberedText>> =
+        items.iter().map(|item| item.iter().map(|tokens| vocabulary.number_text(tokens)).collect()).collect();
+    let row = |texts: &'static [NumberedText]| CaptionRow { text: &texts[0], references: texts[1..].iter().collect() };
+    let rows: Vec<CaptionRow<'_>> = texts.leak().iter().map(|texts| row(texts)).collect();
+    let found = score_rows(&rows);
     let mut worst = [0.0; 3];
     let mut compare = |at: usize, found: f64, expected: &Value| {
         worst[at] = f64::max(worst[at], (found - expected.as_f64().unwrap()).abs());
     };
-    let counts = found.iter().map(|score| score.counts).fold(Counts::default(), |sum, counts| sum + counts);
-    counts.bleu().iter().zip(expected["bleu"].as_array().unwrap()).for_each(|(bleu, value)| compare(0, *bleu, value));
-    let mean =
-        |of: fn(&wayword_metrics::captions::Scores) -> f64| found.iter().map(of).sum::<f64>() / found.len() as f64;
+    let counts = found.iter().map(|score| score.counts).fold(BleuCounts::default(), |sum, counts| sum + counts);
+    counts
+        .bleu_scores()
+        .iter()
+        .zip(expected["bleu"].as_array().unwrap())
+        .for_each(|(bleu, value)| compare(0, *bleu, value));
+    let mean = |of: fn(&wayword_metrics::captions::CaptionScores) -> f64| {
+        found.iter().map(of).sum::<f64>() / found.len() as f64
+    };
     compare(1, mean(|score| score.rouge_l), &expected["rouge_l"]);
     compare(2, mean(|score| score.cider_d), &expected["cider_d"]);
     for (score, expected) in found.iter().zip(expected["of_items"].as_array().unwrap()) {
-        compare(0, score.counts.bleu()[3], &expected[0]);
+        compare(0, score.counts.bleu_scores()[3], &expected[0]);
         compare(1, score.rouge_l, &expected[1]);
         compare(2, score.cider_d, &expected[2]);
     }

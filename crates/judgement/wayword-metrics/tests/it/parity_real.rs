@@ -1,7 +1,7 @@
 //! Our figures against another evaluator's on real buildings, where both are available: `WAYWORD_DATA` names the folder
 //! of the data (default: `../shared/data`, next to the repository), and `WAYWORD_PARITY` a file of JSON lines,
 //! each with `scan`, `reference`, `object`, `trajectory`, `named` and the `expected` figures, named and nested as in
-//! `Score`.
+//! `TrajectoryScore`.
 
 #![allow(
     clippy::unwrap_used,
@@ -17,20 +17,22 @@ use std::{
     time::{Duration, Instant},
 };
 use wayword_core::{Platform, SceneId};
-use wayword_metrics::{Atlas, Demand, Distances, Score, Trajectory, score};
-use wayword_platforms::Matterport;
+use wayword_metrics::{
+    AgentTrajectory, DistanceAtlas, EpisodeDemand, SceneDistances, TrajectoryScore, score_trajectory,
+};
+use wayword_platforms::MatterportPlatform;
 
 /// How often the figures are timed. A single measurement is unreliable while other programs run.
 const PASSES: usize = 9;
 
-fn platform() -> Option<Matterport> {
+fn platform() -> Option<MatterportPlatform> {
     let beside = || PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../../shared/data"));
     let folder = std::env::var_os("WAYWORD_DATA").map_or_else(beside, PathBuf::from);
     let there = folder.join("matterport/connectivity").is_dir();
     if !there {
         println!("SKIPPED: no Matterport3D data in {}; set WAYWORD_DATA to its folder", folder.display());
     }
-    there.then(|| Matterport::open(&folder).unwrap())
+    there.then(|| MatterportPlatform::open(&folder).unwrap())
 }
 
 fn cases() -> Option<Vec<Value>> {
@@ -45,21 +47,21 @@ fn cases() -> Option<Vec<Value>> {
 #[test]
 fn an_atlas_knows_every_building_and_computes_it_once() {
     let Some(platform) = platform() else { return };
-    let atlas = Atlas::new(&platform);
-    let scenes = platform.scenes().unwrap();
+    let atlas = DistanceAtlas::new(&platform);
+    let scenes = platform.list_scenes().unwrap();
     // The platform reads the graphs here and keeps them, so that the times below are without that.
-    let graphs: Vec<_> = scenes.iter().map(|scene| platform.graph(scene).unwrap()).collect();
-    let timed = |of: &dyn Fn() -> Vec<Arc<Distances>>| {
+    let graphs: Vec<_> = scenes.iter().map(|scene| platform.graph_for_scene(scene).unwrap()).collect();
+    let timed = |of: &dyn Fn() -> Vec<Arc<SceneDistances>>| {
         let before = Instant::now();
         (of(), before.elapsed())
     };
-    let all = || scenes.iter().map(|scene| atlas.scene(scene).unwrap()).collect();
+    let all = || scenes.iter().map(|scene| atlas.scene_distances(scene).unwrap()).collect();
     let (first, computed) = timed(&all);
     let (again, found) = timed(&all);
     assert!(first.iter().zip(&again).all(|(first, again)| Arc::ptr_eq(first, again)));
     for (graph, distances) in graphs.iter().zip(&first) {
-        assert!(graph.viewpoints().all(|viewpoint| distances.has(viewpoint)));
-        assert!(graph.edges().all(|(a, b, length_m)| distances.metres(a, b).unwrap() <= length_m));
+        assert!(graph.viewpoints().all(|viewpoint| distances.has_viewpoint(viewpoint)));
+        assert!(graph.edges().all(|(a, b, length_m)| distances.metres_between(a, b).unwrap() <= length_m));
     }
     println!("all distances of {} buildings: {computed:?} on one core, found again in {found:?}", scenes.len());
 }
@@ -67,9 +69,9 @@ fn an_atlas_knows_every_building_and_computes_it_once() {
 #[test]
 fn figures_are_those_of_another_evaluator() {
     let (Some(platform), Some(cases)) = (platform(), cases()) else { return };
-    let atlas = Atlas::new(&platform);
+    let atlas = DistanceAtlas::new(&platform);
     let mut seen = BTreeMap::new();
-    let mut all: Vec<(Arc<Distances>, Demand, Trajectory)> = Vec::new();
+    let mut all: Vec<(Arc<SceneDistances>, EpisodeDemand, AgentTrajectory)> = Vec::new();
     for case in &cases {
         let scene = SceneId::new(case["scan"].as_str().unwrap()).unwrap();
         let object = crate::common::object(&case["object"]).unwrap();
@@ -77,11 +79,12 @@ fn figures_are_those_of_another_evaluator() {
             .entry((scene.clone(), object.clone()))
             .or_insert_with(|| platform.visible_from(&scene, &object).unwrap().unwrap());
         let demand = crate::common::demand(case, Some(visible_from.clone()));
-        all.push((atlas.scene(&scene).unwrap(), demand, crate::common::trajectory(case)));
+        all.push((atlas.scene_distances(&scene).unwrap(), demand, crate::common::trajectory(case)));
     }
-    let pass = || -> (Vec<Score>, Duration) {
+    let pass = || -> (Vec<TrajectoryScore>, Duration) {
         let before = Instant::now();
-        let scores = all.iter().map(|(on, demand, trajectory)| score(on, demand, trajectory).unwrap()).collect();
+        let scores =
+            all.iter().map(|(on, demand, trajectory)| score_trajectory(on, demand, trajectory).unwrap()).collect();
         (scores, before.elapsed())
     };
     let fastest = (0..PASSES).map(|_| pass().1).min().unwrap();

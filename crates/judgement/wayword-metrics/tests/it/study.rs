@@ -5,8 +5,8 @@
 use serde_json::Value;
 use std::fmt::Debug;
 use wayword_metrics::{
-    Answer, Comparison, Interval, Preference, Scale, agreement, bradley_terry, clustered_interval_of, mean,
-    mean_difference, share, share_difference, wilson,
+    AnswerScale, ConfidenceInterval, PairPreference, StudyAnswer, SystemComparison, answer_mean, answer_share,
+    bradley_terry, clustered_interval_of, krippendorff_alpha, mean_difference, share_difference, wilson_interval,
 };
 
 const LEVEL: f64 = 0.95;
@@ -38,10 +38,10 @@ impl Lcg {
 #[derive(Default)]
 struct Study {
     is_second: Vec<bool>,
-    success: Vec<Answer<usize, usize>>,
-    value: Vec<Answer<usize, usize>>,
-    level: Vec<Answer<usize, usize>>,
-    choices: Vec<Comparison<usize, usize, usize>>,
+    success: Vec<StudyAnswer<usize, usize>>,
+    value: Vec<StudyAnswer<usize, usize>>,
+    level: Vec<StudyAnswer<usize, usize>>,
+    choices: Vec<SystemComparison<usize, usize, usize>>,
 }
 
 impl Study {
@@ -65,7 +65,7 @@ impl Study {
                 let is_success = g.next() < 0.15 + 0.7 * felt - if is_second { 0.1 } else { 0.0 };
                 let value = if is_success { 0.5 + 0.5 * g.next() } else { 0.0 };
                 let level = (5.0 * (0.6 * felt + 0.4 * g.next())).floor();
-                let answer = |value| Answer { person, item, value };
+                let answer = |value| StudyAnswer { person, item, value };
                 study.is_second.push(is_second);
                 study.success.push(answer(f64::from(u8::from(is_success))));
                 study.value.push(answer(value));
@@ -75,22 +75,22 @@ impl Study {
                 let chance = g.next();
                 let better = 0.45 + 0.1 * (second as f64 - first as f64);
                 let preference = if chance < better * (1.0 - tie) {
-                    Preference::First
+                    PairPreference::First
                 } else if chance < 1.0 - tie {
-                    Preference::Second
+                    PairPreference::Second
                 } else if item % 2 == 0 {
-                    Preference::Tie
+                    PairPreference::Tie
                 } else {
-                    Preference::BothBad
+                    PairPreference::BothBad
                 };
-                study.choices.push(Comparison { person, item, first, second, preference });
+                study.choices.push(SystemComparison { person, item, first, second, preference });
             }
         }
         (study, g)
     }
 
     /// The answers of the first condition, and of the second.
-    fn conditions(&self, of: &[Answer<usize, usize>]) -> [Vec<Answer<usize, usize>>; 2] {
+    fn conditions(&self, of: &[StudyAnswer<usize, usize>]) -> [Vec<StudyAnswer<usize, usize>>; 2] {
         [false, true].map(|second| {
             let marked = of.iter().zip(&self.is_second);
             marked.filter(|(_, is_second)| **is_second == second).map(|(answer, _)| *answer).collect()
@@ -103,7 +103,7 @@ fn assert_near(found: f64, expected: &Value, tolerance: f64, what: &str) {
     assert!((found - expected).abs() <= tolerance * expected.abs().max(1.0), "{what}: {found} for {expected}");
 }
 
-fn assert_interval(found: Option<Interval>, expected: &Value, tolerance: f64, what: &str) {
+fn assert_interval(found: Option<ConfidenceInterval>, expected: &Value, tolerance: f64, what: &str) {
     let found = found.unwrap();
     assert_near(found.low, &expected["low"], tolerance, what);
     assert_near(found.high, &expected["high"], tolerance, what);
@@ -113,7 +113,7 @@ fn assert_interval(found: Option<Interval>, expected: &Value, tolerance: f64, wh
 fn compare<T: Debug>(
     found: Option<T>,
     expected: &Value,
-    of: impl Fn(&T) -> (f64, Option<f64>, Option<Interval>),
+    of: impl Fn(&T) -> (f64, Option<f64>, Option<ConfidenceInterval>),
     what: &str,
 ) -> bool {
     if expected.is_null() {
@@ -149,10 +149,12 @@ fn shares_and_means_are_those_of_statsmodels() {
     let mut methods = std::collections::BTreeSet::new();
     for (n, (study, _, expected)) in studies().into_iter().enumerate() {
         let successes = study.success.iter().map(|answer| answer.value).sum();
-        let of_all = wilson(successes, study.success.len() as f64, LEVEL).unwrap();
+        let of_all = wilson_interval(successes, study.success.len() as f64, LEVEL).unwrap();
         assert_near(of_all.low, &expected["wilson"][0], EXACT, "wilson");
         assert_near(of_all.high, &expected["wilson"][1], EXACT, "wilson");
-        for (name, found) in [("share", share(&study.success, LEVEL)), ("mean", mean(&study.value, LEVEL))] {
+        for (name, found) in
+            [("share", answer_share(&study.success, LEVEL)), ("mean", answer_mean(&study.value, LEVEL))]
+        {
             let method = serde_json::to_value(found.as_ref().unwrap().method).unwrap();
             assert_eq!(method, expected[name]["method"], "{name} {n}");
             methods.insert(method.to_string());
@@ -168,7 +170,7 @@ fn differences_are_those_of_statsmodels() {
     for (n, (study, _, expected)) in studies().into_iter().enumerate() {
         let [first, second] = study.conditions(&study.success);
         let found = share_difference(&first, &second, LEVEL);
-        let of = |found: &wayword_metrics::Difference| (found.value, found.se, found.interval);
+        let of = |found: &wayword_metrics::FigureDifference| (found.value, found.se, found.interval);
         compared += usize::from(compare(found, &expected["share_difference"], of, &format!("shares {n}")));
         let [first, second] = study.conditions(&study.value);
         let found = mean_difference(&first, &second, LEVEL);
@@ -181,9 +183,9 @@ fn differences_are_those_of_statsmodels() {
 fn alphas_are_those_of_krippendorff() {
     let mut compared = 0;
     for (n, (study, _, expected)) in studies().into_iter().enumerate() {
-        for (at, scale) in [Scale::Nominal, Scale::Ordinal, Scale::Interval].into_iter().enumerate() {
+        for (at, scale) in [AnswerScale::Nominal, AnswerScale::Ordinal, AnswerScale::Interval].into_iter().enumerate() {
             let (expected, what) = (&expected["agreement"][at], format!("{scale:?} {n}"));
-            let found = agreement(&study.level, scale, LEVEL);
+            let found = krippendorff_alpha(&study.level, scale, LEVEL);
             assert_eq!(found.is_none(), expected.is_null(), "{what}");
             let Some(found) = found else { continue };
             compared += 1;
@@ -227,7 +229,7 @@ fn a_bootstrap_is_numpys_with_the_same_draws() {
         let values: Vec<(usize, f64)> = study.value.iter().map(|answer| (answer.person, answer.value)).collect();
         let draw = |clusters: usize| (0..clusters).map(|_| g.below(clusters)).collect();
         let found = clustered_interval_of(&values, 200, LEVEL, draw).unwrap();
-        let interval = Interval { low: found.low, high: found.high };
+        let interval = ConfidenceInterval { low: found.low, high: found.high };
         assert_interval(Some(interval), &expected["bootstrap"], EXACT, &format!("bootstrap {n}"));
     }
 }

@@ -8,23 +8,26 @@ mod policy;
 mod reader;
 mod tools;
 
-pub use baselines::{last_room_in, nearest_room, oracle, random, straight};
-pub use map_reader::{MapReader, Surveyed};
-pub use parameters::{Back, Parameters};
+pub use baselines::{last_room_in, nearest_room, walk_randomly, walk_shortest_path, walk_straight};
+pub use map_reader::{MapReader, MappedScene};
+pub use parameters::{BacktrackParameters, PhraseWalkParameters};
 pub use phrases::walk_by_phrases;
 pub use reader::walk_by_reading;
-pub use tools::{Describes, Limits, Looks, MOST_TEXT_CHARS, ModelWalker, rehearse, walk_by_tools, wording};
-pub use wayword_follower::Prior;
+pub use tools::{
+    MOST_TEXT_CHARS, ModelWalker, ToolAgentSight, ToolWalkLimits, ViewDescriber, prompt_wording, rehearse_route,
+    walk_by_tools,
+};
+pub use wayword_follower::WalkPrior;
 
 use crate::{
     sight::AgentView,
-    walk::{Choice, Step},
+    walk::{AgentStep, StepChoice},
 };
-use wayword_core::{Gaze, Heading, SceneId, ViewpointId};
+use wayword_core::{Heading, SceneId, ViewGaze, ViewpointId};
 
 /// Where an agent begins.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Start {
+pub struct AgentStart {
     /// The scene.
     pub scene: SceneId,
     /// The node.
@@ -35,25 +38,28 @@ pub struct Start {
 
 /// The result of a walk.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Walked {
+pub struct AgentWalk {
     /// Every step.
-    pub steps: Vec<Step>,
+    pub steps: Vec<AgentStep>,
     /// Why it ended.
-    pub end: crate::walk::End,
+    pub end: crate::walk::WalkEnd,
     /// The object that the agent takes for the target.
     pub object: Option<wayword_core::ObjectId>,
     /// Calls, tokens and cost, if a language model decided.
-    pub effort: Option<crate::walk::Effort>,
+    pub effort: Option<crate::walk::WalkEffort>,
 }
 
 /// How a hop is recorded: as a step back if it leads to a node that the agent has visited, and otherwise by the view in which it
 /// lies.
-fn choice(agent_view: &AgentView<'_>, steps: &[Step], here: &ViewpointId, to: &ViewpointId) -> Choice {
+fn choice_for_hop(agent_view: &AgentView<'_>, steps: &[AgentStep], here: &ViewpointId, to: &ViewpointId) -> StepChoice {
     if steps.iter().any(|step| step.viewpoint == *to) {
-        return Choice::Back;
+        return StepChoice::Back;
     }
     let heading = agent_view.heading_to(here, to).unwrap_or(Heading::NORTH);
-    Gaze::compass().iter().position(|gaze| gaze.holds(heading)).map_or(Choice::Unseeing, Choice::Onward)
+    ViewGaze::compass_views()
+        .iter()
+        .position(|gaze| gaze.holds_heading(heading))
+        .map_or(StepChoice::Unseeing, StepChoice::Onward)
 }
 
 #[cfg(test)]

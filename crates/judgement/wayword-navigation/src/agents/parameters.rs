@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 /// The defaults were swept on REVERIE's train split: `wayword-measure sweep` repeats that.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Parameters {
+pub struct PhraseWalkParameters {
     /// A key phrase is done when its score in the best view is at least this; the next one is current from the next step on.
     pub phrase_threshold: f32,
     /// The walk ends when the activity has at least this score in any view.
@@ -20,13 +20,13 @@ pub struct Parameters {
     /// Whether the agent only goes to the neighbours at which it has been the fewest times.
     pub shun_visited: bool,
     /// Going back; `None` for an agent that never does.
-    pub back: Option<Back>,
+    pub back: Option<BacktrackParameters>,
 }
 
 /// When and how far an agent goes back.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Back {
+pub struct BacktrackParameters {
     /// The sequence score is the mean, over this many looks, of how well the current phrase fits the best view.
     pub window: usize,
     /// The agent goes back when the sequence score is below this.
@@ -36,25 +36,33 @@ pub struct Back {
 }
 
 /// As many phrases as an instruction can have: the activity always counts.
-const ALWAYS: usize = 12;
+const ANY_PHRASES_LEFT: usize = 12;
 
-impl Parameters {
+impl PhraseWalkParameters {
     /// The default parameters of an agent with a grounder: `clip-nav` never goes back, `glip-nav` uses boxes.
     #[must_use]
     pub fn default_of(agent: &str, grounder: &str) -> Self {
         let by_boxes = agent == "glip-nav";
         let (phrase_threshold, stop_threshold, stop_with_phrases_left, back) = match (grounder, by_boxes) {
             // Cosines of a sentence encoder between a phrase and a name.
-            ("labels", false) => (0.8, 0.4, ALWAYS, Back { window: 8, threshold: 0.2, nodes: 1 }),
-            ("labels", true) => (0.6, 0.6, ALWAYS, Back { window: 8, threshold: 0.05, nodes: 2 }),
+            ("labels", false) => {
+                (0.8, 0.4, ANY_PHRASES_LEFT, BacktrackParameters { window: 8, threshold: 0.2, nodes: 1 })
+            }
+            ("labels", true) => {
+                (0.6, 0.6, ANY_PHRASES_LEFT, BacktrackParameters { window: 8, threshold: 0.05, nodes: 2 })
+            }
             // Shares of the named places that the labels have.
-            ("labels/lexical", false) => (0.6, 0.4, 1, Back { window: 12, threshold: 0.05, nodes: 1 }),
-            ("labels/lexical", true) => (0.6, 0.3, ALWAYS, Back { window: 12, threshold: 0.05, nodes: 4 }),
+            ("labels/lexical", false) => (0.6, 0.4, 1, BacktrackParameters { window: 12, threshold: 0.05, nodes: 1 }),
+            ("labels/lexical", true) => {
+                (0.6, 0.3, ANY_PHRASES_LEFT, BacktrackParameters { window: 12, threshold: 0.05, nodes: 4 })
+            }
             // Scores of a detector's boxes. Not swept: there were no weights. At half of the full score, detectors' makers show a
             // box.
-            ("detector", _) => (0.5, 0.5, ALWAYS, Back { window: 8, threshold: 0.1, nodes: 1 }),
+            ("detector", _) => {
+                (0.5, 0.5, ANY_PHRASES_LEFT, BacktrackParameters { window: 8, threshold: 0.1, nodes: 1 })
+            }
             // Cosines of CLIP between a phrase and a picture, all close to each other. Not swept: there were no photographs.
-            _ => (0.26, 0.28, 0, Back { window: 8, threshold: 0.2, nodes: 1 }),
+            _ => (0.26, 0.28, 0, BacktrackParameters { window: 8, threshold: 0.2, nodes: 1 }),
         };
         Self {
             phrase_threshold,
@@ -68,7 +76,7 @@ impl Parameters {
 
     /// All of them by name, for reports.
     #[must_use]
-    pub fn named(&self) -> BTreeMap<String, String> {
+    pub fn by_name(&self) -> BTreeMap<String, String> {
         let mut named = BTreeMap::from([
             ("phrase_threshold", self.phrase_threshold.to_string()),
             ("stop_threshold", self.stop_threshold.to_string()),

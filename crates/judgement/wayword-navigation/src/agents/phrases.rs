@@ -2,14 +2,14 @@
 //! current key phrase fits best, and stop where the activity fits. `policy.rs` decides; this file walks and records.
 
 use super::{
-    Parameters, Start, Walked,
-    policy::{Decision, Policy},
+    AgentStart, AgentWalk, PhraseWalkParameters,
+    policy::{PhraseDecision, PhrasePolicy},
 };
 use crate::{
-    directions::Directions,
+    directions::SplitInstruction,
     error::WalkError,
-    sight::{AgentView, Sight},
-    walk::{Choice, End, Scored, Step},
+    sight::{AgentView, NodeSight},
+    walk::{AgentStep, StepChoice, StepViewScores, WalkEnd},
 };
 use wayword_core::{Heading, ViewpointId};
 
@@ -19,51 +19,51 @@ use wayword_core::{Heading, ViewpointId};
 /// When the platform gives no view, or the grounder fails.
 pub fn walk_by_phrases(
     agent_view: &AgentView<'_>,
-    start: &Start,
-    directions: &Directions,
-    parameters: &Parameters,
-) -> Result<Walked, WalkError> {
+    start: &AgentStart,
+    directions: &SplitInstruction,
+    parameters: &PhraseWalkParameters,
+) -> Result<AgentWalk, WalkError> {
     let mut told = directions.phrases.clone();
     told.push(directions.activity.clone());
-    let mut policy = Policy::new(parameters, directions.phrases.len());
-    let mut steps: Vec<Step> = Vec::new();
+    let mut policy = PhrasePolicy::new(parameters, directions.phrases.len());
+    let mut steps: Vec<AgentStep> = Vec::new();
     let (mut here, mut heading) = (start.viewpoint.clone(), start.heading);
     let end = loop {
-        let sight = agent_view.look(&here, &told)?;
-        let in_hand = policy.phrase();
+        let sight = agent_view.look_from(&here, &told)?;
+        let in_hand = policy.current_phrase();
         let is_last = steps.len() >= parameters.max_hops;
         let decision = policy.decide(&here, heading, &sight);
-        let scored = scored(&sight, in_hand, directions.phrases.len());
+        let scored = score_views(&sight, in_hand, directions.phrases.len());
         let viewpoint = here.clone();
-        let step = |choice| Step { views: scored, phrase: in_hand, ..Step::new(viewpoint, heading, choice) };
+        let step = |choice| AgentStep { views: scored, phrase: in_hand, ..AgentStep::new(viewpoint, heading, choice) };
         match decision {
-            Decision::Stop | Decision::DeadEnd => {
-                steps.push(step(Choice::Stop));
-                break if decision == Decision::Stop { End::Stopped } else { End::DeadEnd };
+            PhraseDecision::Stop | PhraseDecision::DeadEnd => {
+                steps.push(step(StepChoice::Stop));
+                break if decision == PhraseDecision::Stop { WalkEnd::Stopped } else { WalkEnd::DeadEnd };
             }
             _ if is_last => {
-                steps.push(step(Choice::Stop));
-                break End::Cap;
+                steps.push(step(StepChoice::Stop));
+                break WalkEnd::Cap;
             }
-            Decision::Onward { view, to } => {
-                steps.push(step(Choice::Onward(view)));
+            PhraseDecision::Onward { view, to } => {
+                steps.push(step(StepChoice::Onward(view)));
                 heading = agent_view.heading_to(&here, &to).unwrap_or(heading);
                 here = to;
             }
-            Decision::Back(over) => {
-                steps.push(step(Choice::Back));
+            PhraseDecision::Back(over) => {
+                steps.push(step(StepChoice::Back));
                 (here, heading) = go_back(agent_view, &mut steps, (here, heading), &over, parameters.max_hops);
             }
         }
     };
-    let object = agent_view.point(&here, &directions.activity)?;
-    Ok(Walked { steps, end, object, effort: None })
+    let object = agent_view.point_at_object(&here, &directions.activity)?;
+    Ok(AgentWalk { steps, end, object, effort: None })
 }
 
 /// Goes back over nodes; all but the last of them are passed without a look. Returns the last, and the heading there.
 fn go_back(
     agent_view: &AgentView<'_>,
-    steps: &mut Vec<Step>,
+    steps: &mut Vec<AgentStep>,
     from: (ViewpointId, Heading),
     over: &[ViewpointId],
     max_hops: usize,
@@ -75,13 +75,13 @@ fn go_back(
         if at + 1 == over.len() || steps.len() >= max_hops {
             break;
         }
-        steps.push(Step::new(here.clone(), heading, Choice::Back));
+        steps.push(AgentStep::new(here.clone(), heading, StepChoice::Back));
     }
     (here, heading)
 }
 
-fn scored(sight: &Sight, in_hand: usize, activity: usize) -> Vec<Scored> {
-    let scored = |view: &crate::sight::Seen| Scored {
+fn score_views(sight: &NodeSight, in_hand: usize, activity: usize) -> Vec<StepViewScores> {
+    let scored = |view: &crate::sight::SightView| StepViewScores {
         phrase: view.scores[in_hand],
         activity: view.scores[activity],
         ways: view.onward.len(),
@@ -93,29 +93,33 @@ fn scored(sight: &Sight, in_hand: usize, activity: usize) -> Vec<Scored> {
 mod tests {
     use super::*;
     use crate::{
-        agents::Back,
-        grounders::{Lexical, Sees},
+        agents::BacktrackParameters,
+        grounders::{GrounderScope, LexicalGrounder},
         testing::{Cross, scene},
     };
 
-    fn directions(phrases: &[&str], activity: &str) -> Directions {
-        Directions {
+    fn directions(phrases: &[&str], activity: &str) -> SplitInstruction {
+        SplitInstruction {
             phrases: phrases.iter().map(|phrase| (*phrase).to_owned()).collect(),
             activity: activity.to_owned(),
         }
     }
 
-    fn walked(things: &[(&'static str, &'static str)], directions: &Directions, parameters: &Parameters) -> Walked {
-        let (world, grounder) = (Cross::new(things), Lexical::new(Sees::Views));
+    fn walked(
+        things: &[(&'static str, &'static str)],
+        directions: &SplitInstruction,
+        parameters: &PhraseWalkParameters,
+    ) -> AgentWalk {
+        let (world, grounder) = (Cross::new(things), LexicalGrounder::new(GrounderScope::Views));
         let agent_view = AgentView::new(&world, &grounder, false, &scene()).unwrap();
         walk_by_phrases(&agent_view, &Cross::start(), directions, parameters).unwrap()
     }
 
-    fn parameters(back: Option<Back>) -> Parameters {
-        Parameters { back, ..Parameters::default_of("clip-nav", "labels/lexical") }
+    fn parameters(back: Option<BacktrackParameters>) -> PhraseWalkParameters {
+        PhraseWalkParameters { back, ..PhraseWalkParameters::default_of("clip-nav", "labels/lexical") }
     }
 
-    fn stood(walked: &Walked) -> Vec<&str> {
+    fn stood(walked: &AgentWalk) -> Vec<&str> {
         walked.steps.iter().map(|step| step.viewpoint.as_str()).collect()
     }
 
@@ -123,30 +127,32 @@ mod tests {
     fn phrase_walk_stops_at_its_task_and_points_at_the_thing() {
         let walked = walked(&[("n2", "sink")], &directions(&[], "wipe the sink"), &parameters(None));
         assert_eq!(stood(&walked), ["middle", "n1", "n2"]);
-        assert_eq!(walked.end, End::Stopped);
+        assert_eq!(walked.end, WalkEnd::Stopped);
         assert_eq!(walked.object.unwrap().as_str(), "sink");
     }
 
     /// The first phrase names a thing on the way. The task counts only after that phrase is done.
     #[test]
     fn key_phrases_come_one_after_the_other() {
-        let listens = Parameters { stop_with_phrases_left: 0, ..parameters(None) };
+        let listens = PhraseWalkParameters { stop_with_phrases_left: 0, ..parameters(None) };
         let route = directions(&["past the bed"], "wipe the sink");
         let walked = walked(&[("n2", "sink"), ("s2", "bed"), ("w2", "sink")], &route, &listens);
         let of_bed = walked.steps.iter().position(|step| step.viewpoint.as_str() == "s2").unwrap();
         assert!(walked.steps[..=of_bed].iter().all(|step| step.phrase == 0), "{:?}", stood(&walked));
         assert!(walked.steps[of_bed + 1..].iter().all(|step| step.phrase == 1));
-        assert_eq!(walked.end, End::Stopped, "{:?}", stood(&walked));
+        assert_eq!(walked.end, WalkEnd::Stopped, "{:?}", stood(&walked));
     }
 
     #[test]
     fn hops_back_follow_edges_and_count_as_hops() {
-        let back = Some(Back { window: 2, threshold: 0.9, nodes: 2 });
-        let limited = Parameters { max_hops: 7, ..parameters(back) };
+        let back = Some(BacktrackParameters { window: 2, threshold: 0.9, nodes: 2 });
+        let limited = PhraseWalkParameters { max_hops: 7, ..parameters(back) };
         let walked = walked(&[], &directions(&["the bed"], "wipe the sink"), &limited);
         assert_eq!(stood(&walked)[..5], ["middle", "n1", "n2", "n1", "middle"]);
-        assert!(matches!(walked.steps[2].choice, Choice::Back) && matches!(walked.steps[3].choice, Choice::Back));
+        assert!(
+            matches!(walked.steps[2].choice, StepChoice::Back) && matches!(walked.steps[3].choice, StepChoice::Back)
+        );
         assert!(walked.steps[3].views.is_empty(), "what is passed on the way back is not looked at");
-        assert_eq!((walked.steps.len(), walked.end), (8, End::Cap));
+        assert_eq!((walked.steps.len(), walked.end), (8, WalkEnd::Cap));
     }
 }

@@ -8,14 +8,14 @@
 //! that. Going back does not undo phrases that are done. Of views that tie in score and angle, the later one by the compass is
 //! taken.
 
-use super::Parameters;
-use crate::sight::{Seen, Sight};
+use super::PhraseWalkParameters;
+use crate::sight::{NodeSight, SightView};
 use std::collections::BTreeMap;
-use wayword_core::{Compass, Heading, ViewpointId};
+use wayword_core::{CompassPoint, Heading, ViewpointId};
 
 /// The state of one walk of an agent by phrases, and its decisions.
-pub(crate) struct Policy<'p> {
-    parameters: &'p Parameters,
+pub(crate) struct PhrasePolicy<'p> {
+    parameters: &'p PhraseWalkParameters,
     /// Number of key phrases; the activity comes after them.
     phrases: usize,
     /// The current key phrase.
@@ -28,7 +28,7 @@ pub(crate) struct Policy<'p> {
 
 /// The agent's decision at a node.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) enum Decision {
+pub(crate) enum PhraseDecision {
     /// Go to a neighbour that lies in a view.
     Onward { view: usize, to: ViewpointId },
     /// Go back over these nodes, in this order.
@@ -39,35 +39,35 @@ pub(crate) enum Decision {
     DeadEnd,
 }
 
-impl<'p> Policy<'p> {
-    pub(crate) fn new(parameters: &'p Parameters, phrases: usize) -> Self {
+impl<'p> PhrasePolicy<'p> {
+    pub(crate) fn new(parameters: &'p PhraseWalkParameters, phrases: usize) -> Self {
         Self { parameters, phrases, phrase: 0, visits: BTreeMap::new(), trail: Vec::new(), recent: Vec::new() }
     }
 
     /// The current key phrase, from 0; the number of phrases when only the activity is left.
-    pub(crate) fn phrase(&self) -> usize {
+    pub(crate) fn current_phrase(&self) -> usize {
         self.phrase
     }
 
     /// Decides at a node that was entered along `heading`.
-    pub(crate) fn decide(&mut self, here: &ViewpointId, heading: Heading, sight: &Sight) -> Decision {
+    pub(crate) fn decide(&mut self, here: &ViewpointId, heading: Heading, sight: &NodeSight) -> PhraseDecision {
         *self.visits.entry(here.clone()).or_default() += 1;
         self.trail.push(here.clone());
         let best = |of: usize| sight.views.iter().map(|view| view.scores[of]).fold(f32::NEG_INFINITY, f32::max);
         let listens = self.phrases - self.phrase <= self.parameters.stop_with_phrases_left;
         if listens && best(self.phrases) >= self.parameters.stop_threshold {
-            return Decision::Stop;
+            return PhraseDecision::Stop;
         }
         let in_hand = self.phrase;
         let fit = best(in_hand);
         if in_hand < self.phrases && fit >= self.parameters.phrase_threshold {
             self.phrase += 1;
         }
-        self.back(fit).unwrap_or_else(|| self.onward(heading, sight, in_hand))
+        self.decide_back(fit).unwrap_or_else(|| self.decide_onward(heading, sight, in_hand))
     }
 
     /// Decides to go back if the scores of the last looks are too low, and returns the nodes to go back over.
-    fn back(&mut self, fit: f32) -> Option<Decision> {
+    fn decide_back(&mut self, fit: f32) -> Option<PhraseDecision> {
         let back = self.parameters.back?;
         self.recent.push(fit);
         let from = self.recent.len().checked_sub(back.window.max(1))?;
@@ -80,21 +80,21 @@ impl<'p> Policy<'p> {
         self.recent.clear();
         // The agent looks again from the last of them, which then joins the trail.
         let over: Vec<ViewpointId> = self.trail.drain(keep..).rev().skip(1).collect();
-        Some(Decision::Back(over))
+        Some(PhraseDecision::Back(over))
     }
 
     /// Decides to go on, to the nearest neighbour in the best view. Of views with equal scores, the one nearest to straight ahead
     /// is taken.
-    fn onward(&self, heading: Heading, sight: &Sight, in_hand: usize) -> Decision {
+    fn decide_onward(&self, heading: Heading, sight: &NodeSight, in_hand: usize) -> PhraseDecision {
         let visits = |id: &ViewpointId| self.visits.get(id).copied().unwrap_or_default();
         let neighbours = || sight.views.iter().flat_map(|view| &view.onward);
         let least = neighbours().map(visits).min().unwrap_or_default();
         let may = |id: &&ViewpointId| !self.parameters.shun_visited || visits(id) == least;
-        let off_rad = |view: usize| heading.turn_to(Compass::ALL[view].heading()).abs();
+        let off_rad = |view: usize| heading.turn_to(CompassPoint::ALL[view].to_heading()).abs();
         let worth =
-            |(at, view): (usize, &Seen)| Some((at, view.scores[in_hand], view.onward.iter().find(may)?.clone()));
+            |(at, view): (usize, &SightView)| Some((at, view.scores[in_hand], view.onward.iter().find(may)?.clone()));
         let open = sight.views.iter().enumerate().filter_map(worth);
         let chosen = open.max_by(|a, b| a.1.total_cmp(&b.1).then_with(|| off_rad(b.0).total_cmp(&off_rad(a.0))));
-        chosen.map_or(Decision::DeadEnd, |(view, _, to)| Decision::Onward { view, to })
+        chosen.map_or(PhraseDecision::DeadEnd, |(view, _, to)| PhraseDecision::Onward { view, to })
     }
 }

@@ -1,67 +1,67 @@
 //! Summarises the efforts of the walks in a row of the table: calls, tokens, money, hops, time and useless replies of an agent with
 //! a language model.
 
-use super::Results;
-use crate::walk::{Effort, End, Useless, Walk};
+use super::WalkScores;
+use crate::walk::{AgentWalkRecord, UselessReplies, WalkEffort, WalkEnd};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use wayword_metrics::Estimate;
+use wayword_metrics::MeanEstimate;
 
 /// The efforts of the walks of a row. Means are over items, with intervals clustered by path; counts are over walks.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Efforts {
+pub struct EffortSummary {
     /// Number of walks.
     pub walks: usize,
     /// Calls of the model in a walk.
-    pub calls: Estimate,
+    pub calls: MeanEstimate,
     /// Hops of a walk.
-    pub hops: Estimate,
+    pub hops: MeanEstimate,
     /// Tokens of all prompts of a walk.
-    pub tokens_in: Estimate,
+    pub tokens_in: MeanEstimate,
     /// Tokens of all replies of a walk.
-    pub tokens_out: Estimate,
+    pub tokens_out: MeanEstimate,
     /// US dollars of a walk; `None` where a price is not known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub usd: Option<Estimate>,
+    pub usd: Option<MeanEstimate>,
     /// Seconds that the model took in a walk, when the calls were made.
-    pub seconds: Estimate,
+    pub seconds: MeanEstimate,
     /// Tokens of the largest prompt of all.
     pub most_tokens_in: u64,
     /// Counts of useless replies.
-    pub useless: Useless,
+    pub useless: UselessReplies,
     /// Views that could not be described.
     #[serde(default)]
     pub undescribed: usize,
     /// Walks that the agent ended at the start.
     pub at_once: usize,
     /// Number of walks by the reason of their end.
-    pub ended: BTreeMap<End, usize>,
+    pub ended: BTreeMap<WalkEnd, usize>,
 }
 
 /// The effort of one walk.
 #[derive(Debug, Clone)]
 pub(super) struct OfWalk {
-    effort: Effort,
+    effort: WalkEffort,
     hops: usize,
-    end: End,
+    end: WalkEnd,
 }
 
 impl OfWalk {
     /// The effort of a walk; `None` if no language model decided.
-    pub(super) fn of(walk: &Walk) -> Option<Self> {
+    pub(super) fn from_walk(walk: &AgentWalkRecord) -> Option<Self> {
         let hops = walk.steps.len().saturating_sub(1);
         Some(Self { effort: walk.effort.clone()?, hops, end: walk.end })
     }
 }
 
-impl Efforts {
+impl EffortSummary {
     /// Summarises the walks of an agent by a set. `estimate` computes the mean of the items' figures with its interval.
-    pub(super) fn of(
-        results: &Results,
+    pub(super) fn from_results(
+        results: &WalkScores,
         (agent, set): (&str, &str),
-        estimate: impl Fn(BTreeMap<&str, f64>) -> Option<Estimate>,
+        estimate: impl Fn(BTreeMap<&str, f64>) -> Option<MeanEstimate>,
     ) -> Option<Self> {
-        let by_item = results.efforts(agent, set)?;
+        let by_item = results.walk_efforts(agent, set)?;
         let mean = |figure: &dyn Fn(&OfWalk) -> Option<f64>| {
             let mut means = BTreeMap::new();
             for (item, texts) in by_item {
@@ -73,7 +73,7 @@ impl Efforts {
         let all = || by_item.values().flat_map(BTreeMap::values);
         let mut ended = BTreeMap::new();
         all().for_each(|walk| *ended.entry(walk.end).or_default() += 1);
-        let sum = |of: fn(&Useless) -> usize| all().map(|walk| of(&walk.effort.useless)).sum();
+        let sum = |of: fn(&UselessReplies) -> usize| all().map(|walk| of(&walk.effort.useless)).sum();
         Some(Self {
             walks: all().count(),
             calls: mean(&|walk| Some(walk.effort.calls as f64))?,
@@ -83,14 +83,14 @@ impl Efforts {
             usd: mean(&|walk| walk.effort.usd),
             seconds: mean(&|walk| Some(walk.effort.seconds))?,
             most_tokens_in: all().map(|walk| walk.effort.most_tokens_in).max().unwrap_or_default(),
-            useless: Useless {
+            useless: UselessReplies {
                 no_call: sum(|useless| useless.no_call),
                 no_way: sum(|useless| useless.no_way),
                 idle: sum(|useless| useless.idle),
                 failed: sum(|useless| useless.failed),
             },
             undescribed: all().map(|walk| walk.effort.undescribed).sum(),
-            at_once: all().filter(|walk| walk.hops == 0 && walk.end == End::Stopped).count(),
+            at_once: all().filter(|walk| walk.hops == 0 && walk.end == WalkEnd::Stopped).count(),
             ended,
         })
     }

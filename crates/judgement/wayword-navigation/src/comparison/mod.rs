@@ -5,33 +5,33 @@ mod efforts;
 mod results;
 mod table;
 
-pub use efforts::Efforts;
-pub use results::Results;
-pub use table::{EMPTY, UNREAD, Walker, compare, empty_set, swapped_set};
+pub use efforts::EffortSummary;
+pub use results::WalkScores;
+pub use table::{ComparedAgent, EMPTY, UNREAD_SET_NAME, compare_agents, empty_set, swapped_set};
 
-use crate::swap::Swap;
+use crate::swap::InstructionSwap;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use wayword_metrics::{Estimate, McNemar, Metric, Rule};
+use wayword_metrics::{McNemar, MeanEstimate, TrajectoryMetric, TrajectorySuccessRule};
 
 /// The result of a comparison: its settings, the table, and the swap tests.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Comparison {
+pub struct AgentComparison {
     /// Its subject and its settings.
-    pub about: About,
+    pub about: ComparisonInfo,
     /// The sets, in the order in which they were asked for.
-    pub sets: Vec<Set>,
+    pub sets: Vec<InstructionSet>,
     /// One row per agent and set, agents in their order. An agent that does not read has one row, with `None` as its set. An agent
     /// that reads and knows the map has two more: by an empty text ([`empty_set`]) and by the text of another path
     /// ([`swapped_set`]).
-    pub rows: Vec<Row>,
+    pub rows: Vec<ComparisonRow>,
     /// The swap tests of the first set: one per swap and agent that is tested.
-    pub swaps: Vec<Swapped>,
+    pub swaps: Vec<SwapEffect>,
 }
 
 /// The subject and the settings of a comparison.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct About {
+pub struct ComparisonInfo {
     /// The platform.
     pub platform: String,
     /// Name of the episodes' file.
@@ -53,7 +53,7 @@ pub struct About {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tools: Option<(String, String)>,
     /// The rule of success in the table.
-    pub rule: Rule,
+    pub rule: TrajectorySuccessRule,
     /// The share that intervals cover, as 0.95.
     pub level: f64,
     /// Resamples of the intervals.
@@ -79,7 +79,7 @@ pub struct About {
 
 /// A set of instructions.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Set {
+pub struct InstructionSet {
     /// Its name.
     pub name: String,
     /// Where it is from, without folders.
@@ -111,7 +111,7 @@ pub enum AgentKind {
 /// An agent's figures on one set. The figure of an item is the mean over the walks by its texts, and the figure of the row is the
 /// mean over items.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Row {
+pub struct ComparisonRow {
     /// The agent.
     pub agent: String,
     /// What kind it is.
@@ -119,19 +119,19 @@ pub struct Row {
     /// The set that it walked by; `None` where it does not read.
     pub set: Option<String>,
     /// Each figure with its interval, clustered by path.
-    pub figures: BTreeMap<Metric, Estimate>,
+    pub figures: BTreeMap<TrajectoryMetric, MeanEstimate>,
     /// This row minus the row of the first set for the same agent; `None` for the first set and for agents that do not read.
-    pub against_first: Option<Difference>,
+    pub against_first: Option<RowDifference>,
     /// Calls, tokens and cost of its walks, if a language model decided.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub effort: Option<Efforts>,
+    pub effort: Option<EffortSummary>,
 }
 
 /// One row minus another of the same agent, item by item.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Difference {
+pub struct RowDifference {
     /// Each figure's difference with its interval, clustered by path.
-    pub figures: BTreeMap<Metric, Estimate>,
+    pub figures: BTreeMap<TrajectoryMetric, MeanEstimate>,
     /// On the success of each item's first text. It treats items as independent, which they are not, so it only
     /// describes.
     pub mcnemar: McNemar,
@@ -139,28 +139,28 @@ pub struct Difference {
 
 /// The effect of a swap of the first set on an agent.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Swapped {
+pub struct SwapEffect {
     /// The agent.
     pub agent: String,
     /// The swap.
-    pub swap: Swap,
+    pub swap: InstructionSwap,
     /// Texts that the swap changed. Texts that it leaves as they are do not count on either side.
     pub changed: usize,
     /// Texts of the first set on the common items.
     pub texts: usize,
     /// The agent's figures by the swapped texts.
-    pub figures: BTreeMap<Metric, Estimate>,
+    pub figures: BTreeMap<TrajectoryMetric, MeanEstimate>,
     /// The figures by the original texts minus those by the swapped ones, on the same items and texts: positive if the agent uses
     /// the swapped information.
-    pub lost: Difference,
+    pub lost: RowDifference,
     /// The conclusion from `lost`.
-    pub listening: Listening,
+    pub listening: ListeningVerdict,
 }
 
 /// Whether a swap test shows that an agent uses the swapped information.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Listening {
+pub enum ListeningVerdict {
     /// The whole interval of the lost success rate is above 0.
     Shown,
     /// The interval includes 0 or less. This does not prove that the agent ignores the swapped information.

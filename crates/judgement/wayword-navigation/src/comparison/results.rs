@@ -2,18 +2,18 @@
 
 use super::efforts::OfWalk;
 use std::collections::{BTreeMap, BTreeSet};
-use wayword_metrics::{Metric, Rule, Score};
+use wayword_metrics::{TrajectoryMetric, TrajectoryScore, TrajectorySuccessRule};
 
 /// The scores of one agent on one set: by item, then by the text's index in its set.
-type Scores = BTreeMap<String, BTreeMap<usize, Score>>;
+type ScoresByItem = BTreeMap<String, BTreeMap<usize, TrajectoryScore>>;
 
 /// The efforts of one agent on one set: by item, then by the text's index in its set.
 type OfWalks = BTreeMap<String, BTreeMap<usize, OfWalk>>;
 
 /// All scores of a comparison.
 #[derive(Debug, Clone, Default)]
-pub struct Results {
-    scores: BTreeMap<(String, String), Scores>,
+pub struct WalkScores {
+    scores: BTreeMap<(String, String), ScoresByItem>,
     /// The efforts of walks in which a language model decided, by agent and set.
     efforts: BTreeMap<(String, String), OfWalks>,
     /// The path of each item.
@@ -21,14 +21,14 @@ pub struct Results {
 }
 
 /// Indices of texts in a set, by item.
-pub(super) type Texts = BTreeMap<String, BTreeSet<usize>>;
+pub(super) type TextsByItem = BTreeMap<String, BTreeSet<usize>>;
 
-impl Results {
+impl WalkScores {
     /// Adds the score of a walk. `cluster` is the item's path.
-    pub fn add(&mut self, walk: &crate::walk::Walk, cluster: &str, score: Score) {
+    pub fn add_walk(&mut self, walk: &crate::walk::AgentWalkRecord, cluster: &str, score: TrajectoryScore) {
         let scores = self.scores.entry((walk.agent.clone(), walk.set.clone())).or_default();
         scores.entry(walk.item.clone()).or_default().insert(walk.text_index, score);
-        if let Some(effort) = OfWalk::of(walk) {
+        if let Some(effort) = OfWalk::from_walk(walk) {
             let all = self.efforts.entry((walk.agent.clone(), walk.set.clone())).or_default();
             all.entry(walk.item.clone()).or_default().insert(walk.text_index, effort);
         }
@@ -37,19 +37,19 @@ impl Results {
 
     /// How many items were walked, and on how many paths they lie.
     #[must_use]
-    pub fn extent(&self) -> (usize, usize) {
+    pub fn count_items_and_paths(&self) -> (usize, usize) {
         (self.clusters.len(), self.clusters.values().collect::<BTreeSet<_>>().len())
     }
 
     /// Whether an item was walked.
     #[must_use]
-    pub fn has(&self, item: &str) -> bool {
+    pub fn has_item(&self, item: &str) -> bool {
         self.clusters.contains_key(item)
     }
 
     /// The texts of a set by which an agent walked.
-    pub(super) fn texts(&self, agent: &str, set: &str) -> Texts {
-        let scores = self.of(agent, set).into_iter().flatten();
+    pub(super) fn texts_walked(&self, agent: &str, set: &str) -> TextsByItem {
+        let scores = self.scores_for_set(agent, set).into_iter().flatten();
         scores.map(|(item, texts)| (item.clone(), texts.keys().copied().collect())).collect()
     }
 
@@ -58,14 +58,14 @@ impl Results {
         &self,
         agent: &str,
         set: &str,
-        metric: Metric,
-        rule: Rule,
-        only: Option<&Texts>,
+        metric: TrajectoryMetric,
+        rule: TrajectorySuccessRule,
+        only: Option<&TextsByItem>,
     ) -> BTreeMap<&str, f64> {
-        let scores = self.of(agent, set).into_iter().flatten();
+        let scores = self.scores_for_set(agent, set).into_iter().flatten();
         let wanted =
             |item: &str, text: &usize| only.is_none_or(|only| only.get(item).is_some_and(|texts| texts.contains(text)));
-        let of_item = |(item, texts): (&'_ String, &BTreeMap<usize, Score>)| {
+        let of_item = |(item, texts): (&'_ String, &BTreeMap<usize, TrajectoryScore>)| {
             let texts = texts.iter().filter(|(text, _)| wanted(item, text));
             let figures: Vec<f64> = texts.filter_map(|(_, score)| score.get(metric, rule)).collect();
             (!figures.is_empty()).then(|| figures.iter().sum::<f64>() / figures.len() as f64)
@@ -78,31 +78,31 @@ impl Results {
         &self,
         agent: &str,
         set: &str,
-        rule: Rule,
-        only: Option<&Texts>,
+        rule: TrajectorySuccessRule,
+        only: Option<&TextsByItem>,
     ) -> BTreeMap<&str, bool> {
-        let scores = self.of(agent, set).into_iter().flatten();
-        let first = |(item, texts): (&'_ String, &BTreeMap<usize, Score>)| {
+        let scores = self.scores_for_set(agent, set).into_iter().flatten();
+        let first = |(item, texts): (&'_ String, &BTreeMap<usize, TrajectoryScore>)| {
             let at = match only {
                 Some(only) => *only.get(item)?.first()?,
                 None => *texts.first_key_value()?.0,
             };
-            texts.get(&at)?.get(Metric::SuccessRate, rule).map(|success| success > 0.5)
+            texts.get(&at)?.get(TrajectoryMetric::SuccessRate, rule).map(|success| success > 0.5)
         };
         scores.filter_map(|entry| Some((entry.0.as_str(), first(entry)?))).collect()
     }
 
     /// The path of an item.
-    pub(super) fn cluster(&self, item: &str) -> &str {
+    pub(super) fn item_cluster(&self, item: &str) -> &str {
         self.clusters.get(item).map_or("", String::as_str)
     }
 
     /// The efforts of an agent's walks by a set; `None` if no language model decided.
-    pub(super) fn efforts(&self, agent: &str, set: &str) -> Option<&OfWalks> {
+    pub(super) fn walk_efforts(&self, agent: &str, set: &str) -> Option<&OfWalks> {
         self.efforts.get(&(agent.to_owned(), set.to_owned()))
     }
 
-    fn of(&self, agent: &str, set: &str) -> Option<&Scores> {
+    fn scores_for_set(&self, agent: &str, set: &str) -> Option<&ScoresByItem> {
         self.scores.get(&(agent.to_owned(), set.to_owned()))
     }
 }

@@ -2,16 +2,16 @@
 //! item, and the swap tests.
 
 use super::{
-    About, AgentKind, Comparison, Difference, Efforts, FEWEST_PATHS, Listening, Results, Row, Set, Swapped,
-    results::Texts,
+    AgentComparison, AgentKind, ComparisonInfo, ComparisonRow, EffortSummary, FEWEST_PATHS, InstructionSet,
+    ListeningVerdict, RowDifference, SwapEffect, WalkScores, results::TextsByItem,
 };
-use crate::swap::Swap;
+use crate::swap::InstructionSwap;
 use std::collections::BTreeMap;
-use wayword_metrics::{Estimate, McNemar, Metric, clustered_interval};
+use wayword_metrics::{McNemar, MeanEstimate, TrajectoryMetric, clustered_interval};
 
 /// The name under which walks by the swapped texts of a set are recorded.
 #[must_use]
-pub fn swapped_set(set: &str, swap: Swap) -> String {
+pub fn swapped_set(set: &str, swap: InstructionSwap) -> String {
     format!("{set}~{}", swap.name())
 }
 
@@ -25,11 +25,11 @@ pub fn empty_set(set: &str) -> String {
 pub const EMPTY: &str = "empty";
 
 /// The set name under which walks of agents that do not read are recorded.
-pub const UNREAD: &str = "none";
+pub const UNREAD_SET_NAME: &str = "none";
 
 /// An agent of a comparison.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Walker {
+pub struct ComparedAgent {
     /// Its name.
     pub name: String,
     /// What kind it is.
@@ -41,7 +41,7 @@ pub struct Walker {
     pub has_floors: bool,
 }
 
-impl Walker {
+impl ComparedAgent {
     /// Whether swap tests are meaningful for it: either it can find the goal only by reading, or its two extra rows show what it
     /// reaches without reading.
     fn is_swapped(&self) -> bool {
@@ -51,85 +51,98 @@ impl Walker {
 
 /// Computes the table. Swap tests use the first set.
 #[must_use]
-pub fn compare(about: About, sets: Vec<Set>, walkers: &[Walker], swaps: &[Swap], results: &Results) -> Comparison {
-    let table = Table { about: &about, results };
+pub fn compare_agents(
+    about: ComparisonInfo,
+    sets: Vec<InstructionSet>,
+    walkers: &[ComparedAgent],
+    swaps: &[InstructionSwap],
+    results: &WalkScores,
+) -> AgentComparison {
+    let table = TableBuilder { about: &about, results };
     let mut rows = Vec::new();
     for walker in walkers {
         if walker.reads {
             rows.extend(sets.iter().enumerate().map(|(at, set)| {
                 let first = sets.first().filter(|_| at > 0);
-                table.row(walker, Some(&set.name), first.map(|first| first.name.as_str()))
+                table.comparison_row(walker, Some(&set.name), first.map(|first| first.name.as_str()))
             }));
             if let Some(first) = sets.first().filter(|_| walker.has_floors) {
-                let floors = [empty_set(&first.name), swapped_set(&first.name, Swap::OtherPath)];
-                rows.extend(floors.iter().map(|set| table.row(walker, Some(set), None)));
+                let floors = [empty_set(&first.name), swapped_set(&first.name, InstructionSwap::OtherPath)];
+                rows.extend(floors.iter().map(|set| table.comparison_row(walker, Some(set), None)));
             }
         } else {
-            rows.push(table.row(walker, None, None));
+            rows.push(table.comparison_row(walker, None, None));
         }
     }
     let mut swapped = Vec::new();
     if let Some(first) = sets.first() {
         for walker in walkers.iter().filter(|walker| walker.is_swapped()) {
-            swapped.extend(swaps.iter().map(|swap| table.swapped(walker, &first.name, *swap)));
+            swapped.extend(swaps.iter().map(|swap| table.swap_effect(walker, &first.name, *swap)));
         }
     }
-    Comparison { about, sets, rows, swaps: swapped }
+    AgentComparison { about, sets, rows, swaps: swapped }
 }
 
-struct Table<'a> {
-    about: &'a About,
-    results: &'a Results,
+struct TableBuilder<'a> {
+    about: &'a ComparisonInfo,
+    results: &'a WalkScores,
 }
 
-impl Table<'_> {
-    fn row(&self, walker: &Walker, set: Option<&str>, first: Option<&str>) -> Row {
-        let kept = set.unwrap_or(UNREAD);
-        let against = |first: &str| self.difference(&walker.name, (kept, None), (first, None));
-        Row {
+impl TableBuilder<'_> {
+    fn comparison_row(&self, walker: &ComparedAgent, set: Option<&str>, first: Option<&str>) -> ComparisonRow {
+        let kept = set.unwrap_or(UNREAD_SET_NAME);
+        let against = |first: &str| self.row_difference(&walker.name, (kept, None), (first, None));
+        ComparisonRow {
             agent: walker.name.clone(),
             kind: walker.kind,
             set: set.map(str::to_owned),
-            figures: self.figures(&walker.name, kept, None),
+            figures: self.mean_figures(&walker.name, kept, None),
             against_first: first.map(against),
-            effort: Efforts::of(self.results, (&walker.name, kept), |by_item| self.estimate(&by_item)),
+            effort: EffortSummary::from_results(self.results, (&walker.name, kept), |by_item| {
+                self.estimate_mean(&by_item)
+            }),
         }
     }
 
-    fn swapped(&self, walker: &Walker, first: &str, swap: Swap) -> Swapped {
+    fn swap_effect(&self, walker: &ComparedAgent, first: &str, swap: InstructionSwap) -> SwapEffect {
         let set = swapped_set(first, swap);
-        let texts = self.results.texts(&walker.name, &set);
-        let lost = self.difference(&walker.name, (first, Some(&texts)), (&set, None));
-        let listening = match lost.figures.get(&Metric::SuccessRate) {
-            Some(lost) if lost.clusters >= FEWEST_PATHS && lost.low > 0.0 => Listening::Shown,
-            Some(lost) if lost.clusters >= FEWEST_PATHS => Listening::NotShown,
-            _ => Listening::TooFew,
+        let texts = self.results.texts_walked(&walker.name, &set);
+        let lost = self.row_difference(&walker.name, (first, Some(&texts)), (&set, None));
+        let listening = match lost.figures.get(&TrajectoryMetric::SuccessRate) {
+            Some(lost) if lost.clusters >= FEWEST_PATHS && lost.low > 0.0 => ListeningVerdict::Shown,
+            Some(lost) if lost.clusters >= FEWEST_PATHS => ListeningVerdict::NotShown,
+            _ => ListeningVerdict::TooFew,
         };
-        let count = |texts: &Texts| texts.values().map(|texts| texts.len()).sum();
-        Swapped {
+        let count = |texts: &TextsByItem| texts.values().map(|texts| texts.len()).sum();
+        SwapEffect {
             agent: walker.name.clone(),
             swap,
             changed: count(&texts),
-            texts: count(&self.results.texts(&walker.name, first)),
-            figures: self.figures(&walker.name, &set, None),
+            texts: count(&self.results.texts_walked(&walker.name, first)),
+            figures: self.mean_figures(&walker.name, &set, None),
             lost,
             listening,
         }
     }
 
-    fn figures(&self, agent: &str, set: &str, only: Option<&Texts>) -> BTreeMap<Metric, Estimate> {
-        self.estimates(|metric| self.results.by_item(agent, set, metric, self.about.rule, only))
+    fn mean_figures(
+        &self,
+        agent: &str,
+        set: &str,
+        only: Option<&TextsByItem>,
+    ) -> BTreeMap<TrajectoryMetric, MeanEstimate> {
+        self.estimate_metrics(|metric| self.results.by_item(agent, set, metric, self.about.rule, only))
     }
 
     /// The first set minus the second, on the items that have a figure in both.
-    fn difference(
+    fn row_difference(
         &self,
         agent: &str,
-        (first, only_first): (&str, Option<&Texts>),
-        (second, only_second): (&str, Option<&Texts>),
-    ) -> Difference {
+        (first, only_first): (&str, Option<&TextsByItem>),
+        (second, only_second): (&str, Option<&TextsByItem>),
+    ) -> RowDifference {
         let rule = self.about.rule;
-        let figures = self.estimates(|metric| {
+        let figures = self.estimate_metrics(|metric| {
             let second = self.results.by_item(agent, second, metric, rule, only_second);
             let first = self.results.by_item(agent, first, metric, rule, only_first);
             first.into_iter().filter_map(|(item, figure)| Some((item, figure - second.get(item)?))).collect()
@@ -137,22 +150,25 @@ impl Table<'_> {
         let second = self.results.first_successes(agent, second, rule, only_second);
         let first = self.results.first_successes(agent, first, rule, only_first);
         let pairs = first.iter().filter_map(|(item, first)| Some((*first, *second.get(item)?)));
-        Difference { figures, mcnemar: McNemar::of(pairs) }
+        RowDifference { figures, mcnemar: McNemar::from_pairs(pairs) }
     }
 
-    fn estimates<'r>(&self, of: impl Fn(Metric) -> BTreeMap<&'r str, f64>) -> BTreeMap<Metric, Estimate>
+    fn estimate_metrics<'r>(
+        &self,
+        of: impl Fn(TrajectoryMetric) -> BTreeMap<&'r str, f64>,
+    ) -> BTreeMap<TrajectoryMetric, MeanEstimate>
     where
         Self: 'r,
     {
-        let estimate = |metric| Some((metric, self.estimate(&of(metric))?));
-        Metric::ALL.into_iter().filter_map(estimate).collect()
+        let estimate = |metric| Some((metric, self.estimate_mean(&of(metric))?));
+        TrajectoryMetric::ALL.into_iter().filter_map(estimate).collect()
     }
 
     /// The mean of items' figures, with its interval clustered by path.
-    fn estimate(&self, by_item: &BTreeMap<&str, f64>) -> Option<Estimate> {
+    fn estimate_mean(&self, by_item: &BTreeMap<&str, f64>) -> Option<MeanEstimate> {
         let values: Vec<(&str, f64)> =
-            by_item.iter().map(|(item, figure)| (self.results.cluster(item), *figure)).collect();
-        let About { resamples, level, seed, .. } = *self.about;
+            by_item.iter().map(|(item, figure)| (self.results.item_cluster(item), *figure)).collect();
+        let ComparisonInfo { resamples, level, seed, .. } = *self.about;
         clustered_interval(&values, resamples, level, seed)
     }
 }

@@ -4,22 +4,22 @@
 use std::{collections::BTreeSet, ops::Range};
 use wayword_language::{
     directions::{AFTER_VERB, JOINING, TELLING},
-    reading::{clauses, read},
-    text::{Token, tokens},
+    reading::{clause_numbers, read_instruction},
+    text::{TextToken, split_tokens},
 };
 
 /// A clause, as ranges of tokens without the words and marks that join it to others.
 #[derive(Debug, Clone)]
-pub(super) struct Clause {
+pub(super) struct MendedClause {
     pub(super) all: Range<usize>,
     /// Without the parts that only describe a place further.
     pub(super) head: Range<usize>,
 }
 
 /// The clauses of a text that have words.
-pub(super) fn mended(text: &str, tokens: &[Token]) -> Vec<Clause> {
-    let ranges = ranges(tokens);
-    let mut mended: Vec<Clause> = Vec::new();
+pub(super) fn mend_clauses(text: &str, tokens: &[TextToken]) -> Vec<MendedClause> {
+    let ranges = clause_ranges(tokens);
+    let mut mended: Vec<MendedClause> = Vec::new();
     for (at, range) in ranges.iter().enumerate() {
         let goes_on = || {
             let from = at.checked_sub(1).map_or(0, |before| ranges[before].end);
@@ -28,7 +28,7 @@ pub(super) fn mended(text: &str, tokens: &[Token]) -> Vec<Clause> {
         };
         match mended.last_mut() {
             Some(before) if goes_on() => before.all.end = range.end,
-            _ => mended.push(Clause { all: range.clone(), head: range.clone() }),
+            _ => mended.push(MendedClause { all: range.clone(), head: range.clone() }),
         }
     }
     mended
@@ -36,46 +36,46 @@ pub(super) fn mended(text: &str, tokens: &[Token]) -> Vec<Clause> {
 
 /// The clauses of a text in its own words, without the words and marks that join them.
 pub(crate) fn clause_texts(text: &str) -> Vec<&str> {
-    let tokens = tokens(text);
-    let words = |clause: Clause| &text[tokens[clause.all.start].span[0]..tokens[clause.all.end - 1].span[1]];
-    mended(text, &tokens).into_iter().map(words).collect()
+    let tokens = split_tokens(text);
+    let words = |clause: MendedClause| &text[tokens[clause.all.start].span[0]..tokens[clause.all.end - 1].span[1]];
+    mend_clauses(text, &tokens).into_iter().map(words).collect()
 }
 
 /// Whether a text by itself ends in a task.
 pub(super) fn ends_in_task(text: &str) -> bool {
-    read(text, &BTreeSet::new()).task.is_some()
+    read_instruction(text, &BTreeSet::new()).task.is_some()
 }
 
 /// Whether the second word of a clause is one that follows a verb.
-pub(super) fn has_object(tokens: &[Token], clause: &Range<usize>) -> bool {
+pub(super) fn has_object(tokens: &[TextToken], clause: &Range<usize>) -> bool {
     clause.len() > 1 && AFTER_VERB.contains(&tokens[clause.start + 1].word.as_str())
 }
 
 /// Whether a clause continues the one before: no mark ends the one before, and either no word joins the two or the clause begins by
 /// describing a place further.
-fn goes_on(tokens: &[Token], between: Range<usize>, clause: &Range<usize>) -> bool {
+fn goes_on(tokens: &[TextToken], between: Range<usize>, clause: &Range<usize>) -> bool {
     let between = &tokens[between];
-    let ends = |token: &Token| matches!(token.word.as_str(), "." | "!" | "?" | "," | ";" | ":");
-    let joined = between.iter().any(Token::is_word);
+    let ends = |token: &TextToken| matches!(token.word.as_str(), "." | "!" | "?" | "," | ";" | ":");
+    let joined = between.iter().any(TextToken::is_word);
     let telling = TELLING.contains(&tokens[clause.start].word.as_str());
     !between.iter().any(ends) && (telling || !joined)
 }
 
 /// Whether the word that the reader takes for a verb is an adjective, as in "with a white couch and stripey chairs".
-fn is_adjective(text: &str, tokens: &[Token], from: usize, clause: &Range<usize>) -> bool {
+fn is_adjective(text: &str, tokens: &[TextToken], from: usize, clause: &Range<usize>) -> bool {
     tokens[from..clause.start].iter().all(|token| token.word == "and")
         && !has_object(tokens, clause)
         && ends_in_task(&text[tokens[clause.start].span[0]..tokens[clause.end - 1].span[1]])
 }
 
 /// The reader's clauses that have words, as ranges of tokens without the words and marks that join them.
-fn ranges(tokens: &[Token]) -> Vec<Range<usize>> {
+fn clause_ranges(tokens: &[TextToken]) -> Vec<Range<usize>> {
     let mut ranges = Vec::new();
     let mut from = 0;
-    for clause in clauses(tokens).chunk_by(|a, b| a == b) {
+    for clause in clause_numbers(tokens).chunk_by(|a, b| a == b) {
         let mut range = from..from + clause.len();
         from = range.end;
-        range.start += tokens[range.clone()].iter().take_while(|token| joins(token)).count();
+        range.start += tokens[range.clone()].iter().take_while(|token| is_joint(token)).count();
         if !range.is_empty() {
             ranges.push(without_joints(tokens, range));
         }
@@ -84,13 +84,13 @@ fn ranges(tokens: &[Token]) -> Vec<Range<usize>> {
 }
 
 /// A range without the words and marks at its end that join it to what follows.
-pub(super) fn without_joints(tokens: &[Token], mut range: Range<usize>) -> Range<usize> {
-    while range.len() > 1 && joins(&tokens[range.end - 1]) {
+pub(super) fn without_joints(tokens: &[TextToken], mut range: Range<usize>) -> Range<usize> {
+    while range.len() > 1 && is_joint(&tokens[range.end - 1]) {
         range.end -= 1;
     }
     range
 }
 
-fn joins(token: &Token) -> bool {
+fn is_joint(token: &TextToken) -> bool {
     !token.is_word() || JOINING.contains(&token.word.as_str())
 }

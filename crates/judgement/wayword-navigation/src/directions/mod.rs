@@ -13,12 +13,12 @@ use wayword_core::ModelError;
 
 pub(crate) use clauses::clause_texts;
 pub use model::{ByModel, split_prompt};
-pub use places::{NamedPlace, places};
+pub use places::{NamedPlace, named_places};
 pub use rules::ByRules;
 
 /// An instruction split in two (arXiv 2211.16649, section 3: navigation component and activity component).
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Directions {
+pub struct SplitInstruction {
     /// The navigation component: key phrases in the order in which they are met. Empty where the text only names a task.
     pub phrases: Vec<String>,
     /// The activity component: the task or the place of arrival ("wipe the sink", "stop at the sink"). Never empty.
@@ -28,12 +28,12 @@ pub struct Directions {
 /// Splits instructions.
 ///
 /// Blocking, object-safe and batching; threads belong to the caller.
-pub trait Splitter: Send + Sync {
+pub trait InstructionSplitter: Send + Sync {
     /// `rules`, or `provider/model`.
     fn name(&self) -> &str;
 
     /// One result per instruction, in their order. One that fails does not fail the others.
-    fn split(&self, instructions: &[&str]) -> Vec<Result<Directions, ModelError>>;
+    fn split_instructions(&self, instructions: &[&str]) -> Vec<Result<SplitInstruction, ModelError>>;
 }
 
 /// Most key phrases of an instruction; texts by people have up to about ten.
@@ -46,18 +46,18 @@ const MOST_BYTES: usize = 400;
 const MOST_BYTES_READ: usize = 8_000;
 
 /// The beginning of a text, up to a number of bytes.
-fn beginning(text: &str, most_bytes: usize) -> &str {
+fn first_bytes(text: &str, most_bytes: usize) -> &str {
     &text[..text.floor_char_boundary(most_bytes)]
 }
 
 /// The part of an instruction that agents read.
 pub(crate) fn beginning_of(instruction: &str) -> &str {
-    beginning(instruction, MOST_BYTES_READ)
+    first_bytes(instruction, MOST_BYTES_READ)
 }
 
 /// The beginning of a phrase that is not too long for a grounder.
-fn short(text: &str) -> String {
-    let text = beginning(text.trim(), MOST_BYTES);
+fn shorten_phrase(text: &str) -> String {
+    let text = first_bytes(text.trim(), MOST_BYTES);
     let end = |word: &str| word.as_ptr() as usize + word.len() - text.as_ptr() as usize;
     let end = text.split_whitespace().take(MOST_WORDS).last().map_or(0, end);
     text[..end].to_owned()
@@ -67,8 +67,8 @@ fn short(text: &str) -> String {
 ///
 /// # Errors
 /// When it has no words.
-fn readable<'a>(text: &'a str, splitter: &str) -> Result<&'a str, ModelError> {
-    let text = beginning(text, MOST_BYTES_READ);
+fn readable_part<'a>(text: &'a str, splitter: &str) -> Result<&'a str, ModelError> {
+    let text = first_bytes(text, MOST_BYTES_READ);
     if text.contains(char::is_alphanumeric) {
         return Ok(text);
     }

@@ -1,9 +1,9 @@
 //! The things and rooms that a phrase names, for grounders that look for labels and boxes.
 
-use super::{MOST_BYTES_READ, beginning};
+use super::{MOST_BYTES_READ, first_bytes};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
-use wayword_language::reading::{What, read};
+use wayword_language::reading::{EventContent, read_instruction};
 
 /// A thing or a room that a phrase names.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -16,11 +16,11 @@ pub struct NamedPlace {
 
 /// The things and rooms that a phrase names, each once, in the order of the text. Those that the phrase denies are left out.
 #[must_use]
-pub fn places(phrase: &str) -> Vec<NamedPlace> {
-    let reading = read(beginning(phrase, MOST_BYTES_READ), &BTreeSet::new()).claims();
+pub fn named_places(phrase: &str) -> Vec<NamedPlace> {
+    let reading = read_instruction(first_bytes(phrase, MOST_BYTES_READ), &BTreeSet::new()).into_claims();
     let mut named = BTreeSet::new();
-    let place = |what: What| match what {
-        What::Place(place) => Some(NamedPlace { name: place.name, is_room: place.is_room && !place.is_thing }),
+    let place = |what: EventContent| match what {
+        EventContent::Place(place) => Some(NamedPlace { name: place.name, is_room: place.is_room && !place.is_thing }),
         _ => None,
     };
     let all = reading.events.into_iter().filter_map(|event| place(event.what));
@@ -34,7 +34,7 @@ mod tests {
     #[test]
     fn things_and_rooms_are_named_once_and_in_order() {
         let told: Vec<(String, bool)> =
-            places("Past the old sofas in the kitchen to the stairs, not the lamp, by a gizmo and the sofa")
+            named_places("Past the old sofas in the kitchen to the stairs, not the lamp, by a gizmo and the sofa")
                 .into_iter()
                 .map(|place| (place.name, place.is_room))
                 .collect();
@@ -45,7 +45,7 @@ mod tests {
     #[test]
     fn a_room_before_a_thing_is_no_room_to_look_for() {
         let table = NamedPlace { name: "kitchen table".to_owned(), is_room: false };
-        assert_eq!(places("wipe the kitchen table"), [table]);
-        assert_eq!(places("turn left"), []);
+        assert_eq!(named_places("wipe the kitchen table"), [table]);
+        assert_eq!(named_places("turn left"), []);
     }
 }

@@ -1,38 +1,39 @@
 //! Reads a model's reply to the request to split an instruction.
 
-use super::{Directions, MOST_BYTES_READ, MOST_PHRASES, beginning, short};
+use super::{MOST_BYTES_READ, MOST_PHRASES, SplitInstruction, first_bytes, shorten_phrase};
 
 /// Names of the closing line.
-const CLOSING: [&str; 3] = ["task", "activity", "action"];
+const CLOSING_LINE_NAMES: [&str; 3] = ["task", "activity", "action"];
 /// Words that models write in an empty line or list.
-const NOTHING: [&str; 5] = ["none", "(none)", "n/a", "nothing", "-"];
+const EMPTY_LINE_WORDS: [&str; 5] = ["none", "(none)", "n/a", "nothing", "-"];
 
 /// Reads a reply: numbered or bulleted lines, then "TASK: ...". Code fences, quotes, emphasis and chatter around are passed over.
 ///
 /// # Errors
 /// Describes the missing part in words.
-pub(super) fn directions(reply: &str) -> Result<Directions, &'static str> {
+pub(super) fn read_directions(reply: &str) -> Result<SplitInstruction, &'static str> {
     let mut phrases: Vec<String> = Vec::new();
     let mut awaits_task = false;
-    for line in beginning(reply, MOST_BYTES_READ).lines() {
-        let (listed, text) = item(line);
-        let (is_closing, text) = closing(text).map_or((false, text), |task| (true, task));
-        let text = plain(text);
-        let says_nothing = !text.contains(char::is_alphanumeric) || NOTHING.contains(&text.to_lowercase().as_str());
+    for line in first_bytes(reply, MOST_BYTES_READ).lines() {
+        let (listed, text) = strip_bullet(line);
+        let (is_closing, text) = closing_text(text).map_or((false, text), |task| (true, task));
+        let text = strip_marks(text);
+        let says_nothing =
+            !text.contains(char::is_alphanumeric) || EMPTY_LINE_WORDS.contains(&text.to_lowercase().as_str());
         if is_closing || awaits_task {
             if !says_nothing {
-                return Ok(Directions { phrases, activity: short(text) });
+                return Ok(SplitInstruction { phrases, activity: shorten_phrase(text) });
             }
             awaits_task = true;
         } else if listed && !says_nothing && phrases.len() < MOST_PHRASES {
-            phrases.push(short(text));
+            phrases.push(shorten_phrase(text));
         }
     }
     Err(if awaits_task { "its \"TASK:\" line is empty" } else { "it wrote no line that begins with \"TASK:\"" })
 }
 
 /// A line without its number or bullet, and whether it had one.
-fn item(line: &str) -> (bool, &str) {
+fn strip_bullet(line: &str) -> (bool, &str) {
     let line = line.trim();
     let numbered = || {
         let line = line.trim_start_matches(['(', '*', '_']);
@@ -45,16 +46,17 @@ fn item(line: &str) -> (bool, &str) {
 }
 
 /// The text after the name of the closing line; `None` for other lines.
-fn closing(text: &str) -> Option<&str> {
+fn closing_text(text: &str) -> Option<&str> {
     let text = text.trim_start_matches(['*', '_', '"', '#', ' ']);
-    let name =
-        CLOSING.iter().find(|name| text.get(..name.len()).is_some_and(|start| start.eq_ignore_ascii_case(name)))?;
+    let name = CLOSING_LINE_NAMES
+        .iter()
+        .find(|name| text.get(..name.len()).is_some_and(|start| start.eq_ignore_ascii_case(name)))?;
     let rest = text[name.len()..].trim_start_matches(['*', '_', '"', ' ']);
     rest.strip_prefix([':', '-', '–', '—', '='])
 }
 
 /// A phrase without quotes and emphasis around it.
-fn plain(text: &str) -> &str {
+fn strip_marks(text: &str) -> &str {
     text.trim_matches(|c: char| c.is_whitespace() || matches!(c, '"' | '“' | '”' | '\'' | '*' | '_' | '`'))
 }
 
@@ -64,7 +66,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn read(reply: &str) -> (Vec<String>, String) {
-        let directions = directions(reply).unwrap();
+        let directions = read_directions(reply).unwrap();
         (directions.phrases, directions.activity)
     }
 
@@ -88,8 +90,8 @@ mod tests {
 
     #[test]
     fn a_reply_without_a_task_is_refused_with_the_reason() {
-        assert!(directions("I cannot help with that.").unwrap_err().contains("no line"));
-        assert!(directions("1. the sofa\nTASK:\n\n").unwrap_err().contains("empty"));
+        assert!(read_directions("I cannot help with that.").unwrap_err().contains("no line"));
+        assert!(read_directions("1. the sofa\nTASK:\n\n").unwrap_err().contains("empty"));
     }
 
     #[test]
@@ -102,7 +104,7 @@ mod tests {
     proptest! {
         #[test]
         fn any_reply_gives_something_or_a_reason(reply in "((1\\.|-|TASK|:|```|\\*|ß|sofa|\"|none|\n) ?){0,30}|\\PC{0,60}") {
-            if let Ok(read) = directions(&reply) {
+            if let Ok(read) = read_directions(&reply) {
                 prop_assert!(!read.activity.is_empty() && read.phrases.iter().all(|phrase| !phrase.is_empty()));
             }
         }

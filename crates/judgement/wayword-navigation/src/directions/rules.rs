@@ -1,6 +1,8 @@
 //! Splits instructions by rules, offline, with the same language reader that the checks use.
 
-use super::{Directions, MOST_PHRASES, Splitter, pieces::Pieces, readable, short};
+use super::{
+    InstructionSplitter, MOST_PHRASES, SplitInstruction, pieces::InstructionPieces, readable_part, shorten_phrase,
+};
 use wayword_core::ModelError;
 
 /// Splits instructions by rules.
@@ -12,33 +14,33 @@ use wayword_core::ModelError;
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ByRules;
 
-impl Splitter for ByRules {
+impl InstructionSplitter for ByRules {
     fn name(&self) -> &'static str {
         "rules"
     }
 
-    fn split(&self, instructions: &[&str]) -> Vec<Result<Directions, ModelError>> {
-        instructions.iter().map(|text| split(text)).collect()
+    fn split_instructions(&self, instructions: &[&str]) -> Vec<Result<SplitInstruction, ModelError>> {
+        instructions.iter().map(|text| split_by_rules(text)).collect()
     }
 }
 
-fn split(text: &str) -> Result<Directions, ModelError> {
-    let text = readable(text, ByRules.name())?;
-    let pieces = Pieces::of(text);
-    let task = pieces.task();
-    let mut phrases = pieces.leading(task);
+fn split_by_rules(text: &str) -> Result<SplitInstruction, ModelError> {
+    let text = readable_part(text, ByRules.name())?;
+    let pieces = InstructionPieces::from_text(text);
+    let task = pieces.task_clause();
+    let mut phrases = pieces.leading_pieces(task);
     let activity = match task {
         Some(task) => {
             if phrases.is_empty() {
-                phrases.extend(pieces.unread(task).or_else(|| pieces.room_of_task(task)));
+                phrases.extend(pieces.longest_unread(task).or_else(|| pieces.room_of_task(task)));
             }
-            pieces.rest(task)
+            pieces.text_from(task)
         }
         None if phrases.len() > 1 => phrases.pop().unwrap_or(text),
         None => phrases.first().copied().unwrap_or(text),
     };
-    let phrases = phrases.into_iter().take(MOST_PHRASES).map(short).collect();
-    Ok(Directions { phrases, activity: short(activity) })
+    let phrases = phrases.into_iter().take(MOST_PHRASES).map(shorten_phrase).collect();
+    Ok(SplitInstruction { phrases, activity: shorten_phrase(activity) })
 }
 
 #[cfg(test)]
@@ -47,7 +49,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn told(text: &str) -> (Vec<String>, String) {
-        let directions = ByRules.split(&[text]).remove(0).unwrap();
+        let directions = ByRules.split_instructions(&[text]).remove(0).unwrap();
         (directions.phrases, directions.activity)
     }
 
@@ -173,7 +175,7 @@ mod tests {
     #[test]
     fn a_text_without_words_is_refused() {
         for text in ["", "  ", "?!,"] {
-            assert!(ByRules.split(&[text]).remove(0).is_err());
+            assert!(ByRules.split_instructions(&[text]).remove(0).is_err());
         }
     }
 
@@ -190,7 +192,7 @@ mod tests {
     proptest! {
         #[test]
         fn no_word_is_invented(text in "((go to|clean|turn left|in|and|then|the|bed|kitchen|up|stairs|into|past|level 2|not|ß|[,.?’é(]) ?){1,30}|\\PC{0,80}") {
-            let Ok(directions) = ByRules.split(&[&text]).remove(0) else { return Ok(()) };
+            let Ok(directions) = ByRules.split_instructions(&[&text]).remove(0) else { return Ok(()) };
             prop_assert!(!directions.activity.is_empty());
             for phrase in directions.phrases.iter().chain([&directions.activity]) {
                 prop_assert!(!phrase.is_empty() && text.contains(phrase.as_str()), "{phrase:?} in {text:?}");

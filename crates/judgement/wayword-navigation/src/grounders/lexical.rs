@@ -1,61 +1,61 @@
 //! A grounder that compares the names in a phrase with labels, word by word and with synonyms. It needs no model.
 
-use super::{Sees, labels_of::labels_of};
-use crate::directions::{NamedPlace, places};
+use super::{GrounderScope, labels_of::labels_of};
+use crate::directions::{NamedPlace, named_places};
 use std::{
     collections::BTreeMap,
     sync::{Arc, Mutex, PoisonError},
 };
-use wayword_core::{Grounder, Label, ModelError, ObjectId, View};
-use wayword_language::lexicon::{agree, normal, same_room};
+use wayword_core::{ModelError, ObjectId, ObjectLabel, PhraseGrounder, View};
+use wayword_language::lexicon::{names_agree, normalise_name, same_room};
 
 /// The score of a label that means the same by another word ("couch" for a sofa, "chair" for an armchair).
-const AKIN: f32 = 0.8;
+const AKIN_SCORE: f32 = 0.8;
 
 /// Scores a phrase on a view by the share of the places it names that the view's labels name too, in [0, 1]. A phrase that names
 /// none scores 0 everywhere.
-pub struct Lexical {
-    sees: Sees,
+pub struct LexicalGrounder {
+    sees: GrounderScope,
     read: Mutex<BTreeMap<String, Arc<[NamedPlace]>>>,
 }
 
-impl Lexical {
+impl LexicalGrounder {
     /// A grounder by words.
     #[must_use]
-    pub fn new(sees: Sees) -> Self {
+    pub fn new(sees: GrounderScope) -> Self {
         Self { sees, read: Mutex::default() }
     }
 
-    fn places(&self, phrase: &str) -> Arc<[NamedPlace]> {
+    fn places_in_phrase(&self, phrase: &str) -> Arc<[NamedPlace]> {
         if let Some(places) = self.read.lock().unwrap_or_else(PoisonError::into_inner).get(phrase) {
             return Arc::clone(places);
         }
-        let read: Arc<[NamedPlace]> = places(phrase).into();
+        let read: Arc<[NamedPlace]> = named_places(phrase).into();
         self.read.lock().unwrap_or_else(PoisonError::into_inner).insert(phrase.to_owned(), Arc::clone(&read));
         read
     }
 
-    fn score(&self, view: &View, places: &[NamedPlace]) -> Result<f32, ModelError> {
+    fn score_view(&self, view: &View, places: &[NamedPlace]) -> Result<f32, ModelError> {
         let (labels, room) = labels_of(view, self.name())?;
         let named = |place: &NamedPlace| {
-            let by_room = room.filter(|_| self.sees == Sees::Views).map_or(0.0, |room| room_fits(room, place));
-            labels.iter().map(|label| fits(&label.name, place)).fold(by_room, f32::max)
+            let by_room = room.filter(|_| self.sees == GrounderScope::Views).map_or(0.0, |room| room_fits(room, place));
+            labels.iter().map(|label| name_fit(&label.name, place)).fold(by_room, f32::max)
         };
-        let wanted: Vec<f32> = places.iter().filter(|place| self.holds(place)).map(named).collect();
+        let wanted: Vec<f32> = places.iter().filter(|place| self.can_see(place)).map(named).collect();
         Ok(if wanted.is_empty() { 0.0 } else { wanted.iter().sum::<f32>() / wanted.len() as f32 })
     }
 
     /// Whether a place is of a kind that this grounder can see.
-    fn holds(&self, place: &NamedPlace) -> bool {
-        self.sees == Sees::Views || !place.is_room
+    fn can_see(&self, place: &NamedPlace) -> bool {
+        self.sees == GrounderScope::Views || !place.is_room
     }
 }
 
-fn fits(name: &str, place: &NamedPlace) -> f32 {
-    if normal(name) == normal(&place.name) {
+fn name_fit(name: &str, place: &NamedPlace) -> f32 {
+    if normalise_name(name) == normalise_name(&place.name) {
         1.0
-    } else if agree(name, &place.name) {
-        AKIN
+    } else if names_agree(name, &place.name) {
+        AKIN_SCORE
     } else {
         0.0
     }
@@ -65,26 +65,26 @@ fn room_fits(room: &str, place: &NamedPlace) -> f32 {
     if place.is_room && same_room(room, &place.name) { 1.0 } else { 0.0 }
 }
 
-impl Grounder for Lexical {
+impl PhraseGrounder for LexicalGrounder {
     fn name(&self) -> &str {
         match self.sees {
-            Sees::Views => "labels/lexical",
-            Sees::Boxes => "labels/lexical/detector",
+            GrounderScope::Views => "labels/lexical",
+            GrounderScope::Boxes => "labels/lexical/detector",
         }
     }
 
-    fn ground(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<f32>, ModelError>> {
-        let places: Vec<Arc<[NamedPlace]>> = phrases.iter().map(|phrase| self.places(phrase)).collect();
-        views.iter().map(|view| places.iter().map(|places| self.score(view, places)).collect()).collect()
+    fn score_phrases(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<f32>, ModelError>> {
+        let places: Vec<Arc<[NamedPlace]>> = phrases.iter().map(|phrase| self.places_in_phrase(phrase)).collect();
+        views.iter().map(|view| places.iter().map(|places| self.score_view(view, places)).collect()).collect()
     }
 
     /// The nearest of those that fit best.
-    fn point(&self, views: &[&View], phrase: &str) -> Result<Option<ObjectId>, ModelError> {
-        let places = self.places(phrase);
-        let mut best: Option<(f32, f64, &Label)> = None;
+    fn point_to_object(&self, views: &[&View], phrase: &str) -> Result<Option<ObjectId>, ModelError> {
+        let places = self.places_in_phrase(phrase);
+        let mut best: Option<(f32, f64, &ObjectLabel)> = None;
         for view in views {
             for label in labels_of(view, self.name())?.0 {
-                let fit = places.iter().map(|place| fits(&label.name, place)).fold(0.0, f32::max);
+                let fit = places.iter().map(|place| name_fit(&label.name, place)).fold(0.0, f32::max);
                 let near_m = label.distance_m.unwrap_or(f64::INFINITY);
                 let is_better = best.is_none_or(|(most, least_m, _)| (fit, -near_m) > (most, -least_m));
                 if fit > 0.0 && is_better {

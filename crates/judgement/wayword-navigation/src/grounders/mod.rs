@@ -6,12 +6,12 @@ mod lexical;
 mod similar;
 
 pub(crate) use labels_of::labels_of;
-pub use lexical::Lexical;
-pub use similar::Similar;
+pub use lexical::LexicalGrounder;
+pub use similar::EncoderGrounder;
 
 /// The part of a view that a phrase is compared with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Sees {
+pub enum GrounderScope {
     /// The names of its things, and the room of the viewpoint: the whole phrase against the whole view, as CLIP does
     /// it.
     Views,

@@ -1,6 +1,8 @@
 use super::*;
 use std::sync::Arc;
-use wayword_core::{DVec3, GroundTruth, Grounder, Heading, Label, ModelError, ObjectId, Pose, TextEncoder, View};
+use wayword_core::{
+    DVec3, GroundTruth, Heading, ModelError, ObjectId, ObjectLabel, PhraseGrounder, Pose, TextEncoder, View,
+};
 
 /// Counts letters: texts with the same letters are alike.
 struct Letters;
@@ -10,7 +12,7 @@ impl TextEncoder for Letters {
         "letters"
     }
 
-    fn encode(&self, texts: &[&str]) -> Result<Vec<Vec<f32>>, ModelError> {
+    fn encode_texts(&self, texts: &[&str]) -> Result<Vec<Vec<f32>>, ModelError> {
         let vector = |text: &&str| {
             let mut counts = vec![0.0f32; 26];
             for letter in text.bytes().filter(u8::is_ascii_lowercase) {
@@ -24,7 +26,7 @@ impl TextEncoder for Letters {
 }
 
 fn view(things: &[(&str, f64)], room: Option<&str>) -> View {
-    let label = |(at, (name, distance_m)): (usize, &(&str, f64))| Label {
+    let label = |(at, (name, distance_m)): (usize, &(&str, f64))| ObjectLabel {
         object: ObjectId::new(format!("{name}-{at}")).unwrap(),
         name: (*name).to_owned(),
         heading: Heading::NORTH,
@@ -36,17 +38,17 @@ fn view(things: &[(&str, f64)], room: Option<&str>) -> View {
     };
     let labels = things.iter().enumerate().map(label).collect();
     let truth = GroundTruth { labels, lists_objects: true, room: room.map(str::to_owned) };
-    View::new(Pose::level(DVec3::ZERO, Heading::NORTH), 1.5, None, Some(truth))
+    View::new(Pose::looking_level(DVec3::ZERO, Heading::NORTH), 1.5, None, Some(truth))
 }
 
-fn scores(grounder: &dyn Grounder, view: &View, phrases: &[&str]) -> Vec<f32> {
-    grounder.ground(&[view], phrases).remove(0).unwrap()
+fn scores(grounder: &dyn PhraseGrounder, view: &View, phrases: &[&str]) -> Vec<f32> {
+    grounder.score_phrases(&[view], phrases).remove(0).unwrap()
 }
 
 #[test]
 fn lexical_scores_the_share_of_places_in_view() {
     let kitchen = view(&[("sink", 1.0), ("armchair", 2.0)], Some("kitchen"));
-    let views = Lexical::new(Sees::Views);
+    let views = LexicalGrounder::new(GrounderScope::Views);
     let told = scores(
         &views,
         &kitchen,
@@ -60,31 +62,40 @@ fn lexical_scores_the_share_of_places_in_view() {
 #[test]
 fn a_detector_sees_no_rooms() {
     let kitchen = view(&[("sink", 1.0)], Some("kitchen"));
-    for boxes in [&Lexical::new(Sees::Boxes) as &dyn Grounder, &Similar::new(Sees::Boxes, Arc::new(Letters))] {
+    for boxes in [
+        &LexicalGrounder::new(GrounderScope::Boxes) as &dyn PhraseGrounder,
+        &EncoderGrounder::new(GrounderScope::Boxes, Arc::new(Letters)),
+    ] {
         let told = scores(boxes, &kitchen, &["the sink in the kitchen"]);
         assert!((told[0] - 1.0).abs() < 1e-6, "{}: the room does not count: {told:?}", boxes.name());
     }
     let empty = view(&[], Some("kitchen"));
-    assert_eq!(scores(&Similar::new(Sees::Boxes, Arc::new(Letters)), &empty, &["kitchen"]), [0.0]);
-    assert!(scores(&Similar::new(Sees::Views, Arc::new(Letters)), &empty, &["kitchen"])[0] > 0.99);
+    assert_eq!(scores(&EncoderGrounder::new(GrounderScope::Boxes, Arc::new(Letters)), &empty, &["kitchen"]), [0.0]);
+    assert!(scores(&EncoderGrounder::new(GrounderScope::Views, Arc::new(Letters)), &empty, &["kitchen"])[0] > 0.99);
 }
 
 #[test]
 fn the_nearest_of_the_best_is_pointed_at() {
     let near = view(&[("sink", 3.0), ("sink", 1.0), ("lamp", 0.5)], None);
     let none = view(&[], None);
-    for grounder in [&Lexical::new(Sees::Boxes) as &dyn Grounder, &Similar::new(Sees::Boxes, Arc::new(Letters))] {
-        let object = grounder.point(&[&none, &near], "wipe the sink").unwrap().unwrap();
+    for grounder in [
+        &LexicalGrounder::new(GrounderScope::Boxes) as &dyn PhraseGrounder,
+        &EncoderGrounder::new(GrounderScope::Boxes, Arc::new(Letters)),
+    ] {
+        let object = grounder.point_to_object(&[&none, &near], "wipe the sink").unwrap().unwrap();
         assert_eq!(object.as_str(), "sink-1", "{}", grounder.name());
-        assert_eq!(grounder.point(&[&none], "wipe the sink").unwrap(), None);
+        assert_eq!(grounder.point_to_object(&[&none], "wipe the sink").unwrap(), None);
     }
 }
 
 #[test]
 fn ground_without_labels_is_an_error() {
-    let blind = View::new(Pose::level(DVec3::ZERO, Heading::NORTH), 1.5, None, None);
-    for grounder in [&Lexical::new(Sees::Views) as &dyn Grounder, &Similar::new(Sees::Views, Arc::new(Letters))] {
-        let told = grounder.ground(&[&blind], &["the sink"]).remove(0).unwrap_err().to_string();
+    let blind = View::new(Pose::looking_level(DVec3::ZERO, Heading::NORTH), 1.5, None, None);
+    for grounder in [
+        &LexicalGrounder::new(GrounderScope::Views) as &dyn PhraseGrounder,
+        &EncoderGrounder::new(GrounderScope::Views, Arc::new(Letters)),
+    ] {
+        let told = grounder.score_phrases(&[&blind], &["the sink"]).remove(0).unwrap_err().to_string();
         assert!(told.contains("needs labels, but this view has none") && told.contains("--grounder hf/"), "{told}");
     }
 }

@@ -2,15 +2,15 @@
 
 /// How a word is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Case {
+pub(super) enum LetterCase {
     Lower,
     Title,
     Upper,
 }
 
-impl Case {
+impl LetterCase {
     /// The case of a text, by its first two letters.
-    pub(super) fn of(text: &str) -> Self {
+    pub(super) fn for_text(text: &str) -> Self {
         let mut letters = text.chars().filter(|c| c.is_alphabetic());
         match (letters.next(), letters.next()) {
             (Some(first), Some(second)) if first.is_uppercase() && second.is_uppercase() => Self::Upper,
@@ -20,32 +20,32 @@ impl Case {
     }
 
     /// Writes a lower-case text in this case.
-    pub(super) fn applied(self, text: &str) -> String {
+    pub(super) fn apply_to(self, text: &str) -> String {
         match self {
             Self::Lower => text.to_owned(),
-            Self::Title => capitalised(text),
+            Self::Title => capitalise_first(text),
             Self::Upper => text.to_uppercase(),
         }
     }
 }
 
 /// A text with its first letter in upper case.
-pub(super) fn capitalised(text: &str) -> String {
+pub(super) fn capitalise_first(text: &str) -> String {
     let mut chars = text.chars();
     chars.next().map_or_else(String::new, |first| first.to_uppercase().chain(chars).collect())
 }
 
 /// A text with its first letter in lower case, where it is a word in title case.
-pub(super) fn uncapitalised(text: &str) -> String {
+pub(super) fn uncapitalise_first(text: &str) -> String {
     let mut chars = text.chars();
-    match (Case::of(text.split_whitespace().next().unwrap_or_default()), chars.next()) {
-        (Case::Title, Some(first)) => first.to_lowercase().chain(chars).collect(),
+    match (LetterCase::for_text(text.split_whitespace().next().unwrap_or_default()), chars.next()) {
+        (LetterCase::Title, Some(first)) => first.to_lowercase().chain(chars).collect(),
         _ => text.to_owned(),
     }
 }
 
 /// A text with some spans replaced; the spans are in order and apart.
-pub(super) fn replaced(text: &str, edits: &[([usize; 2], String)]) -> String {
+pub(super) fn replace_spans(text: &str, edits: &[([usize; 2], String)]) -> String {
     let mut new = String::with_capacity(text.len());
     let mut from = 0;
     for ([start, end], with) in edits {

@@ -1,11 +1,11 @@
-//! Chooses the item with the instruction that replaces another item's, for the swap [`OtherPath`](super::Swap::OtherPath).
+//! Chooses the item with the instruction that replaces another item's, for the swap [`OtherPath`](super::InstructionSwap::OtherPath).
 
 use rand::Rng;
-use wayword_core::{SceneId, ViewpointId, rng};
+use wayword_core::{SceneId, ViewpointId, seeded_rng};
 
 /// An item with an instruction that could replace another item's.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Candidate {
+pub struct SwapCandidate {
     /// The item's id.
     pub id: String,
     /// Its building.
@@ -20,17 +20,17 @@ pub struct Candidate {
 /// `is_far(item at, other)` is true. `None` if there is none.
 #[must_use]
 pub fn other_path(
-    items: &[Candidate],
+    items: &[SwapCandidate],
     at: usize,
     seed: u64,
-    is_far: &dyn Fn(&Candidate, &Candidate) -> bool,
+    is_far: &dyn Fn(&SwapCandidate, &SwapCandidate) -> bool,
 ) -> Option<usize> {
     let item = items.get(at)?;
-    let is_other = |other: &Candidate| {
+    let is_other = |other: &SwapCandidate| {
         other.scene == item.scene && other.cluster != item.cluster && other.goal != item.goal && is_far(item, other)
     };
     let others: Vec<usize> = (0..items.len()).filter(|other| is_other(&items[*other])).collect();
-    let chosen = rng(seed, &["swap", "other-path", &item.id]).random_range(0..others.len().max(1));
+    let chosen = seeded_rng(seed, &["swap", "other-path", &item.id]).random_range(0..others.len().max(1));
     others.get(chosen).copied()
 }
 
@@ -38,8 +38,8 @@ pub fn other_path(
 mod tests {
     use super::*;
 
-    fn items() -> Vec<Candidate> {
-        let item = |(id, scene, goal, cluster): (&str, &str, &str, &str)| Candidate {
+    fn items() -> Vec<SwapCandidate> {
+        let item = |(id, scene, goal, cluster): (&str, &str, &str, &str)| SwapCandidate {
             id: id.to_owned(),
             scene: SceneId::new(scene).unwrap(),
             goal: ViewpointId::new(goal).unwrap(),

@@ -1,17 +1,17 @@
 //! Replaces the things and rooms that a text names by others. Names are found by reading the text as the checks do, and the result is
 //! read again to make sure that no old name is left.
 
-use super::casing::{Case, replaced};
+use super::casing::{LetterCase, replace_spans};
 use rand::seq::SliceRandom;
 use std::collections::{BTreeMap, BTreeSet};
-use wayword_core::rng;
+use wayword_core::seeded_rng;
 use wayword_language::{
-    lexicon::{Class, agree, normal_word, plural, room_name, same_room, thing},
-    reading::{Place, What, read},
+    lexicon::{ThingClass, find_thing, names_agree, normal_word, room_name, same_room, to_plural},
+    reading::{EventContent, PlaceMention, read_instruction},
 };
 
 /// Things that replace others: common in homes, clearly different from each other, and not rooms.
-const THINGS: [&str; 36] = [
+const REPLACEMENT_THINGS: [&str; 36] = [
     "sofa",
     "bed",
     "dining table",
@@ -50,7 +50,7 @@ const THINGS: [&str; 36] = [
     "column",
 ];
 /// Rooms that replace others.
-const ROOMS: [&str; 14] = [
+const REPLACEMENT_ROOMS: [&str; 14] = [
     "kitchen",
     "bedroom",
     "bathroom",
@@ -67,7 +67,7 @@ const ROOMS: [&str; 14] = [
     "attic",
 ];
 /// Most rounds of reading and replacing. One round is not enough, because the reader finds some names only after others are replaced.
-const ROUNDS: usize = 3;
+const MAX_REPLACEMENT_ROUNDS: usize = 3;
 /// How far before a place its own names are looked for ("bathroom" of "bathroom door"), bytes.
 const REACH_BYTES: usize = 60;
 
@@ -76,27 +76,27 @@ const MOST_NAMES: usize = 60;
 
 /// The text with each of its things and rooms replaced by another of the kind that it does not name, equal names by
 /// equal ones. `None` where it names none, or where no name is left to replace one.
-pub(super) fn swapped(text: &str, seed: u64, item: &str) -> Option<String> {
-    let mut others = Others::new(seed, item);
+pub(super) fn swap_landmarks(text: &str, seed: u64, item: &str) -> Option<String> {
+    let mut others = LandmarkReplacements::new(seed, item);
     let mut new = text.to_owned();
-    for _ in 0..ROUNDS {
-        let named = named(&new);
-        others.avoid(&named);
-        let old: Vec<&Named> = named.iter().filter(|named| others.is_old(named)).collect();
-        let edits: Option<Vec<_>> = old.into_iter().map(|named| others.edits(&new, named)).collect();
+    for _ in 0..MAX_REPLACEMENT_ROUNDS {
+        let named = find_names(&new);
+        others.avoid_names(&named);
+        let old: Vec<&NameMention> = named.iter().filter(|named| others.is_old(named)).collect();
+        let edits: Option<Vec<_>> = old.into_iter().map(|named| others.edits_for_name(&new, named)).collect();
         let edits = edits?.concat();
         if edits.is_empty() {
             break;
         }
-        new = replaced(&new, &edits);
+        new = replace_spans(&new, &edits);
     }
-    let stays = named(&new).iter().any(|named| others.is_old(named));
+    let stays = find_names(&new).iter().any(|named| others.is_old(named));
     (new != text && !stays).then_some(new)
 }
 
 /// A name in a text.
 #[derive(Debug, Clone)]
-struct Named {
+struct NameMention {
     name: String,
     is_room: bool,
     /// The bytes of the name together with the names before it that specify it, as in "bathroom door".
@@ -106,14 +106,14 @@ struct Named {
 }
 
 /// The names of a text in their order, whether the text affirms or denies them.
-fn named(text: &str) -> Vec<Named> {
-    let mut all: Vec<Named> = Vec::new();
-    for event in read(text, &BTreeSet::new()).events {
-        let What::Place(Place { name, is_room, is_thing, .. }) = event.what else { continue };
+fn find_names(text: &str) -> Vec<NameMention> {
+    let mut all: Vec<NameMention> = Vec::new();
+    for event in read_instruction(text, &BTreeSet::new()).events {
+        let EventContent::Place(PlaceMention { name, is_room, is_thing, .. }) = event.what else { continue };
         if !is_known(&name) && ends_in_joint(&name) {
             continue;
         }
-        let mut named = Named { name, is_room: is_room && !is_thing, span: event.span, tells_which: Vec::new() };
+        let mut named = NameMention { name, is_room: is_room && !is_thing, span: event.span, tells_which: Vec::new() };
         let end = all.last().map_or(0, |before| before.span[1]);
         while let Some((start, name)) = right_before(&text[end..named.span[0]]) {
             named.span[0] = end + start;
@@ -125,7 +125,7 @@ fn named(text: &str) -> Vec<Named> {
 }
 
 fn is_known(name: &str) -> bool {
-    thing(name).is_some() || room_name(name).is_some()
+    find_thing(name).is_some() || room_name(name).is_some()
 }
 
 /// Whether a name ends in a word that joins it to the next one. The reader takes such runs for names in "exit the building via the
@@ -138,47 +138,47 @@ fn ends_in_joint(name: &str) -> bool {
 /// The name of the lexicon that ends a text, and where it begins.
 fn right_before(text: &str) -> Option<(usize, String)> {
     let from = text.ceil_char_boundary(text.len().saturating_sub(REACH_BYTES));
-    let last = read(&text[from..], &BTreeSet::new()).events.pop()?;
-    let What::Place(place) = last.what else { return None };
+    let last = read_instruction(&text[from..], &BTreeSet::new()).events.pop()?;
+    let EventContent::Place(place) = last.what else { return None };
     let gap = &text[from + last.span[1]..];
     (is_known(&place.name) && !gap.is_empty() && gap.trim().is_empty()).then_some((from + last.span[0], place.name))
 }
 
 /// The replacements of one text: the free names, the text's own names, and the pairs chosen so far.
-struct Others {
+struct LandmarkReplacements {
     things: Vec<&'static str>,
     rooms: Vec<&'static str>,
     old: BTreeSet<String>,
     given: BTreeMap<String, &'static str>,
 }
 
-impl Others {
+impl LandmarkReplacements {
     fn new(seed: u64, item: &str) -> Self {
-        let mut rng = rng(seed, &["swap", "landmarks", item]);
-        let (mut things, mut rooms) = (THINGS.to_vec(), ROOMS.to_vec());
+        let mut rng = seeded_rng(seed, &["swap", "landmarks", item]);
+        let (mut things, mut rooms) = (REPLACEMENT_THINGS.to_vec(), REPLACEMENT_ROOMS.to_vec());
         things.shuffle(&mut rng);
         rooms.shuffle(&mut rng);
         Self { things, rooms, old: BTreeSet::new(), given: BTreeMap::new() }
     }
 
     /// Remembers that the text names these, except for the replacements.
-    fn avoid(&mut self, named: &[Named]) {
+    fn avoid_names(&mut self, named: &[NameMention]) {
         let names = named.iter().flat_map(|named| named.tells_which.iter().chain([&named.name]));
         let given: Vec<&str> = self.given.values().copied().collect();
         self.old.extend(names.filter(|name| !given.contains(&name.as_str())).cloned());
     }
 
-    fn is_old(&self, named: &Named) -> bool {
-        named.tells_which.iter().chain([&named.name]).any(|name| self.conflicts(name))
+    fn is_old(&self, named: &NameMention) -> bool {
+        named.tells_which.iter().chain([&named.name]).any(|name| self.conflicts_with(name))
     }
 
     /// Whether a name may mean what the text named.
-    fn conflicts(&self, name: &str) -> bool {
-        self.old.iter().any(|old| agree(old, name) || same_room(old, name))
+    fn conflicts_with(&self, name: &str) -> bool {
+        self.old.iter().any(|old| names_agree(old, name) || same_room(old, name))
     }
 
     /// The replacement of a name. It is one that replaces no other name, as long as there are any.
-    fn instead_of(&mut self, named: &Named) -> Option<&'static str> {
+    fn instead_of(&mut self, named: &NameMention) -> Option<&'static str> {
         if let Some(given) = self.given.get(&named.name) {
             return Some(given);
         }
@@ -186,7 +186,7 @@ impl Others {
             return None;
         }
         let kind = if named.is_room { &self.rooms } else { &self.things };
-        let free: Vec<&'static str> = kind.iter().copied().filter(|name| !self.conflicts(name)).collect();
+        let free: Vec<&'static str> = kind.iter().copied().filter(|name| !self.conflicts_with(name)).collect();
         let is_new = |name: &&&'static str| !self.given.values().any(|given| *given == **name);
         let other = *free.iter().find(is_new).or(free.first())?;
         self.given.insert(named.name.clone(), other);
@@ -194,26 +194,26 @@ impl Others {
     }
 
     /// The edits that write another name for one: its article, if that is right before it, and the name itself.
-    fn edits(&mut self, text: &str, named: &Named) -> Option<Vec<([usize; 2], String)>> {
+    fn edits_for_name(&mut self, text: &str, named: &NameMention) -> Option<Vec<([usize; 2], String)>> {
         let [from, to] = named.span;
         let other = self.instead_of(named)?;
         let before = &text[..from];
         let word = before.trim_end().rsplit(|c: char| !c.is_alphanumeric()).next().unwrap_or_default();
-        let number = if is_plural(word, &text[from..to], &named.name) { plural(other) } else { other.to_owned() };
-        let name = ([from, to], Case::of(&text[from..to]).applied(&number));
+        let number = if is_plural(word, &text[from..to], &named.name) { to_plural(other) } else { other.to_owned() };
+        let name = ([from, to], LetterCase::for_text(&text[from..to]).apply_to(&number));
         let start = before.trim_end().len() - word.len();
         if !word.eq_ignore_ascii_case("a") && !word.eq_ignore_ascii_case("an") {
             return Some(vec![name]);
         }
         let article = if other.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
-        Some(vec![([start, start + word.len()], Case::of(word).applied(article)), name])
+        Some(vec![([start, start + word.len()], LetterCase::for_text(word).apply_to(article)), name])
     }
 }
 
 /// Whether a name is written in the plural. "The stairs" are one flight, "three stairs" are not.
 fn is_plural(before: &str, written: &str, name: &str) -> bool {
     let last = written.rsplit(|c: char| !c.is_alphanumeric()).next().unwrap_or_default().to_lowercase();
-    let is_flight = thing(name).is_some_and(|thing| thing.class == Class::Stairs);
+    let is_flight = find_thing(name).is_some_and(|thing| thing.class == ThingClass::Stairs);
     let is_counted = matches!(before.to_lowercase().as_str(), "two" | "three" | "four" | "five" | "few" | "several")
         || before.bytes().all(|byte| byte.is_ascii_digit()) && !before.is_empty();
     normal_word(&last) != last && last.ends_with('s') && !last.ends_with("'s") && (!is_flight || is_counted)
@@ -225,15 +225,15 @@ mod tests {
     use proptest::prelude::*;
 
     fn names(text: &str) -> Vec<String> {
-        named(text).into_iter().map(|named| named.name).collect()
+        find_names(text).into_iter().map(|named| named.name).collect()
     }
 
     #[test]
     fn every_replacement_is_read_as_itself() {
-        for (names, is_room) in [(&THINGS[..], false), (&ROOMS[..], true)] {
+        for (names, is_room) in [(&REPLACEMENT_THINGS[..], false), (&REPLACEMENT_ROOMS[..], true)] {
             for name in names {
-                for written in [(*name).to_owned(), plural(name)] {
-                    let read = named(&format!("go past the {written} and wait"));
+                for written in [(*name).to_owned(), to_plural(name)] {
+                    let read = find_names(&format!("go past the {written} and wait"));
                     assert_eq!((read.len(), read[0].name.as_str(), read[0].is_room), (1, *name, is_room), "{written}");
                 }
             }
@@ -243,19 +243,19 @@ mod tests {
     #[test]
     fn things_stay_things_and_rooms_stay_rooms() {
         let text = "Go to the kitchen, pass two sofas and the other sofa and wait by the Coffee Machine.";
-        let new = swapped(text, 1, "item").unwrap();
-        let kinds: Vec<bool> = named(&new).iter().map(|named| named.is_room).collect();
+        let new = swap_landmarks(text, 1, "item").unwrap();
+        let kinds: Vec<bool> = find_names(&new).iter().map(|named| named.is_room).collect();
         assert_eq!(kinds, [true, false, false, false]);
         let names = names(&new);
         assert!(names[1] == names[2] && names[1] != names[3], "{new}");
         assert!(new.starts_with("Go to the ") && new.contains("s and the other "), "{new}");
-        assert_ne!(swapped(text, 2, "item"), swapped(text, 1, "item"));
-        assert_eq!(swapped(text, 1, "item"), swapped(text, 1, "item"));
+        assert_ne!(swap_landmarks(text, 2, "item"), swap_landmarks(text, 1, "item"));
+        assert_eq!(swap_landmarks(text, 1, "item"), swap_landmarks(text, 1, "item"));
     }
 
     #[test]
     fn replacement_adapts_articles_and_drops_specifying_names() {
-        let of = |item: &str| swapped("Open an oven in a bathroom cabinet", 3, item).unwrap();
+        let of = |item: &str| swap_landmarks("Open an oven in a bathroom cabinet", 3, item).unwrap();
         let texts: Vec<String> = (0..20).map(|item| of(&item.to_string())).collect();
         for text in &texts {
             assert!(!text.contains("bathroom"), "{text}");
@@ -268,19 +268,21 @@ mod tests {
 
     #[test]
     fn a_text_without_names_is_not_swapped() {
-        assert_eq!(swapped("Turn left and walk on.", 1, "item"), None);
+        assert_eq!(swap_landmarks("Turn left and walk on.", 1, "item"), None);
         assert!(
-            swapped("Exit the building via the door", 1, "item").unwrap().starts_with("Exit the building via the ")
+            swap_landmarks("Exit the building via the door", 1, "item")
+                .unwrap()
+                .starts_with("Exit the building via the ")
         );
     }
 
     proptest! {
         #[test]
         fn no_old_name_is_read_any_more(text in "((go|to|the|a|an|two|shiny|light|blue|sofa|Sofas|kitchen|bathroom|door|stairs|table|coffee|study|gizmo|exit|of|in|with|and|ß|[,.'’-])  ?){0,20}|\\PC{0,60}", seed in 0..9u64) {
-            if let Some(new) = swapped(&text, seed, "item") {
+            if let Some(new) = swap_landmarks(&text, seed, "item") {
                 let old = names(&text);
                 for name in names(&new) {
-                    prop_assert!(!old.iter().any(|old| agree(old, &name) || same_room(old, &name)), "{name:?} in {new:?}");
+                    prop_assert!(!old.iter().any(|old| names_agree(old, &name) || same_room(old, &name)), "{name:?} in {new:?}");
                 }
             }
         }

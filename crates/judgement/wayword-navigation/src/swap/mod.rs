@@ -10,12 +10,12 @@ mod sides;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-pub use elsewhere::{Candidate, other_path};
+pub use elsewhere::{SwapCandidate, other_path};
 
 /// A way to make instructions wrong.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Swap {
+pub enum InstructionSwap {
     /// Left for right, up for down, and the other way round.
     Directions,
     /// Each thing and room for another that the text does not name.
@@ -26,7 +26,7 @@ pub enum Swap {
     OtherPath,
 }
 
-impl Swap {
+impl InstructionSwap {
     /// All of them.
     pub const ALL: [Self; 4] = [Self::Directions, Self::Landmarks, Self::Sentences, Self::OtherPath];
 
@@ -42,7 +42,7 @@ impl Swap {
     }
 }
 
-impl fmt::Display for Swap {
+impl fmt::Display for InstructionSwap {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(self.name())
     }
@@ -52,19 +52,19 @@ impl fmt::Display for Swap {
 const MOST_BYTES: usize = 8_000;
 
 /// Makes a text wrong in one way. `None` if the text would stay the same, or is too long to be an instruction. Also `None` for
-/// [`Swap::OtherPath`]: the caller takes that text from the item that [`other_path`] chooses.
+/// [`InstructionSwap::OtherPath`]: the caller takes that text from the item that [`other_path`] chooses.
 ///
 /// Random choices depend only on the seed and the item's id.
 #[must_use]
-pub fn swapped(swap: Swap, text: &str, seed: u64, item: &str) -> Option<String> {
+pub fn swap_text(swap: InstructionSwap, text: &str, seed: u64, item: &str) -> Option<String> {
     if text.len() > MOST_BYTES {
         return None;
     }
     match swap {
-        Swap::Directions => sides::swapped(text),
-        Swap::Landmarks => landmarks::swapped(text, seed, item),
-        Swap::Sentences => sentences::swapped(text, seed, item),
-        Swap::OtherPath => None,
+        InstructionSwap::Directions => sides::swap_directions(text),
+        InstructionSwap::Landmarks => landmarks::swap_landmarks(text, seed, item),
+        InstructionSwap::Sentences => sentences::swap_sentences(text, seed, item),
+        InstructionSwap::OtherPath => None,
     }
 }
 
@@ -74,7 +74,7 @@ mod tests {
 
     #[test]
     fn names_are_those_in_files() {
-        for swap in Swap::ALL {
+        for swap in InstructionSwap::ALL {
             assert_eq!(serde_json::to_value(swap).unwrap(), swap.name());
         }
     }
@@ -82,12 +82,18 @@ mod tests {
     #[test]
     fn each_swap_changes_its_subject_and_leaves_long_texts() {
         let text = "Turn left at the sofa. Wait.";
-        assert_eq!(swapped(Swap::Directions, text, 1, "item").as_deref(), Some("Turn right at the sofa. Wait."));
-        assert!(swapped(Swap::Landmarks, text, 1, "item").unwrap().starts_with("Turn left at the "));
-        assert_eq!(swapped(Swap::Sentences, text, 1, "item").as_deref(), Some("Wait. Turn left at the sofa."));
-        assert_eq!(swapped(Swap::OtherPath, text, 1, "item"), None);
-        for swap in Swap::ALL {
-            assert_eq!(swapped(swap, &text.repeat(300), 1, "item"), None);
+        assert_eq!(
+            swap_text(InstructionSwap::Directions, text, 1, "item").as_deref(),
+            Some("Turn right at the sofa. Wait.")
+        );
+        assert!(swap_text(InstructionSwap::Landmarks, text, 1, "item").unwrap().starts_with("Turn left at the "));
+        assert_eq!(
+            swap_text(InstructionSwap::Sentences, text, 1, "item").as_deref(),
+            Some("Wait. Turn left at the sofa.")
+        );
+        assert_eq!(swap_text(InstructionSwap::OtherPath, text, 1, "item"), None);
+        for swap in InstructionSwap::ALL {
+            assert_eq!(swap_text(swap, &text.repeat(300), 1, "item"), None);
         }
     }
 }

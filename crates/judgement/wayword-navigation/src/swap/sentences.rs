@@ -1,27 +1,27 @@
 //! Puts the sentences of a text in another order; if there is only one sentence, its clauses.
 
-use super::casing::{capitalised, uncapitalised};
+use super::casing::{capitalise_first, uncapitalise_first};
 use crate::directions::clause_texts;
 use rand::Rng;
-use wayword_core::rng;
-use wayword_language::text::words;
+use wayword_core::seeded_rng;
+use wayword_language::text::split_words;
 
 /// The text with each of its sentences in another place, or each of its clauses if it has one sentence. `None` if the words stay
 /// the same.
-pub(super) fn swapped(text: &str, seed: u64, item: &str) -> Option<String> {
-    let sentences = sentences(text);
+pub(super) fn swap_sentences(text: &str, seed: u64, item: &str) -> Option<String> {
+    let sentences = split_sentences(text);
     let clauses = if sentences.len() > 1 { Vec::new() } else { clause_texts(text) };
-    let order = order(sentences.len().max(clauses.len()), seed, item)?;
+    let order = draw_order(sentences.len().max(clauses.len()), seed, item)?;
     let new = if clauses.is_empty() { of_sentences(&sentences, &order) } else { of_clauses(text, &clauses, &order) };
-    (words(&new) != words(text)).then_some(new)
+    (split_words(&new) != split_words(text)).then_some(new)
 }
 
 /// A random order in which every element changes its place (Sattolo 1986); `None` for fewer than two.
-fn order(count: usize, seed: u64, item: &str) -> Option<Vec<usize>> {
+fn draw_order(count: usize, seed: u64, item: &str) -> Option<Vec<usize>> {
     if count < 2 {
         return None;
     }
-    let mut rng = rng(seed, &["swap", "sentences", item]);
+    let mut rng = seeded_rng(seed, &["swap", "sentences", item]);
     let mut order: Vec<usize> = (0..count).collect();
     for at in (1..count).rev() {
         order.swap(at, rng.random_range(0..at));
@@ -31,7 +31,7 @@ fn order(count: usize, seed: u64, item: &str) -> Option<Vec<usize>> {
 
 fn of_sentences(sentences: &[&str], order: &[usize]) -> String {
     let whole = |at: &usize| {
-        let sentence = capitalised(sentences[*at]);
+        let sentence = capitalise_first(sentences[*at]);
         let ends = sentence.ends_with(['.', '!', '?']);
         if ends { sentence } else { format!("{}.", sentence.trim_end_matches([',', ';', ':'])) }
     };
@@ -39,18 +39,18 @@ fn of_sentences(sentences: &[&str], order: &[usize]) -> String {
 }
 
 fn of_clauses(text: &str, clauses: &[&str], order: &[usize]) -> String {
-    let is_capitalised = capitalised(clauses[0]) == clauses[0];
-    let clause = |at: &usize| if *at == 0 { uncapitalised(clauses[0]) } else { clauses[*at].to_owned() };
+    let is_capitalised = capitalise_first(clauses[0]) == clauses[0];
+    let clause = |at: &usize| if *at == 0 { uncapitalise_first(clauses[0]) } else { clauses[*at].to_owned() };
     let clauses: Vec<String> = order.iter().map(clause).collect();
     let (last, before) = clauses.split_last().map_or(("", &[][..]), |(last, before)| (last.as_str(), before));
     let joined = format!("{} and {last}", before.join(", "));
     let end = text.trim_end().chars().next_back().filter(|end| matches!(end, '.' | '!' | '?'));
-    let joined = if is_capitalised { capitalised(&joined) } else { joined };
+    let joined = if is_capitalised { capitalise_first(&joined) } else { joined };
     joined + &end.map_or_else(String::new, String::from)
 }
 
 /// The sentences of a text that have words, each with its closing mark. The dot of a number such as "2.5" ends no sentence.
-fn sentences(text: &str) -> Vec<&str> {
+fn split_sentences(text: &str) -> Vec<&str> {
     let mut sentences = Vec::new();
     let mut from = 0;
     for (at, _) in text.match_indices(['.', '!', '?']) {
@@ -74,7 +74,7 @@ mod tests {
 
     #[test]
     fn sentences_change_places() {
-        let of = |text: &str| swapped(text, 1, "item");
+        let of = |text: &str| swap_sentences(text, 1, "item");
         assert_eq!(of("Leave the den. wait by the sofa").as_deref(), Some("Wait by the sofa. Leave the den."));
         assert_eq!(of("Walk 2.5 metres! Stop.").as_deref(), Some("Stop. Walk 2.5 metres!"));
         for text in ["Go.  Go.", "Dust the lamp", "Dust the lamp.", "", "..."] {
@@ -84,7 +84,7 @@ mod tests {
 
     #[test]
     fn clauses_change_places_where_there_is_one_sentence() {
-        let of = |text: &str| swapped(text, 1, "item");
+        let of = |text: &str| swap_sentences(text, 1, "item");
         assert_eq!(of("Go to the den and wipe the sink").as_deref(), Some("Wipe the sink and go to the den"));
         assert_eq!(of("TV room ahead, turn left.").as_deref(), Some("Turn left and TV room ahead."));
         let three = of("Leave the den, turn left, then wait by the sofa.").unwrap();
@@ -98,7 +98,7 @@ mod tests {
     proptest! {
         #[test]
         fn no_sentence_stays_where_it_was(count in 2..9usize, seed in 0..99u64) {
-            let mut order = order(count, seed, "item").unwrap();
+            let mut order = draw_order(count, seed, "item").unwrap();
             prop_assert!(order.iter().enumerate().all(|(at, from)| at != *from));
             order.sort_unstable();
             prop_assert_eq!(order, (0..count).collect::<Vec<_>>());
@@ -106,7 +106,7 @@ mod tests {
 
         #[test]
         fn any_text_is_swapped_or_left(text in "((go|den|and|then|ß|İ|2|[,.!?'’-])  ?){0,20}|\\PC{0,60}", seed in 0..9u64) {
-            prop_assert_ne!(swapped(&text, seed, "item"), Some(text));
+            prop_assert_ne!(swap_sentences(&text, seed, "item"), Some(text));
         }
     }
 }

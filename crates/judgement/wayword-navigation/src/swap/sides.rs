@@ -3,96 +3,94 @@
 //! Whether a word is swapped depends only on the words around it, and not on which word of its pair it is. So a text that is swapped
 //! twice is the same as before. Words that mean no direction stay, as "right" in "right before the sofa".
 
-use super::casing::{Case, replaced};
+use super::casing::{LetterCase, replace_spans};
 use std::collections::BTreeSet;
 use wayword_core::Side;
 use wayword_language::{
     directions::{AFTER_SIDE, BEFORE_SIDE, BEFORE_STAIRS, GOING},
-    reading::{What, read},
-    text::{Token, tokens},
+    reading::{EventContent, read_instruction},
+    text::{TextToken, split_tokens},
 };
 
 /// Words that name a direction, each with its opposite.
-const SIDES: [[&str; 2]; 3] = [["left", "right"], ["leftward", "rightward"], ["leftwards", "rightwards"]];
-const LEVELS: [[&str; 2]; 5] =
+const SIDE_PAIRS: [[&str; 2]; 3] = [["left", "right"], ["leftward", "rightward"], ["leftwards", "rightwards"]];
+const LEVEL_PAIRS: [[&str; 2]; 5] =
     [["up", "down"], ["upstairs", "downstairs"], ["ascend", "descend"], ["ascending", "descending"], ["top", "bottom"]];
 
 /// The text with its directions swapped; `None` where it names none.
-pub(super) fn swapped(text: &str) -> Option<String> {
-    let text_tokens = Text { text, tokens: tokens(text) };
+pub(super) fn swap_directions(text: &str) -> Option<String> {
+    let text_tokens = TextTokens { text, tokens: split_tokens(text) };
     let mut edits: Vec<([usize; 2], String)> = Vec::new();
-    let turns = text_tokens.turns();
+    let turns = text_tokens.turn_tokens();
     for at in 0..text_tokens.tokens.len() {
-        if let Some(opposite) = text_tokens.opposite(at, &turns) {
-            edits.extend(text_tokens.edits(at, opposite));
+        if let Some(opposite) = text_tokens.opposite_at(at, &turns) {
+            edits.extend(text_tokens.edits_at(at, opposite));
         }
     }
-    (!edits.is_empty()).then(|| replaced(text, &edits))
+    (!edits.is_empty()).then(|| replace_spans(text, &edits))
 }
 
-struct Text<'a> {
+struct TextTokens<'a> {
     text: &'a str,
-    tokens: Vec<Token>,
+    tokens: Vec<TextToken>,
 }
 
-impl<'a> Text<'a> {
-    fn word(&self, at: usize) -> &str {
+impl<'a> TextTokens<'a> {
+    fn word_at(&self, at: usize) -> &str {
         self.tokens.get(at).map_or("", |token| token.word.as_str())
     }
 
-    fn before(&self, at: usize, back: usize) -> &str {
-        at.checked_sub(back).map_or("", |at| self.word(at))
+    fn word_before(&self, at: usize, back: usize) -> &str {
+        at.checked_sub(back).map_or("", |at| self.word_at(at))
     }
 
-    fn written(&self, at: usize) -> &'a str {
+    fn written_at(&self, at: usize) -> &'a str {
         let [from, to] = self.tokens[at].span;
         &self.text[from..to]
     }
 
     /// The tokens of sides that are turns. The reader sees a turn in "left past the sofa" but not in "right past the sofa". To
     /// treat both words alike, this reads the text with the same word of each pair everywhere.
-    fn turns(&self) -> BTreeSet<usize> {
-        let one_of_pair = |at: usize| match self.word(at) {
-            word if other(&SIDES, word).is_some() => Some("right"),
-            word => LEVELS
-                .iter()
-                .find(|pair| pair.contains(&word))
-                .map(|[one, _]| *one)
-                .or_else(|| self.about(at).map(|_| if matches!(word, "turn" | "go") { "turn" } else { "around" })),
+    fn turn_tokens(&self) -> BTreeSet<usize> {
+        let one_of_pair = |at: usize| match self.word_at(at) {
+            word if other_of_pair(&SIDE_PAIRS, word).is_some() => Some("right"),
+            word => LEVEL_PAIRS.iter().find(|pair| pair.contains(&word)).map(|[one, _]| *one).or_else(|| {
+                self.opposite_course(at).map(|_| if matches!(word, "turn" | "go") { "turn" } else { "around" })
+            }),
         };
         let edit = |at: usize| Some((self.tokens[at].span, one_of_pair(at)?.to_owned()));
-        let same = replaced(self.text, &(0..self.tokens.len()).filter_map(edit).collect::<Vec<_>>());
-        let tokens = tokens(&same);
-        let events = read(&same, &BTreeSet::new()).events.into_iter();
-        let turns = events.filter(|event| event.what == What::Turn(Side::Right));
+        let same = replace_spans(self.text, &(0..self.tokens.len()).filter_map(edit).collect::<Vec<_>>());
+        let tokens = split_tokens(&same);
+        let events = read_instruction(&same, &BTreeSet::new()).events.into_iter();
+        let turns = events.filter(|event| event.what == EventContent::Turn(Side::Right));
         turns.map(|event| tokens.partition_point(|token| token.span[0] < event.span[0])).collect()
     }
 
     /// The opposite of the word at a token, if the word means a direction there.
-    fn opposite(&self, at: usize, turns: &BTreeSet<usize>) -> Option<&'static str> {
-        let word = self.word(at);
-        if let Some(other) = other(&SIDES, word) {
+    fn opposite_at(&self, at: usize, turns: &BTreeSet<usize>) -> Option<&'static str> {
+        let word = self.word_at(at);
+        if let Some(other) = other_of_pair(&SIDE_PAIRS, word) {
             return (turns.contains(&at) || self.tells_place(at)).then_some(other);
         }
-        if let Some(other) = other(&LEVELS, word) {
+        if let Some(other) = other_of_pair(&LEVEL_PAIRS, word) {
             let tells = match word {
-                "up" | "down" => self.climbs(at),
-                "top" | "bottom" if self.word(at + 1) == "of" => self.leads_to_stairs(at + 2),
-                "top" | "bottom" => (1..=4).any(|back| is_stairs(self.before(at, back))),
+                "up" | "down" => self.is_climb(at),
+                "top" | "bottom" if self.word_at(at + 1) == "of" => self.leads_to_stairs(at + 2),
+                "top" | "bottom" => (1..=4).any(|back| is_stairs(self.word_before(at, back))),
                 _ => true,
             };
             return tells.then_some(other);
         }
-        self.about(at)
+        self.opposite_course(at)
     }
 
     /// Swaps "turn around" and "go straight", word by word, if they are a whole clause.
-    fn about(&self, at: usize) -> Option<&'static str> {
+    fn opposite_course(&self, at: usize) -> Option<&'static str> {
         let alone = |from: usize| {
-            let begins = from == 0 || self.joins(from - 1);
-            begins && (from + 2 >= self.tokens.len() || self.joins(from + 2))
+            let begins = from == 0 || self.is_joint(from - 1);
+            begins && (from + 2 >= self.tokens.len() || self.is_joint(from + 2))
         };
-        match (self.before(at, 1), self.word(at), self.word(at + 1)) {
+        match (self.word_before(at, 1), self.word_at(at), self.word_at(at + 1)) {
             (_, "turn", "around") if alone(at) => Some("go"),
             (_, "go", "straight") if alone(at) => Some("turn"),
             ("turn", "around", _) if alone(at - 1) => Some("straight"),
@@ -101,29 +99,29 @@ impl<'a> Text<'a> {
         }
     }
 
-    fn joins(&self, at: usize) -> bool {
-        !self.tokens[at].is_word() || matches!(self.word(at), "and" | "then")
+    fn is_joint(&self, at: usize) -> bool {
+        !self.tokens[at].is_word() || matches!(self.word_at(at), "and" | "then")
     }
 
     /// "On the left", "to the left of the sofa", "the left door", "left and right", but not "right before the sofa".
     fn tells_place(&self, at: usize) -> bool {
-        let is_side = |word: &str| other(&SIDES, word).is_some();
-        let listed = matches!(self.before(at, 1), "and" | "or") && is_side(self.before(at, 2)) && at > 2;
-        BEFORE_SIDE.contains(&self.before(at, 1))
-            || (self.before(at, 1) == "to" && !self.word(at + 1).starts_with("the"))
-            || AFTER_SIDE.contains(&self.word(at + 1))
+        let is_side = |word: &str| other_of_pair(&SIDE_PAIRS, word).is_some();
+        let listed = matches!(self.word_before(at, 1), "and" | "or") && is_side(self.word_before(at, 2)) && at > 2;
+        BEFORE_SIDE.contains(&self.word_before(at, 1))
+            || (self.word_before(at, 1) == "to" && !self.word_at(at + 1).starts_with("the"))
+            || AFTER_SIDE.contains(&self.word_at(at + 1))
             || (listed && self.tells_place(at - 2))
     }
 
     /// "Up the stairs", "up to the second floor", "the stairs up", "go up.", but not "down the hallway".
-    fn climbs(&self, at: usize) -> bool {
-        let behind_stairs = (1..=3).any(|back| is_stairs(self.before(at, back)));
-        let ends = at + 1 >= self.tokens.len() || self.joins(at + 1);
-        let to_floor = self.word(at + 1) == "to" && self.leads_to(at + 2, is_floor);
+    fn is_climb(&self, at: usize) -> bool {
+        let behind_stairs = (1..=3).any(|back| is_stairs(self.word_before(at, back)));
+        let ends = at + 1 >= self.tokens.len() || self.is_joint(at + 1);
+        let to_floor = self.word_at(at + 1) == "to" && self.leads_to(at + 2, is_floor);
         self.leads_to_stairs(at + 1)
             || to_floor
-            || (behind_stairs && !matches!(self.word(at + 1), "the" | "a" | "an"))
-            || (ends && GOING.contains(&self.before(at, 1)))
+            || (behind_stairs && !matches!(self.word_at(at + 1), "the" | "a" | "an"))
+            || (ends && GOING.contains(&self.word_before(at, 1)))
     }
 
     fn leads_to_stairs(&self, from: usize) -> bool {
@@ -133,34 +131,34 @@ impl<'a> Text<'a> {
     /// Whether the noun phrase that begins at a token ends in a word for which `is_end` is true.
     fn leads_to(&self, from: usize, is_end: impl Fn(&str) -> bool) -> bool {
         let skips = |word: &str| BEFORE_STAIRS.contains(&word) || word.bytes().all(|byte| byte.is_ascii_digit());
-        let end = (from..from + 6).find(|at| is_end(self.word(*at)) || !skips(self.word(*at)));
-        end.is_some_and(|at| is_end(self.word(at)))
+        let end = (from..from + 6).find(|at| is_end(self.word_at(*at)) || !skips(self.word_at(*at)));
+        end.is_some_and(|at| is_end(self.word_at(at)))
     }
 
     /// The edits that write another word at a token, in its letter case and with its article. None if a second swap could not
     /// restore the spelling, as in "lEft".
-    fn edits(&self, at: usize, word: &str) -> Vec<([usize; 2], String)> {
-        let written = self.written(at);
-        let case = Case::of(written);
-        if case.applied(self.word(at)) != written {
+    fn edits_at(&self, at: usize, word: &str) -> Vec<([usize; 2], String)> {
+        let written = self.written_at(at);
+        let case = LetterCase::for_text(written);
+        if case.apply_to(self.word_at(at)) != written {
             return Vec::new();
         }
-        let edit = (self.tokens[at].span, case.applied(word));
-        let before = at.checked_sub(1).filter(|before| matches!(self.word(*before), "a" | "an"));
+        let edit = (self.tokens[at].span, case.apply_to(word));
+        let before = at.checked_sub(1).filter(|before| matches!(self.word_at(*before), "a" | "an"));
         let Some(before) = before.filter(|_| matches!(word, "upstairs" | "downstairs")) else { return vec![edit] };
-        let pair = match (self.written(before), case) {
-            ("a" | "an", Case::Lower | Case::Title) => ["an", "a"],
-            ("A" | "An", Case::Lower | Case::Title) => ["An", "A"],
-            ("A" | "AN", Case::Upper) => ["AN", "A"],
+        let pair = match (self.written_at(before), case) {
+            ("a" | "an", LetterCase::Lower | LetterCase::Title) => ["an", "a"],
+            ("A" | "An", LetterCase::Lower | LetterCase::Title) => ["An", "A"],
+            ("A" | "AN", LetterCase::Upper) => ["AN", "A"],
             _ => return Vec::new(),
         };
         let [old, new] = if word == "upstairs" { [pair[1], pair[0]] } else { pair };
-        if self.written(before) == old { vec![(self.tokens[before].span, new.to_owned()), edit] } else { Vec::new() }
+        if self.written_at(before) == old { vec![(self.tokens[before].span, new.to_owned()), edit] } else { Vec::new() }
     }
 }
 
 /// The other word of a pair.
-fn other(pairs: &[[&'static str; 2]], word: &str) -> Option<&'static str> {
+fn other_of_pair(pairs: &[[&'static str; 2]], word: &str) -> Option<&'static str> {
     pairs.iter().find_map(|[a, b]| match word {
         word if word == *a => Some(*b),
         word if word == *b => Some(*a),
@@ -206,8 +204,8 @@ mod tests {
             ("Enter the hall to the slight right past the sofa", "Enter the hall to the slight left past the sofa"),
             ("Walk down the steps to the bottom.", "Walk up the steps to the top."),
         ] {
-            assert_eq!(swapped(text).as_deref(), Some(wanted));
-            assert_eq!(swapped(wanted).as_deref(), Some(text));
+            assert_eq!(swap_directions(text).as_deref(), Some(wanted));
+            assert_eq!(swap_directions(wanted).as_deref(), Some(text));
         }
     }
 
@@ -224,7 +222,7 @@ mod tests {
             "Clean the picture at the top of the bed",
             "Go straight down the hallway",
         ] {
-            assert_eq!(swapped(text), None, "{text}");
+            assert_eq!(swap_directions(text), None, "{text}");
         }
     }
 
@@ -232,16 +230,16 @@ mod tests {
     #[test]
     fn either_article_behind_stairs_keeps_the_word_before_it() {
         for text in ["stairs up an Upstairs", "stairs up a Downstairs"] {
-            let once = swapped(text).unwrap();
-            assert!(once.starts_with("stairs up") && swapped(&once).unwrap() == text, "{once}");
+            let once = swap_directions(text).unwrap();
+            assert!(once.starts_with("stairs up") && swap_directions(&once).unwrap() == text, "{once}");
         }
     }
 
     proptest! {
         #[test]
         fn swapping_twice_restores_the_text(text in "((left|Left|LEFT|lEft|right|RIGHT|Right|up|down|Upstairs|upstairs|downstairs|a|A|AN|an|An|the|turn|Turn|go|take|around|straight|stairs|floor|of|to|top|bottom|and|then|on|your|past|sofa|wall|side|ß|[,.'’-])  ?){0,25}|\\PC{0,60}") {
-            if let Some(once) = swapped(&text) {
-                prop_assert_eq!(swapped(&once), Some(text));
+            if let Some(once) = swap_directions(&text) {
+                prop_assert_eq!(swap_directions(&once), Some(text));
             }
         }
     }

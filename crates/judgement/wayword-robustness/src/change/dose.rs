@@ -2,7 +2,7 @@
 
 /// The quantity that a dose changes. Its name contains the unit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Dose {
+pub enum DoseKind {
     /// Height of the eye over the floor, metres.
     CameraHeight,
     /// Horizontal field of view, degrees.
@@ -32,7 +32,7 @@ pub enum Dose {
 }
 
 /// The constant properties of a dose.
-struct Row {
+struct DoseProperties {
     name: &'static str,
     unit: &'static str,
     unchanged: Option<f64>,
@@ -40,7 +40,7 @@ struct Row {
     example: &'static str,
 }
 
-impl Dose {
+impl DoseKind {
     /// All of them.
     pub const ALL: [Self; 13] = [
         Self::CameraHeight,
@@ -59,8 +59,8 @@ impl Dose {
     ];
 
     /// Looks the properties up in the table of all doses.
-    fn row(self) -> Row {
-        let row = |name, unit, unchanged, range, example| Row { name, unit, unchanged, range, example };
+    fn dose_properties(self) -> DoseProperties {
+        let row = |name, unit, unchanged, range, example| DoseProperties { name, unit, unchanged, range, example };
         match self {
             Self::CameraHeight => row("camera_height_m", "m", Some(1.5), (0.1, 2.4), "0.3,0.88,1.6"),
             Self::FieldOfView => row("field_of_view_deg", "degrees", Some(90.0), (20.0, 140.0), "60,90,120"),
@@ -83,31 +83,31 @@ impl Dose {
     /// Its name, with the unit: "`camera_height_m`".
     #[must_use]
     pub fn name(self) -> &'static str {
-        self.row().name
+        self.dose_properties().name
     }
 
     /// Its unit, as it is written behind a number: "m", "degrees", "%".
     #[must_use]
     pub fn unit(self) -> &'static str {
-        self.row().unit
+        self.dose_properties().unit
     }
 
     /// The value that changes nothing; `None` for the distance between frames, because each path has its own.
     #[must_use]
-    pub fn unchanged(self) -> Option<f64> {
-        self.row().unchanged
+    pub fn unchanged_value(self) -> Option<f64> {
+        self.dose_properties().unchanged
     }
 
     /// The least and the greatest value.
     #[must_use]
-    pub fn range(self) -> (f64, f64) {
-        self.row().range
+    pub fn value_range(self) -> (f64, f64) {
+        self.dose_properties().range
     }
 
     /// Example values as a user writes them: "0.3,0.88,1.6".
     #[must_use]
-    pub fn example(self) -> &'static str {
-        self.row().example
+    pub fn example_values(self) -> &'static str {
+        self.dose_properties().example
     }
 
     /// Whether it takes only whole numbers.
@@ -118,7 +118,7 @@ impl Dose {
 
     /// Describes the effect of a value in one sentence.
     #[must_use]
-    pub fn description(self, value: f64) -> String {
+    pub fn describe_value(self, value: f64) -> String {
         match self {
             Self::CameraHeight => format!("The eye is {value} m above the floor."),
             Self::FieldOfView => format!("Each view is {value} degrees wide."),

@@ -5,35 +5,35 @@ mod parse;
 mod refusal;
 mod whole;
 
-pub use dose::Dose;
+pub use dose::DoseKind;
 pub use parse::ChangeError;
-pub use refusal::{Elsewhere, Sees, Setting};
-pub use whole::Whole;
+pub use refusal::{ChangeSetting, OtherPlatform, SightSource};
+pub use whole::WholeChange;
 
 use serde::{Deserialize, Serialize};
 use std::{fmt, str::FromStr};
-use wayword_core::seed::derive;
+use wayword_core::seed::derive_seed;
 
 /// The name of the change to another platform.
-const PLATFORM: &str = "platform";
+const PLATFORM_CHANGE_NAME: &str = "platform";
 
-/// One change of a world, its pictures or its paths. As text it is what [`Change::parse`] reads, with one dose.
+/// One change of a world, its pictures or its paths. As text it is what [`Change::parse_list`] reads, with one dose.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub enum Change {
     /// The same poses on another platform, as the user wrote it: `NAME[:DATA][@ADDRESS]`.
     Platform(String),
     /// A change without a dose.
-    Whole(Whole),
-    /// A change with a dose, in the dose's unit. [`Change::parse`] makes sure that the number is in the dose's range.
-    By(Dose, f64),
+    Whole(WholeChange),
+    /// A change with a dose, in the dose's unit. [`Change::parse_list`] makes sure that the number is in the dose's range.
+    By(DoseKind, f64),
 }
 
 impl Change {
     /// The names of all changes, in the order in which they are explained.
-    pub fn names() -> impl Iterator<Item = &'static str> {
-        let whole = Whole::ALL.into_iter().map(Whole::name);
-        [PLATFORM].into_iter().chain(whole).chain(Dose::ALL.into_iter().map(Dose::name))
+    pub fn all_names() -> impl Iterator<Item = &'static str> {
+        let whole = WholeChange::ALL.into_iter().map(WholeChange::name);
+        [PLATFORM_CHANGE_NAME].into_iter().chain(whole).chain(DoseKind::ALL.into_iter().map(DoseKind::name))
     }
 
     /// The changes that are made by default: Habitat's rendering of the house, mirror, turn, remove, three heights of the camera,
@@ -41,12 +41,12 @@ impl Change {
     #[must_use]
     pub fn default_set() -> Vec<Self> {
         let doses = [
-            (Dose::CameraHeight, [0.3, 0.88, 1.6]),
-            (Dose::FieldOfView, [60.0, 90.0, 120.0]),
-            (Dose::FrameSpacing, [0.5, 1.0, 3.0]),
-            (Dose::HeadingNoise, [5.0, 15.0, 45.0]),
+            (DoseKind::CameraHeight, [0.3, 0.88, 1.6]),
+            (DoseKind::FieldOfView, [60.0, 90.0, 120.0]),
+            (DoseKind::FrameSpacing, [0.5, 1.0, 3.0]),
+            (DoseKind::HeadingNoise, [5.0, 15.0, 45.0]),
         ];
-        let whole = [Whole::Mirror, Whole::Turn, Whole::Remove].map(Self::Whole);
+        let whole = [WholeChange::Mirror, WholeChange::Turn, WholeChange::Remove].map(Self::Whole);
         let by = doses.into_iter().flat_map(|(dose, values)| values.map(|value| Self::By(dose, value)));
         [Self::Platform("habitat".to_owned())].into_iter().chain(whole).chain(by).collect()
     }
@@ -55,7 +55,7 @@ impl Change {
     #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
-            Self::Platform(_) => PLATFORM,
+            Self::Platform(_) => PLATFORM_CHANGE_NAME,
             Self::Whole(whole) => whole.name(),
             Self::By(dose, _) => dose.name(),
         }
@@ -63,7 +63,7 @@ impl Change {
 
     /// Its dose, in [`unit`](Self::unit).
     #[must_use]
-    pub fn dose(&self) -> Option<f64> {
+    pub fn dose_value(&self) -> Option<f64> {
         match self {
             Self::By(_, value) => Some(*value),
             Self::Platform(_) | Self::Whole(_) => None,
@@ -73,21 +73,21 @@ impl Change {
     /// The unit of its dose: "m", "degrees", "%".
     #[must_use]
     pub fn unit(&self) -> Option<&'static str> {
-        self.kind().map(Dose::unit)
+        self.dose_kind().map(DoseKind::unit)
     }
 
     /// The dose that changes nothing; `None` for a change without a dose, and if no dose leaves every path unchanged.
     #[must_use]
-    pub fn unchanged(&self) -> Option<f64> {
-        self.kind().and_then(Dose::unchanged)
+    pub fn unchanged_dose(&self) -> Option<f64> {
+        self.dose_kind().and_then(DoseKind::unchanged_value)
     }
 
     /// How strong the change is, from 0 to 1: the distance of the dose from [`unchanged`](Self::unchanged), divided by the distance
     /// of the end of the range on the same side.
     #[must_use]
-    pub fn strength(&self) -> Option<f64> {
+    pub fn dose_strength(&self) -> Option<f64> {
         let Self::By(dose, value) = self else { return None };
-        let (unchanged, (low, high)) = (dose.unchanged()?, dose.range());
+        let (unchanged, (low, high)) = (dose.unchanged_value()?, dose.value_range());
         let end = if *value < unchanged { low } else { high };
         let way = (end - unchanged).abs();
         Some(if way > 0.0 { ((value - unchanged) / way).abs().min(1.0) } else { 0.0 })
@@ -108,22 +108,22 @@ impl Change {
             Self::Platform(spec) => {
                 let platform = spec.split([':', '@']).next().unwrap_or_default();
                 let safe: String = platform.chars().filter(char::is_ascii_alphanumeric).collect();
-                format!("{name}-{safe}-{:016x}", derive(0, &[spec]))
+                format!("{name}-{safe}-{:016x}", derive_seed(0, &[spec]))
             }
         }
     }
 
     /// Describes the effect in one sentence.
     #[must_use]
-    pub fn description(&self) -> String {
+    pub fn describe_effect(&self) -> String {
         match self {
             Self::Platform(spec) => format!("The same poses are seen on {spec}."),
-            Self::Whole(whole) => whole.description().to_owned(),
-            Self::By(dose, value) => dose.description(*value),
+            Self::Whole(whole) => whole.describe_effect().to_owned(),
+            Self::By(dose, value) => dose.describe_value(*value),
         }
     }
 
-    fn kind(&self) -> Option<Dose> {
+    fn dose_kind(&self) -> Option<DoseKind> {
         match self {
             Self::By(dose, _) => Some(*dose),
             Self::Platform(_) | Self::Whole(_) => None,
@@ -134,7 +134,7 @@ impl Change {
 impl fmt::Display for Change {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Platform(spec) => write!(f, "{PLATFORM}={spec}"),
+            Self::Platform(spec) => write!(f, "{PLATFORM_CHANGE_NAME}={spec}"),
             Self::Whole(whole) => f.write_str(whole.name()),
             Self::By(dose, value) => write!(f, "{}={value}", dose.name()),
         }
@@ -145,7 +145,7 @@ impl FromStr for Change {
     type Err = ChangeError;
 
     fn from_str(text: &str) -> Result<Self, ChangeError> {
-        match <[Self; 1]>::try_from(Self::parse(text)?) {
+        match <[Self; 1]>::try_from(Self::parse_list(text)?) {
             Ok([change]) => Ok(change),
             Err(several) => Err(ChangeError::Several { text: text.to_owned(), count: several.len() }),
         }

@@ -1,48 +1,48 @@
 //! Reads changes as users write them: `mirror`, `platform=SPEC`, `NAME=NUMBER,NUMBER`.
 
-use super::{Change, Dose, PLATFORM, Whole};
+use super::{Change, DoseKind, PLATFORM_CHANGE_NAME, WholeChange};
 
 /// A text that names no change.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ChangeError {
-    /// A name that no change has. [`Change::names`] lists the known ones.
-    #[error("there is no change \"{name}\"; there are {}", Change::names().collect::<Vec<_>>().join(", "))]
+    /// A name that no change has. [`Change::all_names`] lists the known ones.
+    #[error("there is no change \"{name}\"; there are {}", Change::all_names().collect::<Vec<_>>().join(", "))]
     UnknownName {
         /// The name.
         name: String,
     },
     /// A change that needs a dose was written without one.
-    #[error("{} needs a number between {} and {} {}, as in {}={}", .0.name(), .0.range().0, .0.range().1, .0.unit(), .0.name(), .0.example())]
-    NoDose(Dose),
+    #[error("{} needs a number between {} and {} {}, as in {}={}", .0.name(), .0.value_range().0, .0.value_range().1, .0.unit(), .0.name(), .0.example_values())]
+    NoDose(DoseKind),
     /// A change without a dose was written with one.
     #[error("{} has no number, and {given:?} was given: write just {}", change.name(), change.name())]
     NeedlessDose {
         /// The change.
-        change: Whole,
+        change: WholeChange,
         /// What was given.
         given: String,
     },
     /// A dose is not a number.
-    #[error("{}: {text:?} is not a number; give numbers between {} and {} {}, as in {}={}", dose.name(), dose.range().0, dose.range().1, dose.unit(), dose.name(), dose.example())]
+    #[error("{}: {text:?} is not a number; give numbers between {} and {} {}, as in {}={}", dose.name(), dose.value_range().0, dose.value_range().1, dose.unit(), dose.name(), dose.example_values())]
     NotANumber {
         /// What it is for.
-        dose: Dose,
+        dose: DoseKind,
         /// What was given.
         text: String,
     },
     /// A number that is too small or too large.
-    #[error("{}: {value} is not between {} and {} {}; give numbers as in {}={}", dose.name(), dose.range().0, dose.range().1, dose.unit(), dose.name(), dose.example())]
+    #[error("{}: {value} is not between {} and {} {}; give numbers as in {}={}", dose.name(), dose.value_range().0, dose.value_range().1, dose.unit(), dose.name(), dose.example_values())]
     OutOfRange {
         /// What it is for.
-        dose: Dose,
+        dose: DoseKind,
         /// The number.
         value: f64,
     },
     /// A number with a fraction, where only whole ones have a meaning.
-    #[error("{}: {value} is not a whole number; give numbers as in {}={}", dose.name(), dose.name(), dose.example())]
+    #[error("{}: {value} is not a whole number; give numbers as in {}={}", dose.name(), dose.name(), dose.example_values())]
     NotWhole {
         /// What it is for.
-        dose: Dose,
+        dose: DoseKind,
         /// The number.
         value: f64,
     },
@@ -50,7 +50,7 @@ pub enum ChangeError {
     #[error("{}: {value} is given twice; leave one out", dose.name())]
     Twice {
         /// What it is for.
-        dose: Dose,
+        dose: DoseKind,
         /// The number.
         value: f64,
     },
@@ -73,36 +73,36 @@ impl Change {
     ///
     /// # Errors
     /// When the change is unknown, or a number is missing, superfluous, malformed, out of range or given twice.
-    pub fn parse(text: &str) -> Result<Vec<Self>, ChangeError> {
+    pub fn parse_list(text: &str) -> Result<Vec<Self>, ChangeError> {
         let (name, given) = match text.split_once('=') {
             Some((name, given)) => (name.trim(), Some(given.trim())),
             None => (text.trim(), None),
         };
-        if name == PLATFORM {
+        if name == PLATFORM_CHANGE_NAME {
             let spec = given.filter(|spec| !spec.is_empty() && !spec.starts_with([':', '@']));
             return Ok(vec![Self::Platform(spec.ok_or(ChangeError::NoPlatform)?.to_owned())]);
         }
-        if let Some(change) = Whole::ALL.into_iter().find(|whole| whole.name() == name) {
+        if let Some(change) = WholeChange::ALL.into_iter().find(|whole| whole.name() == name) {
             return match given {
                 None => Ok(vec![Self::Whole(change)]),
                 Some(given) => Err(ChangeError::NeedlessDose { change, given: given.to_owned() }),
             };
         }
-        let dose = Dose::ALL.into_iter().find(|dose| dose.name() == name);
+        let dose = DoseKind::ALL.into_iter().find(|dose| dose.name() == name);
         let dose = dose.ok_or_else(|| ChangeError::UnknownName { name: name.to_owned() })?;
-        let values = values(dose, given.filter(|given| !given.is_empty()).ok_or(ChangeError::NoDose(dose))?)?;
+        let values = parse_values(dose, given.filter(|given| !given.is_empty()).ok_or(ChangeError::NoDose(dose))?)?;
         Ok(values.into_iter().map(|value| Self::By(dose, value)).collect())
     }
 }
 
 /// The numbers of a list, in its order.
-fn values(dose: Dose, list: &str) -> Result<Vec<f64>, ChangeError> {
+fn parse_values(dose: DoseKind, list: &str) -> Result<Vec<f64>, ChangeError> {
     let mut values = Vec::new();
     for text in list.split(',').map(str::trim) {
         let value: Option<f64> = text.parse().ok().filter(|value: &f64| value.is_finite());
         // The sum makes a plain zero of a negative one, which would be written differently.
         let value = value.ok_or_else(|| ChangeError::NotANumber { dose, text: text.to_owned() })? + 0.0;
-        let (low, high) = dose.range();
+        let (low, high) = dose.value_range();
         if !(low..=high).contains(&value) {
             return Err(ChangeError::OutOfRange { dose, value });
         }

@@ -1,6 +1,6 @@
 //! Refuses changes that would have no effect, or cannot be made, on the platform and with the observer of a run, and explains why.
 
-use super::{Change, Dose, Whole};
+use super::{Change, DoseKind, WholeChange};
 
 /// Mean distance between viewpoints of Matterport3D, metres (Chang et al., "Matterport3D", 2017).
 const BETWEEN_VIEWPOINTS_M: f64 = 2.25;
@@ -9,7 +9,7 @@ const BETWEEN_FRAMES_M: f64 = 1.0;
 
 /// Who names the things in a view.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Sees {
+pub enum SightSource {
     /// The platform's labels.
     Labels,
     /// A scripted eye. Its recall is a fixed function of the dose.
@@ -20,11 +20,11 @@ pub enum Sees {
 
 /// The run for which a change is requested.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Setting<'a> {
+pub struct ChangeSetting<'a> {
     /// The platform's name.
     pub platform: &'a str,
     /// Who sees.
-    pub sees: Sees,
+    pub sees: SightSource,
     /// Whether the frames of its paths have poses.
     pub has_poses: bool,
     /// Whether it can render a view from any pose, and is not limited to existing pictures.
@@ -36,11 +36,11 @@ pub struct Setting<'a> {
 impl Change {
     /// Why the change cannot be used for this run, in one sentence; `None` if it can.
     #[must_use]
-    pub fn refusal(&self, there: &Setting<'_>) -> Option<String> {
+    pub fn refusal_reason(&self, there: &ChangeSetting<'_>) -> Option<String> {
         let why = match self {
-            Self::Platform(spec) => Elsewhere::of(spec).refusal(there),
-            Self::Whole(whole) => whole.refusal(there),
-            Self::By(dose, value) => dose.refusal(*value, there),
+            Self::Platform(spec) => OtherPlatform::from_spec(spec).refusal_reason(there),
+            Self::Whole(whole) => whole.refusal_reason(there),
+            Self::By(dose, value) => dose.refusal_reason(*value, there),
         };
         why.map(|why| format!("{self} means nothing here: {why}"))
     }
@@ -48,7 +48,7 @@ impl Change {
 
 /// Another platform as a change names it: `NAME[:DATA][@ADDRESS]`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Elsewhere<'a> {
+pub struct OtherPlatform<'a> {
     /// Its name.
     pub name: &'a str,
     /// Its folder or file of data.
@@ -57,16 +57,16 @@ pub struct Elsewhere<'a> {
     pub at: Option<&'a str>,
 }
 
-impl<'a> Elsewhere<'a> {
+impl<'a> OtherPlatform<'a> {
     /// Splits the text behind `platform=`.
     #[must_use]
-    pub fn of(spec: &'a str) -> Self {
+    pub fn from_spec(spec: &'a str) -> Self {
         let (rest, at) = spec.split_once('@').map_or((spec, None), |(rest, at)| (rest, Some(at)));
         let (name, data) = rest.split_once(':').map_or((rest, None), |(name, data)| (name, Some(data)));
         Self { name, data, at }
     }
 
-    fn refusal(&self, there: &Setting<'_>) -> Option<String> {
+    fn refusal_reason(&self, there: &ChangeSetting<'_>) -> Option<String> {
         let Self { name, data, at } = *self;
         let is_house = there.platform == "house";
         Some(match name {
@@ -74,7 +74,7 @@ impl<'a> Elsewhere<'a> {
                 "the frames have no poses, so nobody knows where they are on another platform".to_owned()
             }
             _ if name == there.platform && data.is_none() && at.is_none() => "the run was made there".to_owned(),
-            "recording" if there.sees == Sees::Labels => {
+            "recording" if there.sees == SightSource::Labels => {
                 "a recording has no labels; a scripted eye (--eye) or a model has to see".to_owned()
             }
             "recording" if data.is_some() => "the run's own paths are filmed; leave out the data".to_owned(),
@@ -91,14 +91,14 @@ impl<'a> Elsewhere<'a> {
     }
 }
 
-impl Whole {
-    fn refusal(self, there: &Setting<'_>) -> Option<String> {
+impl WholeChange {
+    fn refusal_reason(self, there: &ChangeSetting<'_>) -> Option<String> {
         match self {
             Self::Mirror | Self::Turn | Self::Reverse if !there.has_poses => Some(no_poses("directions", there)),
             Self::Reverse if there.is_recorded() => {
                 Some(format!("platform {} has no pictures of the way back", there.platform))
             }
-            Self::Remove | Self::Add | Self::Material if there.sees == Sees::Pictures => Some(
+            Self::Remove | Self::Add | Self::Material if there.sees == SightSource::Pictures => Some(
                 "it changes what is listed and not the pictures, which are what the model sees; use labels or the scripted eye"
                     .to_owned(),
             ),
@@ -107,14 +107,14 @@ impl Whole {
     }
 }
 
-impl Dose {
-    fn refusal(self, value: f64, there: &Setting<'_>) -> Option<String> {
+impl DoseKind {
+    fn refusal_reason(self, value: f64, there: &ChangeSetting<'_>) -> Option<String> {
         match self {
             Self::CameraHeight | Self::FieldOfView | Self::Pitch | Self::Roll => (!there.draws).then(|| {
                 format!("the pictures of platform {} were taken before, by a camera that is as it was", there.platform)
             }),
             Self::Exposure | Self::ColourTemperature | Self::Blur | Self::Noise | Self::JpegQuality => (there.sees
-                == Sees::Labels)
+                == SightSource::Labels)
                 .then(|| "it changes the pictures, and labels are not read from pictures".to_owned()),
             Self::DroppedFrames => None,
             Self::FrameSpacing if !there.has_poses => Some(no_poses("distances", there)),
@@ -128,7 +128,7 @@ impl Dose {
     }
 }
 
-impl Setting<'_> {
+impl ChangeSetting<'_> {
     /// Whether its pictures were taken one by one along a path, as in a recording.
     fn is_recorded(&self) -> bool {
         !self.draws && !self.graph
@@ -149,6 +149,6 @@ impl Setting<'_> {
     }
 }
 
-fn no_poses(of: &str, there: &Setting<'_>) -> String {
+fn no_poses(of: &str, there: &ChangeSetting<'_>) -> String {
     format!("the frames of platform {} have no poses, so that no {of} of the path are known", there.platform)
 }

@@ -1,27 +1,27 @@
 use super::*;
 use std::collections::BTreeSet;
 
-const HOUSE: Setting<'static> =
-    Setting { platform: "house", sees: Sees::Labels, has_poses: true, draws: true, graph: false };
-const MATTERPORT: Setting<'static> = Setting { platform: "matterport", draws: false, graph: true, ..HOUSE };
-const RECORDING: Setting<'static> =
-    Setting { platform: "recording", sees: Sees::Pictures, draws: false, graph: false, ..HOUSE };
+const HOUSE: ChangeSetting<'static> =
+    ChangeSetting { platform: "house", sees: SightSource::Labels, has_poses: true, draws: true, graph: false };
+const MATTERPORT: ChangeSetting<'static> = ChangeSetting { platform: "matterport", draws: false, graph: true, ..HOUSE };
+const RECORDING: ChangeSetting<'static> =
+    ChangeSetting { platform: "recording", sees: SightSource::Pictures, draws: false, graph: false, ..HOUSE };
 
 fn one(text: &str) -> Change {
     text.parse().unwrap()
 }
 
 fn refused(text: &str) -> String {
-    Change::parse(text).unwrap_err().to_string()
+    Change::parse_list(text).unwrap_err().to_string()
 }
 
 #[test]
 fn a_list_of_numbers_is_one_change_each() {
-    let heights = Change::parse(" camera_height_m = 0.3, 0.88,1.6").unwrap();
-    assert_eq!(heights, [0.3, 0.88, 1.6].map(|height| Change::By(Dose::CameraHeight, height)));
-    assert_eq!(Change::parse("mirror").unwrap(), [Change::Whole(Whole::Mirror)]);
+    let heights = Change::parse_list(" camera_height_m = 0.3, 0.88,1.6").unwrap();
+    assert_eq!(heights, [0.3, 0.88, 1.6].map(|height| Change::By(DoseKind::CameraHeight, height)));
+    assert_eq!(Change::parse_list("mirror").unwrap(), [Change::Whole(WholeChange::Mirror)]);
     let spec = "habitat:/data/a,b=c@1.2.3.4:5";
-    assert_eq!(Change::parse(&format!("platform={spec}")).unwrap(), [Change::Platform(spec.to_owned())]);
+    assert_eq!(Change::parse_list(&format!("platform={spec}")).unwrap(), [Change::Platform(spec.to_owned())]);
 }
 
 #[test]
@@ -41,15 +41,16 @@ fn parse_errors_name_the_range_and_an_example() {
 
 #[test]
 fn every_example_is_in_range_and_every_change_is_its_own_text() {
-    let examples =
-        Dose::ALL.into_iter().flat_map(|dose| Change::parse(&format!("{}={}", dose.name(), dose.example())).unwrap());
-    let whole = Whole::ALL.into_iter().map(Change::Whole);
+    let examples = DoseKind::ALL
+        .into_iter()
+        .flat_map(|dose| Change::parse_list(&format!("{}={}", dose.name(), dose.example_values())).unwrap());
+    let whole = WholeChange::ALL.into_iter().map(Change::Whole);
     let others = ["platform=habitat", "platform=habitat:/a", "platform=habitat:/b", "pitch_deg=20"].map(one);
     let all: Vec<Change> = examples.chain(whole).chain(others).collect();
     for change in &all {
         assert_eq!(one(&change.to_string()), *change);
         assert_eq!(serde_json::from_str::<Change>(&serde_json::to_string(change).unwrap()).unwrap(), *change);
-        assert!(change.description().ends_with('.'));
+        assert!(change.describe_effect().ends_with('.'));
         let is_safe = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || "-.".contains(c);
         assert!(change.id().chars().all(is_safe), "{}", change.id());
     }
@@ -62,22 +63,22 @@ fn every_example_is_in_range_and_every_change_is_its_own_text() {
 
 #[test]
 fn the_unchanged_dose_is_in_range_and_has_no_strength() {
-    for dose in Dose::ALL {
-        let (low, high) = dose.range();
-        let Some(unchanged) = dose.unchanged() else { continue };
+    for dose in DoseKind::ALL {
+        let (low, high) = dose.value_range();
+        let Some(unchanged) = dose.unchanged_value() else { continue };
         assert!((low..=high).contains(&unchanged), "{dose:?}");
-        assert_eq!(Change::By(dose, unchanged).strength(), Some(0.0));
+        assert_eq!(Change::By(dose, unchanged).dose_strength(), Some(0.0));
     }
-    assert_eq!(one("jpeg_quality_percent=1").strength(), Some(1.0));
-    assert_eq!(one("blur_px=10").strength(), Some(0.25));
-    assert_eq!(one("frame_spacing_m=1").strength(), None);
+    assert_eq!(one("jpeg_quality_percent=1").dose_strength(), Some(1.0));
+    assert_eq!(one("blur_px=10").dose_strength(), Some(0.25));
+    assert_eq!(one("frame_spacing_m=1").dose_strength(), None);
 }
 
 #[test]
 fn the_default_set_can_be_made_where_everything_is_drawn() {
     assert_eq!(Change::default_set().len(), 16);
     for change in Change::default_set() {
-        assert_eq!(change.refusal(&HOUSE), None);
+        assert_eq!(change.refusal_reason(&HOUSE), None);
         assert_eq!(one(&change.to_string()), change);
     }
 }
@@ -87,14 +88,19 @@ fn refusal_of_picture_changes_with_labels() {
     for text in
         ["blur_px=1", "noise_percent=1", "jpeg_quality_percent=9", "exposure_stops=1", "colour_temperature_k=3000"]
     {
-        assert!(one(text).refusal(&HOUSE).unwrap().contains("labels are not read from pictures"), "{text}");
-        for sees in [Sees::Eye, Sees::Pictures] {
-            assert_eq!(one(text).refusal(&Setting { sees, ..HOUSE }), None, "{text}");
+        assert!(one(text).refusal_reason(&HOUSE).unwrap().contains("labels are not read from pictures"), "{text}");
+        for sees in [SightSource::Eye, SightSource::Pictures] {
+            assert_eq!(one(text).refusal_reason(&ChangeSetting { sees, ..HOUSE }), None, "{text}");
         }
     }
     for text in ["remove", "add", "material"] {
-        assert!(one(text).refusal(&Setting { sees: Sees::Pictures, ..HOUSE }).unwrap().contains("not the pictures"));
-        assert_eq!(one(text).refusal(&Setting { sees: Sees::Eye, ..RECORDING }), None);
+        assert!(
+            one(text)
+                .refusal_reason(&ChangeSetting { sees: SightSource::Pictures, ..HOUSE })
+                .unwrap()
+                .contains("not the pictures")
+        );
+        assert_eq!(one(text).refusal_reason(&ChangeSetting { sees: SightSource::Eye, ..RECORDING }), None);
     }
 }
 
@@ -102,24 +108,24 @@ fn refusal_of_picture_changes_with_labels() {
 fn fixed_pictures_have_the_camera_that_took_them() {
     for text in ["camera_height_m=1", "field_of_view_deg=60", "pitch_deg=5", "roll_deg=5"] {
         for there in [MATTERPORT, RECORDING] {
-            assert!(one(text).refusal(&there).unwrap().contains("taken before"), "{text}");
+            assert!(one(text).refusal_reason(&there).unwrap().contains("taken before"), "{text}");
         }
-        assert_eq!(one(text).refusal(&HOUSE), None);
+        assert_eq!(one(text).refusal_reason(&HOUSE), None);
     }
-    assert!(one("reverse").refusal(&RECORDING).unwrap().contains("the way back"));
-    assert!(one("start_heading_deg=90").refusal(&RECORDING).unwrap().contains("other directions"));
-    assert_eq!(one("reverse").refusal(&MATTERPORT), None);
-    let finer = one("frame_spacing_m=1").refusal(&MATTERPORT).unwrap();
+    assert!(one("reverse").refusal_reason(&RECORDING).unwrap().contains("the way back"));
+    assert!(one("start_heading_deg=90").refusal_reason(&RECORDING).unwrap().contains("other directions"));
+    assert_eq!(one("reverse").refusal_reason(&MATTERPORT), None);
+    let finer = one("frame_spacing_m=1").refusal_reason(&MATTERPORT).unwrap();
     assert_eq!(
         finer,
         "frame_spacing_m=1 means nothing here: platform matterport has views only from viewpoints, about 2.25 m apart, so that frames can be left out but not put between"
     );
-    assert_eq!(one("frame_spacing_m=3").refusal(&MATTERPORT), None);
+    assert_eq!(one("frame_spacing_m=3").refusal_reason(&MATTERPORT), None);
 }
 
 #[test]
 fn refusal_of_changes_that_need_poses_without_poses() {
-    let blind = Setting { has_poses: false, ..RECORDING };
+    let blind = ChangeSetting { has_poses: false, ..RECORDING };
     for text in [
         "platform=house",
         "mirror",
@@ -129,8 +135,8 @@ fn refusal_of_changes_that_need_poses_without_poses() {
         "heading_noise_deg=5",
         "start_heading_deg=5",
     ] {
-        assert!(one(text).refusal(&blind).unwrap().contains("no poses"), "{text}");
+        assert!(one(text).refusal_reason(&blind).unwrap().contains("no poses"), "{text}");
     }
-    assert_eq!(one("dropped_frames_percent=10").refusal(&blind), None);
-    assert_eq!(one("blur_px=2").refusal(&blind), None);
+    assert_eq!(one("dropped_frames_percent=10").refusal_reason(&blind), None);
+    assert_eq!(one("blur_px=2").refusal_reason(&blind), None);
 }

@@ -2,7 +2,7 @@
 
 /// A change without a dose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Whole {
+pub enum WholeChange {
     /// The world is mirrored: left becomes right.
     Mirror,
     /// The world is turned by 90 degrees.
@@ -17,7 +17,7 @@ pub enum Whole {
     Reverse,
 }
 
-impl Whole {
+impl WholeChange {
     /// All of them.
     pub const ALL: [Self; 6] = [Self::Mirror, Self::Turn, Self::Remove, Self::Add, Self::Material, Self::Reverse];
 
@@ -36,7 +36,7 @@ impl Whole {
 
     /// Describes the effect in one sentence.
     #[must_use]
-    pub fn description(self) -> &'static str {
+    pub fn describe_effect(self) -> &'static str {
         match self {
             Self::Mirror => "The world is mirrored, so that left becomes right.",
             Self::Turn => "The world is turned by 90 degrees, which nobody in it can see.",

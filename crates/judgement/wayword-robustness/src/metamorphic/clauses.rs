@@ -3,17 +3,17 @@
 //! After a local change of the world, such as a removed lamp, only clauses about frames that see the change may differ. Most clauses
 //! have mentions with frames; for the others the range is inferred from their neighbours.
 
-use super::Written;
+use super::AnnotatedText;
 use std::{collections::BTreeSet, ops::RangeInclusive};
-use wayword_core::{Mention, MentionKind};
+use wayword_core::{MentionKind, TextMention};
 use wayword_language::{
-    reading::{self, What},
-    text::tokens,
+    reading::{self, EventContent},
+    text::split_tokens,
 };
 
 /// A clause, as the reader of the language crate divides sentences.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Clause {
+pub(super) struct FramedClause {
     /// Its words in lower case, without the conjunctions at its beginning.
     pub(super) words: String,
     /// The first and the last frame that it may be about. These are the frames of its mentions. For a room, the frame before it is
@@ -24,7 +24,7 @@ pub(super) struct Clause {
     ends_with_thing: bool,
 }
 
-impl Clause {
+impl FramedClause {
     /// Whether it may be about one of these frames.
     pub(super) fn speaks_of(&self, frames: &[usize]) -> bool {
         frames.iter().any(|frame| self.frames.contains(frame))
@@ -32,9 +32,9 @@ impl Clause {
 }
 
 /// The clauses of a text, in order. Clauses of conjunctions alone are left out.
-pub(super) fn clauses(written: Written<'_>) -> Vec<Clause> {
-    let tokens = tokens(written.text);
-    let numbers = reading::clauses(&tokens);
+pub(super) fn clauses_with_frames(written: AnnotatedText<'_>) -> Vec<FramedClause> {
+    let tokens = split_tokens(written.text);
+    let numbers = reading::clause_numbers(&tokens);
     let mut parts: Vec<(usize, Vec<&str>, [usize; 2])> = Vec::new();
     for (token, number) in tokens.iter().zip(numbers) {
         match parts.last_mut() {
@@ -45,8 +45,8 @@ pub(super) fn clauses(written: Written<'_>) -> Vec<Clause> {
             _ => parts.push((number, vec![&token.word], token.span)),
         }
     }
-    let stops = stops(written.text);
-    let mut told: Vec<Told> = Vec::new();
+    let stops = stop_positions(written.text);
+    let mut told: Vec<ClauseDraft> = Vec::new();
     for (_, words, span) in parts {
         let own: Vec<&str> = words.into_iter().skip_while(|word| is_joint(word)).collect();
         if own.is_empty() {
@@ -54,63 +54,63 @@ pub(super) fn clauses(written: Written<'_>) -> Vec<Clause> {
         }
         let here = || written.mentions.iter().filter(|mention| (span[0]..span[1]).contains(&mention.span[0]));
         let last = here().next_back().map(|mention| mention.kind);
-        let first_of = |mention: &Mention| match mention.kind {
+        let first_of = |mention: &TextMention| match mention.kind {
             MentionKind::Room => mention.frame.saturating_sub(1),
             _ => mention.frame,
         };
         let range = here().map(first_of).min().zip(here().map(|mention| mention.frame).max());
         let tells_stop = stops.iter().any(|stop| (span[0]..span[1]).contains(stop));
         told.push(match tells_stop {
-            true => Told {
+            true => ClauseDraft {
                 words: own.join(" "),
                 range: Some((written.last_frame, written.last_frame)),
-                speaks_of: Matter::Motion,
+                speaks_of: ClauseEnding::Motion,
             },
-            false => Told { words: own.join(" "), range, speaks_of: Matter::of(last) },
+            false => ClauseDraft { words: own.join(" "), range, speaks_of: ClauseEnding::from_last_mention(last) },
         });
     }
     (0..told.len())
         .map(|at| {
             let before = told[..at].iter().rev().find_map(|told| told.range).map_or(0, |(_, last)| last);
             let behind = told[at + 1..].iter().find_map(|told| told.range).map_or(usize::MAX, |(first, _)| first);
-            let mut later = told[at + 1..].iter().filter(|told| told.speaks_of == Matter::Motion);
+            let mut later = told[at + 1..].iter().filter(|told| told.speaks_of == ClauseEnding::Motion);
             let fixed = later.find_map(|told| told.range).map_or(usize::MAX, |(_, last)| last);
             let (first, last) = match told[at].range {
                 // A mention of a thing has the first frame that shows it, but the walker may reach it only later.
-                Some((first, last)) if told[at].speaks_of == Matter::Thing => (first, last.max(fixed)),
+                Some((first, last)) if told[at].speaks_of == ClauseEnding::Thing => (first, last.max(fixed)),
                 Some(range) => range,
                 None => (before.min(behind), before.max(behind)),
             };
-            let ends_with_thing = told[at].speaks_of == Matter::Thing;
-            Clause { words: told[at].words.clone(), frames: first..=last, ends_with_thing }
+            let ends_with_thing = told[at].speaks_of == ClauseEnding::Thing;
+            FramedClause { words: told[at].words.clone(), frames: first..=last, ends_with_thing }
         })
         .collect()
 }
 
 /// The byte positions of the words that ask the walker to stop.
-fn stops(text: &str) -> Vec<usize> {
-    let events = reading::read(text, &BTreeSet::new()).events;
-    events.into_iter().filter(|event| event.what == What::Stop).map(|event| event.span[0]).collect()
+fn stop_positions(text: &str) -> Vec<usize> {
+    let events = reading::read_instruction(text, &BTreeSet::new()).events;
+    events.into_iter().filter(|event| event.what == EventContent::Stop).map(|event| event.span[0]).collect()
 }
 
 /// A clause before its range is final: its words, the first and last frame of its mentions, and the kind of its last mention.
-struct Told {
+struct ClauseDraft {
     words: String,
     range: Option<(usize, usize)>,
-    speaks_of: Matter,
+    speaks_of: ClauseEnding,
 }
 
 /// The kind of a clause's last mention.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Matter {
+enum ClauseEnding {
     Thing,
     /// A turn, a climb or a stop. Its frame is known exactly.
     Motion,
     Other,
 }
 
-impl Matter {
-    fn of(last: Option<MentionKind>) -> Self {
+impl ClauseEnding {
+    fn from_last_mention(last: Option<MentionKind>) -> Self {
         match last {
             Some(MentionKind::Landmark) => Self::Thing,
             Some(MentionKind::Turn | MentionKind::Floor) => Self::Motion,
@@ -125,7 +125,7 @@ fn is_joint(word: &str) -> bool {
 
 /// A clause that differs although it must not.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) enum Astray {
+pub(super) enum UnexpectedClause {
     /// It is missing in the changed text.
     Lost(String),
     /// The changed text has it in addition.
@@ -133,23 +133,27 @@ pub(super) enum Astray {
 }
 
 /// Finds the first clause that differs although it is not about any of the frames in `may_change`.
-pub(super) fn astray(before: &[Clause], after: &[Clause], may_change: &[usize]) -> Option<Astray> {
+pub(super) fn find_unexpected_clause(
+    before: &[FramedClause],
+    after: &[FramedClause],
+    may_change: &[usize],
+) -> Option<UnexpectedClause> {
     let kept = in_both(before, after, may_change);
     let ends = [(before.len(), after.len())];
     let (mut from, mut to) = (0, 0);
     for (next_from, next_to) in kept.into_iter().chain(ends) {
         let (gone, new) = (&before[from..next_from], &after[to..next_to]);
-        let may = |clause: &&Clause| clause.speaks_of(may_change);
+        let may = |clause: &&FramedClause| clause.speaks_of(may_change);
         let is_swap = gone.len() == new.len();
         // One text may mention a turn or a place together with a thing, and the other one without it.
-        let stands_for_one = |clause: &&Clause, others: &[Clause]| {
+        let stands_for_one = |clause: &&FramedClause, others: &[FramedClause]| {
             is_swap && !clause.ends_with_thing && others.iter().all(|other| may(&other))
         };
         if let Some(lost) = gone.iter().find(|clause| !may(clause) && !stands_for_one(clause, new)) {
-            return Some(Astray::Lost(lost.words.clone()));
+            return Some(UnexpectedClause::Lost(lost.words.clone()));
         }
         if let Some(come) = new.iter().find(|clause| !may(clause) && !stands_for_one(clause, gone)) {
-            return Some(Astray::New(come.words.clone()));
+            return Some(UnexpectedClause::New(come.words.clone()));
         }
         (from, to) = (next_from + 1, next_to + 1);
     }
@@ -158,8 +162,8 @@ pub(super) fn astray(before: &[Clause], after: &[Clause], may_change: &[usize]) 
 
 /// The clauses that both texts have, in order, as pairs of indices: a longest common subsequence, in which clauses that must not change
 /// count more than all others together.
-fn in_both(before: &[Clause], after: &[Clause], may_change: &[usize]) -> Vec<(usize, usize)> {
-    let worth = |clause: &Clause| if clause.speaks_of(may_change) { 1 } else { before.len() + 1 };
+fn in_both(before: &[FramedClause], after: &[FramedClause], may_change: &[usize]) -> Vec<(usize, usize)> {
+    let worth = |clause: &FramedClause| if clause.speaks_of(may_change) { 1 } else { before.len() + 1 };
     // `best[i][j]` is the highest worth of a common subsequence of the clauses from `i` and from `j` on.
     let mut best = vec![vec![0; after.len() + 1]; before.len() + 1];
     for i in (0..before.len()).rev() {

@@ -8,26 +8,26 @@ mod space;
 mod things;
 mod way;
 
-pub use space::{mirror, turn};
-pub use things::{Gone, add, material, remove};
-pub use way::reverse;
+pub use space::{check_mirrored_world, check_turned_world};
+pub use things::{ChangedThing, check_added_thing, check_changed_material, check_removed_thing};
+pub use way::check_reversed_path;
 
-use wayword_core::Mention;
+use wayword_core::TextMention;
 
 /// A text with its mentions.
 #[derive(Debug, Clone, Copy)]
-pub struct Written<'a> {
+pub struct AnnotatedText<'a> {
     /// The text.
     pub text: &'a str,
     /// The things, rooms and turns that its words mention, each with the frame that has the evidence.
-    pub mentions: &'a [Mention],
+    pub mentions: &'a [TextMention],
     /// The last frame of its path.
     pub last_frame: usize,
 }
 
 /// The outcome of a check.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Outcome {
+pub enum ExpectationOutcome {
     /// The expectation holds.
     Holds,
     /// The text does not mention the changed thing, so there is no expectation.
@@ -36,9 +36,9 @@ pub enum Outcome {
     Differs(String),
 }
 
-impl Outcome {
+impl ExpectationOutcome {
     /// Compares texts that have to be equal.
-    fn of_equal(expected: &str, found: &str) -> Self {
+    fn from_equal_texts(expected: &str, found: &str) -> Self {
         if expected == found {
             Self::Holds
         } else {

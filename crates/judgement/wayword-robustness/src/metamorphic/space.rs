@@ -1,18 +1,18 @@
 //! Checks for mirrored and turned worlds.
 
-use super::{Outcome, Written};
-use wayword_language::text::tokens;
+use super::{AnnotatedText, ExpectationOutcome};
+use wayword_language::text::split_tokens;
 
 /// Checks that the text in a turned world is the same, byte for byte.
 #[must_use]
-pub fn turn(base: Written<'_>, changed: Written<'_>) -> Outcome {
-    Outcome::of_equal(base.text, changed.text)
+pub fn check_turned_world(base: AnnotatedText<'_>, changed: AnnotatedText<'_>) -> ExpectationOutcome {
+    ExpectationOutcome::from_equal_texts(base.text, changed.text)
 }
 
 /// Checks that in a mirrored world left and right have changed places in the text, and all other words are the same.
 #[must_use]
-pub fn mirror(base: Written<'_>, changed: Written<'_>) -> Outcome {
-    Outcome::of_equal(&with_sides_swapped(base.text), changed.text)
+pub fn check_mirrored_world(base: AnnotatedText<'_>, changed: AnnotatedText<'_>) -> ExpectationOutcome {
+    ExpectationOutcome::from_equal_texts(&with_sides_swapped(base.text), changed.text)
 }
 
 /// Endings after "left" or "right" that still make a word for a side ("rightmost", "left-hand").
@@ -23,7 +23,7 @@ const JUST_BEFORE: [&str; 10] =
 
 /// Replaces each word for a side by the word for the other side.
 fn with_sides_swapped(text: &str) -> String {
-    let tokens = tokens(text);
+    let tokens = split_tokens(text);
     let (mut swapped, mut from) = (String::new(), 0);
     for (at, token) in tokens.iter().enumerate() {
         let word = &text[token.span[0]..token.span[1]];
@@ -53,8 +53,8 @@ fn other_side(word: &str) -> String {
 mod tests {
     use super::*;
 
-    fn of(text: &str) -> Written<'_> {
-        Written { text, mentions: &[], last_frame: 0 }
+    fn of(text: &str) -> AnnotatedText<'_> {
+        AnnotatedText { text, mentions: &[], last_frame: 0 }
     }
 
     #[test]
@@ -63,20 +63,25 @@ mod tests {
             of("Turn left. Right of the leftmost bed, take the right-hand door and stop right next to the lamp.");
         let mirrored =
             of("Turn right. Left of the rightmost bed, take the left-hand door and stop right next to the lamp.");
-        assert_eq!(mirror(base, mirrored), Outcome::Holds);
-        assert_eq!(mirror(mirrored, base), Outcome::Holds);
-        assert!(matches!(mirror(base, base), Outcome::Differs(why) if why.contains("Turn right.")));
-        assert_eq!(mirror(of("Turn right before the stairs."), of("Turn left before the stairs.")), Outcome::Holds);
+        assert_eq!(check_mirrored_world(base, mirrored), ExpectationOutcome::Holds);
+        assert_eq!(check_mirrored_world(mirrored, base), ExpectationOutcome::Holds);
+        assert!(
+            matches!(check_mirrored_world(base, base), ExpectationOutcome::Differs(why) if why.contains("Turn right."))
+        );
+        assert_eq!(
+            check_mirrored_world(of("Turn right before the stairs."), of("Turn left before the stairs.")),
+            ExpectationOutcome::Holds
+        );
     }
 
     #[test]
     fn a_text_without_sides_stays_in_a_mirrored_world() {
-        assert_eq!(mirror(of("Stop by the bed."), of("Stop by the bed.")), Outcome::Holds);
+        assert_eq!(check_mirrored_world(of("Stop by the bed."), of("Stop by the bed.")), ExpectationOutcome::Holds);
     }
 
     #[test]
     fn in_a_turned_world_not_a_byte_changes() {
-        assert_eq!(turn(of("Turn left."), of("Turn left.")), Outcome::Holds);
-        assert!(matches!(turn(of("Turn left."), of("Turn left")), Outcome::Differs(_)));
+        assert_eq!(check_turned_world(of("Turn left."), of("Turn left.")), ExpectationOutcome::Holds);
+        assert!(matches!(check_turned_world(of("Turn left."), of("Turn left")), ExpectationOutcome::Differs(_)));
     }
 }

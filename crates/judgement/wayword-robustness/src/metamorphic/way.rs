@@ -1,81 +1,87 @@
 //! The check for a path that is walked in the opposite direction.
 
-use super::{Outcome, Written};
+use super::{AnnotatedText, ExpectationOutcome};
 use crate::facts::turn_told;
 use std::collections::BTreeSet;
-use wayword_core::{Climb, Mention, Side};
+use wayword_core::{ClimbDirection, Side, TextMention};
 use wayword_language::{
     lexicon::room_name,
-    reading::{What, read},
+    reading::{EventContent, read_instruction},
 };
 
 /// Checks that on the way back the turns go to the other sides in reverse order, that climbs are reversed too, and that rooms and
 /// floors that each text names once come in reverse order.
 #[must_use]
-pub fn reverse(base: Written<'_>, changed: Written<'_>) -> Outcome {
-    let (there, back) = (Told::of(base), Told::of(changed));
-    if there == Told::default() && back == Told::default() {
-        return Outcome::NotTold;
+pub fn check_reversed_path(base: AnnotatedText<'_>, changed: AnnotatedText<'_>) -> ExpectationOutcome {
+    let (there, back) = (WayDescription::from_text(base), WayDescription::from_text(changed));
+    if there == WayDescription::default() && back == WayDescription::default() {
+        return ExpectationOutcome::NotTold;
     }
     let whole = format!("\"{}\" there, \"{}\" back", base.text, changed.text);
     let turns: Vec<Side> = there.turns.iter().rev().map(|side| side_back(*side)).collect();
     if turns != back.turns {
-        return Outcome::Differs(format!("there one turns {:?}, and back {:?}: {whole}", there.turns, back.turns));
+        return ExpectationOutcome::Differs(format!(
+            "there one turns {:?}, and back {:?}: {whole}",
+            there.turns, back.turns
+        ));
     }
-    let climbs: Vec<Climb> = there.climbs.iter().rev().map(|climb| climb_back(*climb)).collect();
+    let climbs: Vec<ClimbDirection> = there.climbs.iter().rev().map(|climb| climb_back(*climb)).collect();
     if climbs != back.climbs {
-        return Outcome::Differs(format!("there one climbs {:?}, and back {:?}: {whole}", there.climbs, back.climbs));
+        return ExpectationOutcome::Differs(format!(
+            "there one climbs {:?}, and back {:?}: {whole}",
+            there.climbs, back.climbs
+        ));
     }
     let rooms = rooms_of_both(&there.rooms, &back.rooms, base.last_frame);
     let is_known = |one: &String, other: &String| {
-        let is_apart = |rooms: &[Room]| apart(rooms, one, other).unwrap_or(true);
+        let is_apart = |rooms: &[WayRoom]| are_rooms_apart(rooms, one, other).unwrap_or(true);
         is_apart(&there.rooms) && is_apart(&back.rooms)
     };
-    for [there, back] in [rooms, both(&there.floors, &back.floors)] {
+    for [there, back] in [rooms, names_in_both(&there.floors, &back.floors)] {
         let place = |name: &String| back.iter().position(|other| other == name);
         let mut pairs =
             there.iter().enumerate().flat_map(|(at, one)| there[at + 1..].iter().map(move |other| (one, other)));
         if pairs.any(|(one, other)| place(one) < place(other) && is_known(one, other)) {
-            return Outcome::Differs(format!("there one gets by {there:?}, and back by {back:?}: {whole}"));
+            return ExpectationOutcome::Differs(format!("there one gets by {there:?}, and back by {back:?}: {whole}"));
         }
     }
-    Outcome::Holds
+    ExpectationOutcome::Holds
 }
 
 /// The turns, climbs, rooms and floors that a text describes, in its order.
 #[derive(Debug, Default, PartialEq, Eq)]
-struct Told {
+struct WayDescription {
     turns: Vec<Side>,
-    climbs: Vec<Climb>,
-    rooms: Vec<Room>,
+    climbs: Vec<ClimbDirection>,
+    rooms: Vec<WayRoom>,
     floors: Vec<String>,
 }
 
 /// A room that a text names, and the frame of its mention.
 #[derive(Debug, Clone, PartialEq, Eq)]
-struct Room {
+struct WayRoom {
     name: String,
     frame: Option<usize>,
 }
 
-impl Told {
-    fn of(written: Written<'_>) -> Self {
+impl WayDescription {
+    fn from_text(written: AnnotatedText<'_>) -> Self {
         let (mut told, mut stops) = (Self::default(), false);
-        for event in read(written.text, &BTreeSet::new()).events.into_iter().filter(|event| !event.denied) {
+        for event in read_instruction(written.text, &BTreeSet::new()).events.into_iter().filter(|event| !event.denied) {
             told.turns.extend(turn_told(&event.what));
             match event.what {
-                What::Stop => stops = true,
-                What::Climb(climb) => told.climbs.push(climb),
-                What::Floor(floor) => told.floors.extend(floor.number.map(|number| number.to_string())),
-                What::Place(place) if place.is_room => {
+                EventContent::Stop => stops = true,
+                EventContent::Climb(climb) => told.climbs.push(climb),
+                EventContent::Floor(floor) => told.floors.extend(floor.number.map(|number| number.to_string())),
+                EventContent::Place(place) if place.is_room => {
                     let name = room_name(&place.name).unwrap_or(&place.name).to_owned();
                     // Stairs are already counted as a climb.
                     if name != "stairs" && told.rooms.last().is_none_or(|room| room.name != name) {
                         let is_it =
-                            |mention: &&Mention| mention.span[0] < event.span[1] && event.span[0] < mention.span[1];
+                            |mention: &&TextMention| mention.span[0] < event.span[1] && event.span[0] < mention.span[1];
                         let here = written.mentions.iter().find(is_it);
                         let frame = if stops { Some(written.last_frame) } else { here.map(|mention| mention.frame) };
-                        told.rooms.push(Room { name, frame });
+                        told.rooms.push(WayRoom { name, frame });
                     }
                 }
                 _ => {}
@@ -87,9 +93,9 @@ impl Told {
 
 /// The rooms that each text names exactly once, in the order of either text. If another room lies between the two mentions of a
 /// name, these are two different rooms, and the name is left out.
-fn rooms_of_both(there: &[Room], back: &[Room], last_frame: usize) -> [Vec<String>; 2] {
-    let names = |rooms: &[Room]| rooms.iter().map(|room| room.name.clone()).collect::<Vec<String>>();
-    let from_the_start = |room: &Room| Some((room.name.clone(), last_frame.saturating_sub(room.frame?)));
+fn rooms_of_both(there: &[WayRoom], back: &[WayRoom], last_frame: usize) -> [Vec<String>; 2] {
+    let names = |rooms: &[WayRoom]| rooms.iter().map(|room| room.name.clone()).collect::<Vec<String>>();
+    let from_the_start = |room: &WayRoom| Some((room.name.clone(), last_frame.saturating_sub(room.frame?)));
     let back_frames: Vec<(String, usize)> = back.iter().filter_map(from_the_start).collect();
     let frames: Vec<(String, usize)> = there.iter().filter_map(|room| Some((room.name.clone(), room.frame?))).collect();
     let is_one = |name: &String| {
@@ -99,18 +105,18 @@ fn rooms_of_both(there: &[Room], back: &[Room], last_frame: usize) -> [Vec<Strin
         let passes = |(other, frame): &(String, usize)| other != name && between.contains(frame);
         one.abs_diff(other) <= 1 || !frames.iter().chain(&back_frames).any(passes)
     };
-    both(&names(there), &names(back)).map(|names| names.into_iter().filter(is_one).collect())
+    names_in_both(&names(there), &names(back)).map(|names| names.into_iter().filter(is_one).collect())
 }
 
 /// Whether a text mentions two rooms at frames that are not neighbours, if the frames are known. At neighbouring frames the order is
 /// open, because a walker in a doorway may be in either room.
-fn apart(rooms: &[Room], one: &str, other: &str) -> Option<bool> {
+fn are_rooms_apart(rooms: &[WayRoom], one: &str, other: &str) -> Option<bool> {
     let frame = |name: &str| rooms.iter().find(|room| room.name == name)?.frame;
     Some(frame(one)?.abs_diff(frame(other)?) > 1)
 }
 
 /// The names that occur exactly once in each list, in the order of either list.
-fn both(there: &[String], back: &[String]) -> [Vec<String>; 2] {
+fn names_in_both(there: &[String], back: &[String]) -> [Vec<String>; 2] {
     let once = |list: &[String], name: &String| list.iter().filter(|other| *other == name).count() == 1;
     let shared = |list: &[String]| {
         list.iter().filter(|name| once(there, name) && once(back, name)).cloned().collect::<Vec<String>>()
@@ -126,11 +132,11 @@ fn side_back(side: Side) -> Side {
     }
 }
 
-fn climb_back(climb: Climb) -> Climb {
+fn climb_back(climb: ClimbDirection) -> ClimbDirection {
     match climb {
-        Climb::Up => Climb::Down,
-        Climb::Down => Climb::Up,
-        Climb::Level => Climb::Level,
+        ClimbDirection::Up => ClimbDirection::Down,
+        ClimbDirection::Down => ClimbDirection::Up,
+        ClimbDirection::Level => ClimbDirection::Level,
     }
 }
 
@@ -139,9 +145,9 @@ mod tests {
     use super::*;
     use wayword_core::MentionKind;
 
-    fn judged(there: &str, back: &str) -> Outcome {
-        let of = |text| Written { text, mentions: &[], last_frame: 0 };
-        reverse(of(there), of(back))
+    fn judged(there: &str, back: &str) -> ExpectationOutcome {
+        let of = |text| AnnotatedText { text, mentions: &[], last_frame: 0 };
+        check_reversed_path(of(there), of(back))
     }
 
     const THERE: &str =
@@ -151,11 +157,11 @@ mod tests {
     fn the_way_back_has_the_turns_the_rooms_and_the_climbs_in_reverse_order() {
         let back =
             "Leave the kitchen. Turn left in the hallway, go down the stairs, turn right and stop in the bedroom.";
-        assert_eq!(judged(THERE, back), Outcome::Holds);
-        assert_eq!(judged("Stop by the lamp.", "Stop by the bed."), Outcome::NotTold);
+        assert_eq!(judged(THERE, back), ExpectationOutcome::Holds);
+        assert_eq!(judged("Stop by the lamp.", "Stop by the bed."), ExpectationOutcome::NotTold);
         let by_doors = "Leave the kitchen. Take the door on the left in the hallway, go down the stairs, turn right and stop \
                         in the bedroom.";
-        assert_eq!(judged(THERE, by_doors), Outcome::Holds);
+        assert_eq!(judged(THERE, by_doors), ExpectationOutcome::Holds);
     }
 
     #[test]
@@ -165,18 +171,18 @@ mod tests {
         let rooms = |hallway, bedroom| {
             let room = |name: &str, frame| {
                 let from = there.find(name).unwrap();
-                Mention { span: [from, from + name.len()], kind: MentionKind::Room, frame }
+                TextMention { span: [from, from + name.len()], kind: MentionKind::Room, frame }
             };
             vec![room("hallway", hallway), room("bedroom", bedroom)]
         };
-        let judged = |mentions: Vec<Mention>| {
+        let judged = |mentions: Vec<TextMention>| {
             let base = rooms(3, 8);
-            let of = |text, mentions| Written { text, mentions, last_frame: 9 };
-            reverse(of(there, base.as_slice()), of(back, &mentions))
+            let of = |text, mentions| AnnotatedText { text, mentions, last_frame: 9 };
+            check_reversed_path(of(there, base.as_slice()), of(back, &mentions))
         };
         // Back into the bedroom of the start, at the frame 0 of the way there, by the hallway; and by one that ends there.
-        assert_eq!(judged(rooms(4, 9)), Outcome::Holds);
-        assert_eq!(judged(rooms(8, 9)), Outcome::Holds);
+        assert_eq!(judged(rooms(4, 9)), ExpectationOutcome::Holds);
+        assert_eq!(judged(rooms(8, 9)), ExpectationOutcome::Holds);
     }
 
     #[test]
@@ -187,7 +193,7 @@ mod tests {
             ("Leave the bedroom. Turn left, go down the stairs, turn right and stop in the kitchen.", "gets by"),
         ];
         for (back, why) in differs {
-            assert!(matches!(judged(THERE, back), Outcome::Differs(said) if said.contains(why)), "{back}");
+            assert!(matches!(judged(THERE, back), ExpectationOutcome::Differs(said) if said.contains(why)), "{back}");
         }
     }
 }

@@ -1,19 +1,22 @@
 use super::*;
 use proptest::prelude::*;
 use std::collections::BTreeSet;
-use wayword_core::{DVec3, Distinction, Motion, ObjectId, SceneId, Side, Target, ViewpointId};
+use wayword_core::{DVec3, ObjectDistinction, ObjectId, PathMotion, PathTarget, SceneId, Side, ViewpointId};
 
 /// A path with a viewpoint at each corner, that begins with a look north.
 fn path(corners: &[[f64; 3]]) -> Path {
-    let stop = |(number, at): (usize, &[f64; 3])| Stop {
+    let stop = |(number, at): (usize, &[f64; 3])| PathStop {
         position: DVec3::from_array(*at),
         viewpoint: ViewpointId::new(format!("v{number}")).ok(),
         level: Some(1 + number as u32 / 2),
     };
-    let target = Target {
+    let target = PathTarget {
         object: ObjectId::new("7").unwrap(),
         name: "lamp".to_owned(),
-        told_by: vec![Distinction::OnSide { side: Side::Left }, Distinction::Colour { colour: "red".to_owned() }],
+        told_by: vec![
+            ObjectDistinction::OnSide { side: Side::Left },
+            ObjectDistinction::Colour { colour: "red".to_owned() },
+        ],
         has_namesake: true,
         descriptions: Vec::new(),
         hangs: false,
@@ -23,7 +26,7 @@ fn path(corners: &[[f64; 3]]) -> Path {
         id: "p".to_owned(),
         scene: SceneId::new("s").unwrap(),
         frames: Path::frames_along(corners.iter().enumerate().map(stop).collect(), Some(Heading::NORTH)),
-        motion: Motion::Known,
+        motion: PathMotion::Known,
         target: Some(target),
     }
 }
@@ -34,17 +37,17 @@ fn bent() -> Path {
 
 #[test]
 fn reversed_twice_it_is_the_same_path() {
-    let once = reversed(&bent());
+    let once = reverse_path(&bent());
     assert_eq!(once.base_frame_of, [3, 2, 1, 0]);
     assert_eq!(once.path.target, None);
     assert!((once.path.frames[0].pose.heading.deg() - 180.0).abs() < 1e-9);
-    let twice = reversed(&once.path).path;
-    assert_eq!(twice, Path { target: None, ..along(&bent()).path });
+    let twice = reverse_path(&once.path).path;
+    assert_eq!(twice, Path { target: None, ..face_first_hop(&bent()).path });
 }
 
 #[test]
 fn frames_are_at_equal_distances_and_keep_what_falls_on_them() {
-    let halves = spaced(&bent(), 0.5);
+    let halves = space_frames(&bent(), 0.5);
     assert_eq!(halves.path.frames.len(), 17);
     let named: Vec<usize> = (0..17).filter(|frame| halves.path.frames[*frame].viewpoint.is_some()).collect();
     assert_eq!(named, [0, 8, 14, 16]);
@@ -57,31 +60,31 @@ fn frames_are_at_equal_distances_and_keep_what_falls_on_them() {
 
 #[test]
 fn an_arrival_from_another_direction_drops_the_side_of_the_target() {
-    let cut = spaced(&bent(), 100.0).path;
+    let cut = space_frames(&bent(), 100.0).path;
     assert_eq!(cut.frames.len(), 2);
-    assert_eq!(cut.target.unwrap().told_by, [Distinction::Colour { colour: "red".to_owned() }]);
+    assert_eq!(cut.target.unwrap().told_by, [ObjectDistinction::Colour { colour: "red".to_owned() }]);
 }
 
 #[test]
 fn thinning_keeps_frames_that_there_are() {
-    assert_eq!(thinned(&bent(), 3.5).base_frame_of, [0, 1, 3]);
-    assert_eq!(thinned(&bent(), 0.1), unchanged(&bent()));
+    assert_eq!(thin_frames(&bent(), 3.5).base_frame_of, [0, 1, 3]);
+    assert_eq!(thin_frames(&bent(), 0.1), unchanged_path(&bent()));
 }
 
 #[test]
 fn start_heading_turns_the_first_frame_and_along_removes_the_turn() {
     assert!((start_heading(&bent(), -90.0).path.frames[0].pose.heading.deg() - 270.0).abs() < 1e-9);
-    assert!((along(&bent()).path.frames[0].pose.heading.deg() - 90.0).abs() < 1e-9);
+    assert!((face_first_hop(&bent()).path.frames[0].pose.heading.deg() - 90.0).abs() < 1e-9);
 }
 
 #[test]
 fn unknown_motion_lets_only_order_and_number_of_frames_change() {
-    let unknown = Path { motion: Motion::Unknown, ..bent() };
-    for changed in [spaced(&unknown, 0.5), start_heading(&unknown, 9.0), along(&unknown)] {
-        assert_eq!(changed, unchanged(&unknown));
+    let unknown = Path { motion: PathMotion::Unknown, ..bent() };
+    for changed in [space_frames(&unknown, 0.5), start_heading(&unknown, 9.0), face_first_hop(&unknown)] {
+        assert_eq!(changed, unchanged_path(&unknown));
     }
-    assert_eq!(reversed(&unknown).path.frames[0], unknown.frames[3]);
-    assert_eq!(dropped(&unknown, 100.0, 1).path.frames, [unknown.frames[0].clone(), unknown.frames[3].clone()]);
+    assert_eq!(reverse_path(&unknown).path.frames[0], unknown.frames[3]);
+    assert_eq!(drop_frames(&unknown, 100.0, 1).path.frames, [unknown.frames[0].clone(), unknown.frames[3].clone()]);
 }
 
 proptest! {
@@ -89,11 +92,11 @@ proptest! {
     fn dropped_frames_stay_dropped_at_a_higher_dose(seed: u64, low in 0.0..100.0f64, high in 0.0..100.0f64) {
         let (low, high) = (low.min(high), low.max(high));
         let long: Vec<[f64; 3]> = (0..30).map(|step| [f64::from(step), 0.0, 1.5]).collect();
-        let [few, many] = [low, high].map(|percent| dropped(&path(&long), percent, seed).base_frame_of);
+        let [few, many] = [low, high].map(|percent| drop_frames(&path(&long), percent, seed).base_frame_of);
         let few: BTreeSet<usize> = few.into_iter().collect();
         prop_assert!(many.iter().all(|frame| few.contains(frame)));
         prop_assert!(many.contains(&0) && many.contains(&29));
-        prop_assert_eq!(dropped(&path(&long), 0.0, seed), unchanged(&path(&long)));
+        prop_assert_eq!(drop_frames(&path(&long), 0.0, seed), unchanged_path(&path(&long)));
     }
 
     #[test]
@@ -101,14 +104,14 @@ proptest! {
         corners in proptest::collection::vec([-9.0..9.0f64, -9.0..9.0, 0.0..3.0], 2..8), spacing_m in 0.1..4.0f64,
     ) {
         let before = path(&corners);
-        let after = spaced(&before, spacing_m);
+        let after = space_frames(&before, spacing_m);
         let [old_m, new_m] = [&before, &after.path].map(|path| path.length_m().unwrap());
         // Each corner is cut by less than one step.
         prop_assert!(new_m <= old_m + 1e-9 && new_m >= old_m - spacing_m * corners.len() as f64);
         prop_assert!(after.path.moves().iter().all(|step| step.distance_m <= spacing_m + 1e-9));
         prop_assert_eq!(after.path.frames.len(), after.base_frame_of.len());
         prop_assert!(after.base_frame_of.is_sorted());
-        let ends = |path: &Path| [path.frames[0].clone().place(), path.frames[path.frames.len() - 1].clone().place()];
+        let ends = |path: &Path| [path.frames[0].clone().place_key(), path.frames[path.frames.len() - 1].clone().place_key()];
         prop_assert_eq!(ends(&after.path), ends(&before));
     }
 }

@@ -1,17 +1,17 @@
-//! Wraps a platform so that its world appears altered: [`Altered`] forwards each request to the original platform and maps poses,
+//! Wraps a platform so that its world appears altered: [`AlteredPlatform`] forwards each request to the original platform and maps poses,
 //! views and paths between the two worlds.
 
 use super::labels::with_truth;
 use std::{collections::BTreeSet, path::PathBuf, sync::Arc};
 use wayword_core::{
-    DVec3, Depth, Frame, FromAbove, Gaze, Heading, Island, ObjectId, Path, PathRequest, Placed, Platform,
-    PlatformError, Pose, SceneId, View, ViewpointGraph, ViewpointId, Way, graph::GraphError,
+    DVec3, DepthImage, Frame, FromAbove, GroundIsland, GroundRoute, Heading, ObjectId, Path, PathRequest, PlacedObject,
+    Platform, PlatformError, Pose, SceneId, View, ViewGaze, ViewpointGraph, ViewpointId, graph::GraphError,
 };
 
 /// An alteration of a world. By default every method leaves its argument unchanged.
 ///
 /// "Before" is the world of the original platform, "after" the altered one.
-pub trait Alter: Send + Sync {
+pub trait WorldAlteration: Send + Sync {
     /// Maps a position to the altered world, metres, world frame.
     fn place_after(&self, before: DVec3) -> DVec3 {
         before
@@ -33,8 +33,8 @@ pub trait Alter: Send + Sync {
     }
 
     /// The frame and the gaze in the original world from which a view of the altered world is made.
-    fn look_before(&self, _scene: &SceneId, from: &Frame, gaze: Gaze) -> (Frame, Gaze) {
-        let gaze = Gaze { heading: self.heading_before(gaze.heading), ..gaze };
+    fn look_before(&self, _scene: &SceneId, from: &Frame, gaze: ViewGaze) -> (Frame, ViewGaze) {
+        let gaze = ViewGaze { heading: self.heading_before(gaze.heading), ..gaze };
         (self.frame_before(from), gaze)
     }
 
@@ -42,7 +42,7 @@ pub trait Alter: Send + Sync {
     ///
     /// # Errors
     /// When the view cannot be made.
-    fn view_after(&self, _look: Look<'_>, before: View) -> Result<View, PlatformError> {
+    fn view_after(&self, _look: AlteredLook<'_>, before: View) -> Result<View, PlatformError> {
         Ok(before)
     }
 
@@ -52,7 +52,7 @@ pub trait Alter: Send + Sync {
     }
 
     /// The depths of a view in the altered world; `None` if the alteration cannot give them.
-    fn depth_after(&self, before: Depth) -> Option<Depth> {
+    fn depth_after(&self, before: DepthImage) -> Option<DepthImage> {
         Some(before)
     }
 
@@ -83,37 +83,37 @@ pub trait Alter: Send + Sync {
 
 /// The scene, the frame and the gaze of a request, in the altered world.
 #[derive(Debug, Clone, Copy)]
-pub struct Look<'a> {
+pub struct AlteredLook<'a> {
     /// The scene.
     pub scene: &'a SceneId,
     /// The position of the eye.
     pub from: &'a Frame,
     /// The direction and width of the view.
-    pub gaze: Gaze,
+    pub gaze: ViewGaze,
 }
 
 /// A platform with an altered world.
 #[derive(Debug, Clone)]
-pub struct Altered<P, A> {
+pub struct AlteredPlatform<P, A> {
     platform: P,
     alter: A,
 }
 
-impl<P: Platform, A: Alter> Altered<P, A> {
+impl<P: Platform, A: WorldAlteration> AlteredPlatform<P, A> {
     /// Wraps a platform.
     pub fn new(platform: P, alter: A) -> Self {
         Self { platform, alter }
     }
 
-    fn seen(
+    fn altered_view(
         &self,
         scene: &SceneId,
         from: &Frame,
-        gaze: Gaze,
-        look: impl Fn(&Frame, Gaze) -> Result<View, PlatformError>,
+        gaze: ViewGaze,
+        look: impl Fn(&Frame, ViewGaze) -> Result<View, PlatformError>,
     ) -> Result<View, PlatformError> {
         let (before, gaze_before) = self.alter.look_before(scene, from, gaze);
-        let after = self.alter.view_after(Look { scene, from, gaze }, look(&before, gaze_before)?)?;
+        let after = self.alter.view_after(AlteredLook { scene, from, gaze }, look(&before, gaze_before)?)?;
         if !self.alter.keeps_room() {
             return Ok(after);
         }
@@ -123,21 +123,21 @@ impl<P: Platform, A: Alter> Altered<P, A> {
     }
 }
 
-impl<P: Platform, A: Alter> Platform for Altered<P, A> {
+impl<P: Platform, A: WorldAlteration> Platform for AlteredPlatform<P, A> {
     fn name(&self) -> &'static str {
         self.platform.name()
     }
 
-    fn scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
-        self.platform.scenes()
+    fn list_scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
+        self.platform.list_scenes()
     }
 
-    fn check(&self, scenes: &BTreeSet<&SceneId>) -> Result<(), PlatformError> {
-        self.platform.check(scenes)
+    fn check_scenes(&self, scenes: &BTreeSet<&SceneId>) -> Result<(), PlatformError> {
+        self.platform.check_scenes(scenes)
     }
 
-    fn graph(&self, scene: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {
-        let before = self.platform.graph(scene)?;
+    fn graph_for_scene(&self, scene: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {
+        let before = self.platform.graph_for_scene(scene)?;
         let graph = graph_after(&before, &self.alter);
         graph.map(Arc::new).map_err(|source| PlatformError::Graph { scene: scene.clone(), source })
     }
@@ -146,17 +146,17 @@ impl<P: Platform, A: Alter> Platform for Altered<P, A> {
         Ok(self.alter.path_after(self.platform.sample_path(scene, request, seed)?))
     }
 
-    fn look(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
-        self.seen(scene, from, gaze, |from, gaze| self.platform.look(scene, from, gaze))
+    fn look_from(&self, scene: &SceneId, from: &Frame, gaze: ViewGaze) -> Result<View, PlatformError> {
+        self.altered_view(scene, from, gaze, |from, gaze| self.platform.look_from(scene, from, gaze))
     }
 
-    fn look_without_picture(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
-        self.seen(scene, from, gaze, |from, gaze| self.platform.look_without_picture(scene, from, gaze))
+    fn look_without_picture(&self, scene: &SceneId, from: &Frame, gaze: ViewGaze) -> Result<View, PlatformError> {
+        self.altered_view(scene, from, gaze, |from, gaze| self.platform.look_without_picture(scene, from, gaze))
     }
 
-    fn depth(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<Option<Depth>, PlatformError> {
+    fn view_depth(&self, scene: &SceneId, from: &Frame, gaze: ViewGaze) -> Result<Option<DepthImage>, PlatformError> {
         let (from, gaze) = self.alter.look_before(scene, from, gaze);
-        let before = self.platform.depth(scene, &from, gaze)?;
+        let before = self.platform.view_depth(scene, &from, gaze)?;
         Ok(before.and_then(|before| self.alter.depth_after(before)))
     }
 
@@ -173,21 +173,21 @@ impl<P: Platform, A: Alter> Platform for Altered<P, A> {
         self.platform.visible_from(scene, object)
     }
 
-    fn way(&self, scene: &SceneId, from: &Frame, to: &Frame) -> Result<Option<Way>, PlatformError> {
-        let before = self.platform.way(scene, &self.alter.frame_before(from), &self.alter.frame_before(to))?;
-        let after = |way: Way| Way {
+    fn ground_route(&self, scene: &SceneId, from: &Frame, to: &Frame) -> Result<Option<GroundRoute>, PlatformError> {
+        let before = self.platform.ground_route(scene, &self.alter.frame_before(from), &self.alter.frame_before(to))?;
+        let after = |way: GroundRoute| GroundRoute {
             corners: way.corners.into_iter().map(|corner| self.alter.place_after(corner)).collect(),
             ..way
         };
         Ok(before.map(after))
     }
 
-    fn islands(&self, scene: &SceneId) -> Result<Vec<Island>, PlatformError> {
-        self.platform.islands(scene)
+    fn ground_islands(&self, scene: &SceneId) -> Result<Vec<GroundIsland>, PlatformError> {
+        self.platform.ground_islands(scene)
     }
 
-    fn listed_objects(&self, scene: &SceneId) -> Result<Vec<Placed>, PlatformError> {
-        let after = |placed: Placed| Placed { position: self.alter.place_after(placed.position), ..placed };
+    fn listed_objects(&self, scene: &SceneId) -> Result<Vec<PlacedObject>, PlatformError> {
+        let after = |placed: PlacedObject| PlacedObject { position: self.alter.place_after(placed.position), ..placed };
         Ok(self.platform.listed_objects(scene)?.into_iter().map(after).collect())
     }
 
@@ -200,29 +200,29 @@ impl<P: Platform, A: Alter> Platform for Altered<P, A> {
         Ok(None)
     }
 
-    fn files(&self, scene: &SceneId) -> Result<Vec<PathBuf>, PlatformError> {
-        self.platform.files(scene)
+    fn source_files(&self, scene: &SceneId) -> Result<Vec<PathBuf>, PlatformError> {
+        self.platform.source_files(scene)
     }
 }
 
 /// The place of a frame as text, which serves as a key for random draws.
-pub(super) fn keyed(frame: &Frame) -> String {
-    let (bits, viewpoint) = frame.place();
+pub(super) fn frame_key(frame: &Frame) -> String {
+    let (bits, viewpoint) = frame.place_key();
     let [x, y, z] = bits;
     format!("{x:x} {y:x} {z:x} {}", viewpoint.as_ref().map_or("", ViewpointId::as_str))
 }
 
-fn graph_after(before: &ViewpointGraph, alter: &impl Alter) -> Result<ViewpointGraph, GraphError> {
+fn graph_after(before: &ViewpointGraph, alter: &impl WorldAlteration) -> Result<ViewpointGraph, GraphError> {
     let mut after = ViewpointGraph::default();
     for id in before.viewpoints() {
-        let Some(position) = before.position(id) else { continue };
-        after.add(id.clone(), alter.place_after(position), before.level(id))?;
+        let Some(position) = before.position_of(id) else { continue };
+        after.add_viewpoint(id.clone(), alter.place_after(position), before.level_of(id))?;
         if let Some(floor_m) = before.floor_m(id) {
             after.set_floor(id, floor_m)?;
         }
     }
     for (a, b, _) in before.edges() {
-        after.join(a, b)?;
+        after.join_viewpoints(a, b)?;
     }
     Ok(after)
 }

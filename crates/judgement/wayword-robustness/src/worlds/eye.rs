@@ -4,21 +4,21 @@
 mod draws;
 mod sides;
 
-use draws::Draws;
+use draws::EyeDraws;
 use std::{
     collections::{BTreeMap, BTreeSet},
     path::PathBuf,
     sync::Arc,
 };
 use wayword_core::{
-    Depth, Frame, FromAbove, Gaze, GroundTruth, Image, Island, Label, ObjectId, Path, PathRequest, Placed, Platform,
-    PlatformError, SceneId, View, ViewpointGraph, ViewpointId, Way,
+    DepthImage, Frame, FromAbove, GroundIsland, GroundRoute, GroundTruth, Image, ObjectId, ObjectLabel, Path,
+    PathRequest, PlacedObject, Platform, PlatformError, SceneId, View, ViewGaze, ViewpointGraph, ViewpointId,
 };
 
-/// How good a scripted eye is, as a function of the strength of a change ([`Change::strength`](crate::Change::strength)): 0 without a
+/// How good a scripted eye is, as a function of the strength of a change ([`Change::dose_strength`](crate::Change::dose_strength)): 0 without a
 /// change, 1 at the end of the dose's range.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct EyeOf {
+pub struct EyeQuality {
     /// Share of the labels that it reports at strength 0.
     pub recall: f64,
     /// Share of the reported labels that get a wrong name at strength 0.
@@ -47,13 +47,13 @@ pub struct EyeOf {
 pub struct ScriptedEye<P, O> {
     pictures: P,
     oracle: O,
-    eye: EyeOf,
+    eye: EyeQuality,
     strength: f64,
     seed: u64,
     oracle_scene_of: BTreeMap<SceneId, SceneId>,
 }
 
-impl EyeOf {
+impl EyeQuality {
     /// An eye that reports all labels and makes no mistakes, at any strength.
     pub const PERFECT: Self = Self { recall: 1.0, mistakes: 0.0, falls: 0.0, rises: 0.0, guesses_sides: false };
 
@@ -72,13 +72,13 @@ impl EyeOf {
 
 impl<P: Platform, O: Platform> ScriptedEye<P, O> {
     /// An eye at strength 0. The oracle has the scenes of `pictures` under the same names.
-    pub fn new(pictures: P, oracle: O, eye: EyeOf, seed: u64) -> Self {
+    pub fn new(pictures: P, oracle: O, eye: EyeQuality, seed: u64) -> Self {
         Self { pictures, oracle, eye, strength: 0.0, seed, oracle_scene_of: BTreeMap::new() }
     }
 
     /// The eye for a change of this strength.
     #[must_use]
-    pub fn at(self, strength: f64) -> Self {
+    pub fn at_strength(self, strength: f64) -> Self {
         Self { strength, ..self }
     }
 
@@ -90,47 +90,51 @@ impl<P: Platform, O: Platform> ScriptedEye<P, O> {
     }
 
     /// Makes the eye's view from the view of `pictures`; `look` asks the oracle. A blank view stays as it is: no camera looked there.
-    fn seen(
+    fn eye_view(
         &self,
         scene: &SceneId,
         from: &Frame,
         shown: View,
-        look: impl Fn(&SceneId, Gaze) -> Result<View, PlatformError>,
+        look: impl Fn(&SceneId, ViewGaze) -> Result<View, PlatformError>,
     ) -> Result<View, PlatformError> {
         if shown.is_blank() {
             return Ok(shown);
         }
         let scene = self.oracle_scene_of.get(scene).unwrap_or(scene);
-        let gaze = Gaze { heading: shown.pose.heading, horizontal_fov_rad: shown.horizontal_fov_rad };
+        let gaze = ViewGaze { heading: shown.pose.heading, horizontal_fov_rad: shown.horizontal_fov_rad };
         let known = look(scene, gaze)?;
         let Some(truth) = known.ground_truth().cloned() else {
             return Ok(View::new(shown.pose, shown.horizontal_fov_rad, shown.image, None));
         };
-        let draws = Draws { seed: self.seed, scene, viewpoint: from.viewpoint.as_ref() };
+        let draws = EyeDraws { seed: self.seed, scene, viewpoint: from.viewpoint.as_ref() };
         let labels = if self.eye.guesses_sides {
-            sides::guessed(&draws, from, gaze, &known, |gaze| look(scene, gaze))?
+            sides::guess_sides(&draws, from, gaze, &known, |gaze| look(scene, gaze))?
         } else {
             truth.labels
         };
-        let labels = labels.into_iter().filter_map(|label| self.answered(&draws, label));
-        let labels = fitting(labels.collect(), known.image.as_deref(), shown.image.as_deref());
+        let labels = labels.into_iter().filter_map(|label| self.answer_label(&draws, label));
+        let labels = drop_unfitting_boxes(labels.collect(), known.image.as_deref(), shown.image.as_deref());
         let truth = GroundTruth { labels, ..truth };
         Ok(View::new(shown.pose, shown.horizontal_fov_rad, shown.image, Some(truth)))
     }
 
     /// The label that the eye reports; `None` if it misses it.
-    fn answered(&self, draws: &Draws<'_>, label: Label) -> Option<Label> {
-        if draws.uniform("seen", &label) >= self.eye.recall_at(self.strength) {
+    fn answer_label(&self, draws: &EyeDraws<'_>, label: ObjectLabel) -> Option<ObjectLabel> {
+        if draws.draw_for_label("seen", &label) >= self.eye.recall_at(self.strength) {
             return None;
         }
-        let is_mistaken = draws.uniform("mistaken", &label) < self.eye.mistakes_at(self.strength);
+        let is_mistaken = draws.draw_for_label("mistaken", &label) < self.eye.mistakes_at(self.strength);
         let name = if is_mistaken { draws.wrong_name(&label).to_owned() } else { label.name };
-        Some(Label { name, ..label })
+        Some(ObjectLabel { name, ..label })
     }
 }
 
 /// Removes the boxes of the labels if the picture has another size than the oracle's, because then they do not fit.
-fn fitting(mut labels: Vec<Label>, known: Option<&Image>, shown: Option<&Image>) -> Vec<Label> {
+fn drop_unfitting_boxes(
+    mut labels: Vec<ObjectLabel>,
+    known: Option<&Image>,
+    shown: Option<&Image>,
+) -> Vec<ObjectLabel> {
     let size = |image: &Image| [image.width_px(), image.height_px()];
     if let (Some(known), Some(shown)) = (known, shown)
         && size(known) != size(shown)
@@ -145,38 +149,38 @@ impl<P: Platform, O: Platform> Platform for ScriptedEye<P, O> {
         self.pictures.name()
     }
 
-    fn scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
-        self.pictures.scenes()
+    fn list_scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
+        self.pictures.list_scenes()
     }
 
-    fn check(&self, scenes: &BTreeSet<&SceneId>) -> Result<(), PlatformError> {
-        self.pictures.check(scenes)
+    fn check_scenes(&self, scenes: &BTreeSet<&SceneId>) -> Result<(), PlatformError> {
+        self.pictures.check_scenes(scenes)
     }
 
-    fn graph(&self, scene: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {
-        self.pictures.graph(scene)
+    fn graph_for_scene(&self, scene: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {
+        self.pictures.graph_for_scene(scene)
     }
 
     fn sample_path(&self, scene: &SceneId, request: &PathRequest, seed: u64) -> Result<Path, PlatformError> {
         self.pictures.sample_path(scene, request, seed)
     }
 
-    fn look(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
-        let shown = self.pictures.look(scene, from, gaze)?;
-        self.seen(scene, from, shown, |scene, gaze| self.oracle.look(scene, from, gaze))
+    fn look_from(&self, scene: &SceneId, from: &Frame, gaze: ViewGaze) -> Result<View, PlatformError> {
+        let shown = self.pictures.look_from(scene, from, gaze)?;
+        self.eye_view(scene, from, shown, |scene, gaze| self.oracle.look_from(scene, from, gaze))
     }
 
     /// The picture is still needed, because only a blank picture shows that no camera looked there.
-    fn look_without_picture(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
-        let shown = self.pictures.look(scene, from, gaze)?;
+    fn look_without_picture(&self, scene: &SceneId, from: &Frame, gaze: ViewGaze) -> Result<View, PlatformError> {
+        let shown = self.pictures.look_from(scene, from, gaze)?;
         let mut view =
-            self.seen(scene, from, shown, |scene, gaze| self.oracle.look_without_picture(scene, from, gaze))?;
+            self.eye_view(scene, from, shown, |scene, gaze| self.oracle.look_without_picture(scene, from, gaze))?;
         view.image = None;
         Ok(view)
     }
 
-    fn depth(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<Option<Depth>, PlatformError> {
-        self.pictures.depth(scene, from, gaze)
+    fn view_depth(&self, scene: &SceneId, from: &Frame, gaze: ViewGaze) -> Result<Option<DepthImage>, PlatformError> {
+        self.pictures.view_depth(scene, from, gaze)
     }
 
     fn look_down(&self, scene: &SceneId, level: u32) -> Result<Option<FromAbove>, PlatformError> {
@@ -191,15 +195,15 @@ impl<P: Platform, O: Platform> Platform for ScriptedEye<P, O> {
         self.pictures.visible_from(scene, object)
     }
 
-    fn way(&self, scene: &SceneId, from: &Frame, to: &Frame) -> Result<Option<Way>, PlatformError> {
-        self.pictures.way(scene, from, to)
+    fn ground_route(&self, scene: &SceneId, from: &Frame, to: &Frame) -> Result<Option<GroundRoute>, PlatformError> {
+        self.pictures.ground_route(scene, from, to)
     }
 
-    fn islands(&self, scene: &SceneId) -> Result<Vec<Island>, PlatformError> {
-        self.pictures.islands(scene)
+    fn ground_islands(&self, scene: &SceneId) -> Result<Vec<GroundIsland>, PlatformError> {
+        self.pictures.ground_islands(scene)
     }
 
-    fn listed_objects(&self, scene: &SceneId) -> Result<Vec<Placed>, PlatformError> {
+    fn listed_objects(&self, scene: &SceneId) -> Result<Vec<PlacedObject>, PlatformError> {
         self.pictures.listed_objects(scene)
     }
 
@@ -211,8 +215,8 @@ impl<P: Platform, O: Platform> Platform for ScriptedEye<P, O> {
         self.pictures.scene_file(scene)
     }
 
-    fn files(&self, scene: &SceneId) -> Result<Vec<PathBuf>, PlatformError> {
-        self.pictures.files(scene)
+    fn source_files(&self, scene: &SceneId) -> Result<Vec<PathBuf>, PlatformError> {
+        self.pictures.source_files(scene)
     }
 }
 

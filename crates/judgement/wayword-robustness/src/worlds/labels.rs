@@ -1,9 +1,9 @@
 //! Replaces the ground truth of views.
 
-use wayword_core::{GroundTruth, Label, View};
+use wayword_core::{GroundTruth, ObjectLabel, View};
 
 /// Changes the labels of a view. A view without ground truth stays as it is.
-pub(super) fn with_labels(view: View, change: impl FnOnce(&mut Vec<Label>)) -> View {
+pub(super) fn with_labels(view: View, change: impl FnOnce(&mut Vec<ObjectLabel>)) -> View {
     with_truth(view, |truth| change(&mut truth.labels))
 }
 

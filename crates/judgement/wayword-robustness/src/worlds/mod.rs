@@ -13,12 +13,12 @@ mod testing;
 mod things;
 mod tilt;
 
-pub use altered::{Alter, Altered, Look};
+pub use altered::{AlteredLook, AlteredPlatform, WorldAlteration};
 pub use camera::{CameraHeight, FieldOfView};
-pub use edits::{Labelled, Telling, Thing, can_go};
-pub use eye::{EyeOf, ScriptedEye};
+pub use edits::{MentionedThing, PathLabels, PathText, can_go};
+pub use eye::{EyeQuality, ScriptedEye};
 pub use pictures::PictureChange;
 pub use poses::HeadingNoise;
-pub use space::{Mirror, QuarterTurn};
-pub use things::{Added, Recoloured, Removed};
-pub use tilt::{Tilt, TiltError};
+pub use space::{QuarterTurn, WorldMirror};
+pub use things::{ThingAddition, ThingRecolouring, ThingRemoval};
+pub use tilt::{CameraTilt, TiltError};

@@ -1,12 +1,12 @@
 //! Adds errors to the headings in the log of a path, as a robot with a bad compass would write them.
 
 use super::{
-    Alter,
-    altered::{Look, keyed},
+    WorldAlteration,
+    altered::{AlteredLook, frame_key},
     labels::with_labels,
 };
-use crate::draws::normal;
-use wayword_core::{DVec3, Frame, Gaze, Label, Motion, Path, PlatformError, Pose, SceneId, View};
+use crate::draws::draw_normal;
+use wayword_core::{DVec3, Frame, ObjectLabel, Path, PathMotion, PlatformError, Pose, SceneId, View, ViewGaze};
 
 /// Headings in the log with a gaussian error, which is drawn for each place. The camera looks along the true heading, and the view is
 /// logged under the wrong one. So a thing ahead of the camera stays ahead of it, but seems to lie elsewhere in the world.
@@ -25,19 +25,19 @@ impl HeadingNoise {
     /// The error of the log's heading at a frame, radians, positive to the right.
     #[must_use]
     pub fn error_rad(&self, scene: &SceneId, frame: &Frame) -> f64 {
-        self.deg.to_radians() * normal(self.seed, &["heading noise", scene.as_str(), &keyed(frame)])
+        self.deg.to_radians() * draw_normal(self.seed, &["heading noise", scene.as_str(), &frame_key(frame)])
     }
 
     /// Makes the logged path from the true one. Positions stay as they are. Descriptions of the target that depend on the final pose
     /// are dropped. A path of unknown motion stays as it is.
     #[must_use]
-    pub fn logged(&self, truth: &Path) -> Path {
+    pub fn logged_path(&self, truth: &Path) -> Path {
         let mut log = truth.clone();
-        if truth.motion == Motion::Unknown {
+        if truth.motion == PathMotion::Unknown {
             return log;
         }
         for frame in &mut log.frames {
-            frame.pose.heading = frame.pose.heading.turned(self.error_rad(&truth.scene, frame));
+            frame.pose.heading = frame.pose.heading.turned_by(self.error_rad(&truth.scene, frame));
         }
         if let Some(target) = &mut log.target {
             target.told_by.retain(|distinction| !distinction.needs_pose());
@@ -46,27 +46,27 @@ impl HeadingNoise {
     }
 }
 
-impl Alter for HeadingNoise {
-    fn look_before(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> (Frame, Gaze) {
+impl WorldAlteration for HeadingNoise {
+    fn look_before(&self, scene: &SceneId, from: &Frame, gaze: ViewGaze) -> (Frame, ViewGaze) {
         let error_rad = self.error_rad(scene, from);
-        let pose = Pose { heading: from.pose.heading.turned(-error_rad), ..from.pose };
-        (Frame { pose, ..from.clone() }, Gaze { heading: gaze.heading.turned(-error_rad), ..gaze })
+        let pose = Pose { heading: from.pose.heading.turned_by(-error_rad), ..from.pose };
+        (Frame { pose, ..from.clone() }, ViewGaze { heading: gaze.heading.turned_by(-error_rad), ..gaze })
     }
 
-    fn view_after(&self, look: Look<'_>, before: View) -> Result<View, PlatformError> {
+    fn view_after(&self, look: AlteredLook<'_>, before: View) -> Result<View, PlatformError> {
         let error_rad = self.error_rad(look.scene, look.from);
         let eye = before.pose.position;
-        let logged = |label: &mut Label| {
-            label.heading = label.heading.turned(error_rad);
+        let logged = |label: &mut ObjectLabel| {
+            label.heading = label.heading.turned_by(error_rad);
             label.position = label.position.map(|position| turned_about(eye, position, error_rad));
         };
         let mut after = with_labels(before, |labels| labels.iter_mut().for_each(logged));
-        after.pose.heading = after.pose.heading.turned(error_rad);
+        after.pose.heading = after.pose.heading.turned_by(error_rad);
         Ok(after)
     }
 
     fn path_after(&self, before: Path) -> Path {
-        self.logged(&before)
+        self.logged_path(&before)
     }
 }
 
@@ -80,7 +80,7 @@ fn turned_about(eye: DVec3, position: DVec3, rad: f64) -> DVec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::worlds::{Altered, testing::*};
+    use crate::worlds::{AlteredPlatform, testing::*};
     use wayword_core::{Heading, Platform};
 
     #[test]
@@ -91,18 +91,20 @@ mod tests {
             let [one, three] = [little, much].map(|noise| noise.error_rad(&scene, frame));
             assert!((three - 3.0 * one).abs() < 1e-12);
         }
-        assert_eq!(HeadingNoise { deg: 0.0, seed: 3 }.logged(&path).frames, path.frames);
+        assert_eq!(HeadingNoise { deg: 0.0, seed: 3 }.logged_path(&path).frames, path.frames);
     }
 
     #[test]
     fn the_camera_sees_the_same_and_the_log_puts_it_elsewhere() {
         let (scene, path) = walk();
         let noise = HeadingNoise { deg: 20.0, seed: 4 };
-        let log = noise.logged(&path);
+        let log = noise.logged_path(&path);
         for (truth, logged) in path.frames.iter().zip(&log.frames) {
             let error_rad = noise.error_rad(&scene, truth);
-            let seen = House.look(&scene, truth, Gaze::quarter(truth.pose.heading)).unwrap();
-            let noisy = Altered::new(House, noise).look(&scene, logged, Gaze::quarter(logged.pose.heading)).unwrap();
+            let seen = House.look_from(&scene, truth, ViewGaze::quarter_view(truth.pose.heading)).unwrap();
+            let noisy = AlteredPlatform::new(House, noise)
+                .look_from(&scene, logged, ViewGaze::quarter_view(logged.pose.heading))
+                .unwrap();
             // The wrong heading and back is the true one but for rounding, which can shift an edge by a pixel.
             assert!(mean_difference(&seen, &noisy) < 0.1);
             assert!(noisy.pose.heading.turn_to(logged.pose.heading).abs() < 1e-9);

@@ -5,7 +5,7 @@ use std::{
     sync::{Arc, LazyLock},
 };
 use wayword_core::{
-    Frame, Gaze, Label, ObjectId, Path, PathRequest, Platform, PlatformError, SceneId, View, ViewpointGraph,
+    Frame, ObjectId, ObjectLabel, Path, PathRequest, Platform, PlatformError, SceneId, View, ViewGaze, ViewpointGraph,
     ViewpointId,
 };
 use wayword_house::{HouseOptions, HousePlatform};
@@ -22,20 +22,20 @@ impl Platform for House {
         HOUSE.name()
     }
 
-    fn scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
-        HOUSE.scenes()
+    fn list_scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
+        HOUSE.list_scenes()
     }
 
-    fn graph(&self, scene: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {
-        HOUSE.graph(scene)
+    fn graph_for_scene(&self, scene: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {
+        HOUSE.graph_for_scene(scene)
     }
 
     fn sample_path(&self, scene: &SceneId, request: &PathRequest, seed: u64) -> Result<Path, PlatformError> {
         HOUSE.sample_path(scene, request, seed)
     }
 
-    fn look(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
-        HOUSE.look(scene, from, gaze)
+    fn look_from(&self, scene: &SceneId, from: &Frame, gaze: ViewGaze) -> Result<View, PlatformError> {
+        HOUSE.look_from(scene, from, gaze)
     }
 
     fn object_name(&self, scene: &SceneId, near: &Frame, object: &ObjectId) -> Result<Option<String>, PlatformError> {
@@ -60,13 +60,13 @@ pub(crate) fn walk_of(seed: u64) -> (SceneId, Path) {
 }
 
 /// The labels of a view.
-pub(crate) fn labels(view: &View) -> &[Label] {
+pub(crate) fn labels(view: &View) -> &[ObjectLabel] {
     &view.ground_truth().unwrap().labels
 }
 
 /// Mean difference of two pictures, levels of 255.
 pub(crate) fn mean_difference(a: &View, b: &View) -> f64 {
-    let [a, b] = [a, b].map(|view| view.image.as_ref().unwrap().rgb());
+    let [a, b] = [a, b].map(|view| view.image.as_ref().unwrap().rgb_bytes());
     assert_eq!(a.len(), b.len());
     a.iter().zip(b).map(|(a, b)| f64::from(a.abs_diff(*b))).sum::<f64>() / a.len() as f64
 }

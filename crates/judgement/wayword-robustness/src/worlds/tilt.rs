@@ -2,10 +2,12 @@
 
 mod resample;
 
-use super::{Alter, altered::Look};
-use resample::{GREY, Warp};
+use super::{WorldAlteration, altered::AlteredLook};
+use resample::{TiltWarp, UNREACHED_GREY_LEVEL};
 use std::sync::Arc;
-use wayword_core::{DMat3, DVec3, Depth, Frame, Gaze, GroundTruth, Image, Label, PlatformError, SceneId, View};
+use wayword_core::{
+    DMat3, DVec3, DepthImage, Frame, GroundTruth, Image, ObjectLabel, PlatformError, SceneId, View, ViewGaze,
+};
 
 /// Largest pitch and roll of a camera, degrees.
 const MOST_PITCH_DEG: f64 = 30.0;
@@ -16,7 +18,7 @@ const WIDEST_RAD: f64 = 2.6;
 
 /// Height over width of the pictures of all platforms that render. It is needed to choose the width of the level view before the
 /// picture exists. If a picture has another shape, its corners may be grey.
-const ASPECT: f64 = 0.75;
+const PICTURE_ASPECT_RATIO: f64 = 0.75;
 
 /// A tilted pinhole camera. Its picture is resampled from a wider level view by the homography of the rotation, so it is exact except
 /// for its sharpness. Parts that the wider view does not cover are grey.
@@ -27,7 +29,7 @@ const ASPECT: f64 = 0.75;
 ///
 /// A [`FieldOfView`](super::FieldOfView) wraps it from outside.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Tilt {
+pub struct CameraTilt {
     pitch_rad: f64,
     roll_rad: f64,
 }
@@ -43,7 +45,7 @@ pub enum TiltError {
     Roll(f64),
 }
 
-impl Tilt {
+impl CameraTilt {
     /// A camera that looks up by `pitch_deg` degrees and is then rolled clockwise by `roll_deg` degrees around the
     /// direction in which it looks.
     ///
@@ -83,54 +85,54 @@ impl Tilt {
         let level_from_tilted = self.level_from_tilted();
         let mut reach = half;
         for (right, up) in [(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)] {
-            let ray = level_from_tilted * DVec3::new(right * half, up * half * ASPECT, -1.0);
+            let ray = level_from_tilted * DVec3::new(right * half, up * half * PICTURE_ASPECT_RATIO, -1.0);
             let ahead = (-ray.z).max(1e-6);
-            reach = reach.max(ray.x.abs() / ahead).max(ray.y.abs() / ahead / ASPECT);
+            reach = reach.max(ray.x.abs() / ahead).max(ray.y.abs() / ahead / PICTURE_ASPECT_RATIO);
         }
         (2.0 * libm::atan(reach)).min(WIDEST_RAD)
     }
 }
 
-impl Alter for Tilt {
-    fn look_before(&self, _: &SceneId, from: &Frame, gaze: Gaze) -> (Frame, Gaze) {
-        (from.clone(), Gaze { horizontal_fov_rad: self.covering_rad(gaze.horizontal_fov_rad), ..gaze })
+impl WorldAlteration for CameraTilt {
+    fn look_before(&self, _: &SceneId, from: &Frame, gaze: ViewGaze) -> (Frame, ViewGaze) {
+        (from.clone(), ViewGaze { horizontal_fov_rad: self.covering_rad(gaze.horizontal_fov_rad), ..gaze })
     }
 
-    fn view_after(&self, look: Look<'_>, before: View) -> Result<View, PlatformError> {
+    fn view_after(&self, look: AlteredLook<'_>, before: View) -> Result<View, PlatformError> {
         if self.is_level() {
             return Ok(before);
         }
         let fov_rad = look.gaze.horizontal_fov_rad.min(before.horizontal_fov_rad);
         let size = before.image.as_ref().map(|image| [f64::from(image.width_px()), f64::from(image.height_px())]);
-        let warp = Warp {
+        let warp = TiltWarp {
             level_from_tilted: self.level_from_tilted(),
             level_tan: libm::tan(before.horizontal_fov_rad / 2.0),
             tilted_tan: libm::tan(fov_rad / 2.0),
-            size: size.unwrap_or([1.0, ASPECT]),
+            size: size.unwrap_or([1.0, PICTURE_ASPECT_RATIO]),
         };
-        let tilted = |label: Label| warp.label(label, look.gaze.heading, size.is_some());
+        let tilted = |label: ObjectLabel| warp.tilt_label(label, look.gaze.heading, size.is_some());
         let truth = before
             .ground_truth()
             .cloned()
             .map(|truth| GroundTruth { labels: truth.labels.into_iter().filter_map(tilted).collect(), ..truth });
-        let image = before.image.as_deref().map(|image| redrawn(&warp, image)).map(Arc::new);
+        let image = before.image.as_deref().map(|image| redraw_tilted(&warp, image)).map(Arc::new);
         let mut pose = before.pose;
         pose.elevation_rad += self.pitch_rad;
         Ok(View::new(pose, fov_rad, image, truth))
     }
 
-    fn depth_after(&self, before: Depth) -> Option<Depth> {
+    fn depth_after(&self, before: DepthImage) -> Option<DepthImage> {
         self.is_level().then_some(before)
     }
 }
 
 /// Resamples the tilted camera's picture, in the size of the level one.
-fn redrawn(warp: &Warp, level: &Image) -> Image {
-    let mut rgb = Vec::with_capacity(level.rgb().len());
+fn redraw_tilted(warp: &TiltWarp, level: &Image) -> Image {
+    let mut rgb = Vec::with_capacity(level.rgb_bytes().len());
     for y in 0..level.height_px() {
         for x in 0..level.width_px() {
             let place = warp.level_px([f64::from(x) + 0.5, f64::from(y) + 0.5]);
-            rgb.extend(place.map_or([GREY; 3], |place| resample::bilinear(level, place)));
+            rgb.extend(place.map_or([UNREACHED_GREY_LEVEL; 3], |place| resample::sample_bilinear(level, place)));
         }
     }
     Image::new(level.width_px(), level.height_px(), rgb).unwrap_or_else(|_| level.clone())

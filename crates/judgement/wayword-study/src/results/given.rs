@@ -1,24 +1,24 @@
 //! Collects the answers from which the figures are computed, and decides which participants count.
 //!
-//! An [`Answered`] is one item with its answer. For the figures it becomes one [`Given`] for each text that it judges, so a comparison
+//! An [`AnsweredItem`] is one item with its answer. For the figures it becomes one [`TextJudgement`] for each text that it judges, so a comparison
 //! of two texts becomes two.
 
-use super::{names::Names, walks::Walks};
-use crate::{Answer, Choice, Data, Item, Participant, Slot, SlotState, Status};
+use super::{names::ParticipantNames, walks::WalkScorer};
+use crate::{ItemSlot, PairChoice, Participant, ParticipantAnswer, ParticipantStatus, SlotState, StudyData, StudyItem};
 use std::collections::BTreeMap;
-use wayword_metrics::{Score, Trajectory};
+use wayword_metrics::{AgentTrajectory, TrajectoryScore};
 
 /// The judgement of one person on one text. A comparison of two texts gives two of them.
 #[derive(Debug, Clone)]
-pub(super) struct Given<'a> {
-    /// Index of the participant in [`Data`].
+pub(super) struct TextJudgement<'a> {
+    /// Index of the participant in [`StudyData`].
     pub(super) person: usize,
     pub(super) route: u32,
     /// Index of the text's condition in the plan.
     pub(super) condition: usize,
     /// The chosen levels, from 1 to 5, one for each question or statement.
     pub(super) levels: &'a [u8],
-    pub(super) walk: Option<&'a Score>,
+    pub(super) walk: Option<&'a TrajectoryScore>,
     pub(super) seconds: Option<f64>,
     pub(super) presses: Option<u32>,
     /// In a comparison: 1 if this text was preferred, 0.5 if neither was, else 0.
@@ -28,21 +28,24 @@ pub(super) struct Given<'a> {
 
 /// An item that a participant answered. Practice items are not among them.
 #[derive(Debug, Clone)]
-pub(super) struct Answered<'a> {
+pub(super) struct AnsweredItem<'a> {
     pub(super) person: usize,
     pub(super) participant: &'a Participant,
-    pub(super) slot: &'a Slot,
-    pub(super) item: &'a Item,
-    pub(super) answer: &'a Answer,
+    pub(super) slot: &'a ItemSlot,
+    pub(super) item: &'a StudyItem,
+    pub(super) answer: &'a ParticipantAnswer,
     /// The metrics of a walk; `None` for the other modes, and if they cannot be computed.
-    pub(super) score: Option<Score>,
+    pub(super) score: Option<TrajectoryScore>,
 }
 
 /// All answers of a study, sorted by participant and position, and a message for each answer without figures.
-pub(super) fn answered<'a>(data: &'a Data, names: &Names<'_>) -> (Vec<Answered<'a>>, Vec<String>) {
+pub(super) fn collect_answers<'a>(
+    data: &'a StudyData,
+    names: &ParticipantNames<'_>,
+) -> (Vec<AnsweredItem<'a>>, Vec<String>) {
     let people: BTreeMap<&str, (usize, &Participant)> =
         data.participants.iter().enumerate().map(|(at, person)| (person.id.as_str(), (at, person))).collect();
-    let mut walks = Walks::new(data);
+    let mut walks = WalkScorer::new(data);
     let (mut all, mut problems) = (Vec::new(), Vec::new());
     let mut strangers = 0usize;
     for slot in data.slots.iter().filter(|slot| slot.state == SlotState::Answered && slot.position.is_some()) {
@@ -53,16 +56,16 @@ pub(super) fn answered<'a>(data: &'a Data, names: &Names<'_>) -> (Vec<Answered<'
             strangers += 1;
             continue;
         };
-        let score = match (answer, walks.score(item.route, &slot.moves)) {
-            (Answer::Follow { .. }, Ok(score)) => Some(score),
-            (Answer::Follow { .. }, Err(why)) => {
-                let who = names.of(&participant.id);
+        let score = match (answer, walks.score_walk(item.route, &slot.moves)) {
+            (ParticipantAnswer::Follow { .. }, Ok(score)) => Some(score),
+            (ParticipantAnswer::Follow { .. }, Err(why)) => {
+                let who = names.name_for_id(&participant.id);
                 problems.push(format!("{who}'s walk of item {} has no figures: {why}", item.id));
                 None
             }
             _ => None,
         };
-        all.push(Answered { person, participant, slot, item, answer, score });
+        all.push(AnsweredItem { person, participant, slot, item, answer, score });
     }
     if strangers > 0 {
         problems.push(format!("{strangers} answers name no participant or item of the study; they are in no figure"));
@@ -74,112 +77,115 @@ pub(super) fn answered<'a>(data: &'a Data, names: &Names<'_>) -> (Vec<Answered<'
 /// A pause longer than this between two actions counts as an absence, and the time of the answer is then not known.
 const AWAY_MS: i64 = 10 * 60 * 1000;
 
-impl Answered<'_> {
+impl AnsweredItem<'_> {
     /// Seconds from getting the item to the answer, or in a walk to stopping. `None` if the participant was away in between, or the
     /// server's clock was changed.
-    pub(super) fn seconds(&self) -> Option<f64> {
+    pub(super) fn answer_seconds(&self) -> Option<f64> {
         let end = match self.answer {
-            Answer::Follow { stopped_ms, .. } => *stopped_ms,
-            Answer::Rate { .. } | Answer::Pair { .. } => self.slot.answered_ms?,
+            ParticipantAnswer::Follow { stopped_ms, .. } => *stopped_ms,
+            ParticipantAnswer::Rate { .. } | ParticipantAnswer::Pair { .. } => self.slot.answered_ms?,
         };
         let mut times = vec![self.slot.given_ms];
         times.extend(self.slot.moves.iter().map(|step| step.at_ms));
         times.push(end);
         let is_at_it = times.windows(2).all(|pair| (0..=AWAY_MS).contains(&(pair[1] - pair[0])));
-        is_at_it.then(|| seconds(self.slot.given_ms, end))
+        is_at_it.then(|| seconds_between(self.slot.given_ms, end))
     }
 
     /// In a walk: how often the participant pressed a button, to move or to look around.
-    pub(super) fn presses(&self) -> Option<u32> {
+    pub(super) fn count_presses(&self) -> Option<u32> {
         match self.answer {
-            Answer::Follow { looks, .. } => {
+            ParticipantAnswer::Follow { looks, .. } => {
                 Some(looks.saturating_add(u32::try_from(self.slot.moves.len()).unwrap_or(u32::MAX)))
             }
-            Answer::Rate { .. } | Answer::Pair { .. } => None,
+            ParticipantAnswer::Rate { .. } | ParticipantAnswer::Pair { .. } => None,
         }
     }
 
-    pub(super) fn levels(&self) -> &[u8] {
+    pub(super) fn chosen_levels(&self) -> &[u8] {
         match self.answer {
-            Answer::Follow { statements, .. } => statements,
-            Answer::Rate { ratings } => ratings,
-            Answer::Pair { .. } => &[],
+            ParticipantAnswer::Follow { statements, .. } => statements,
+            ParticipantAnswer::Rate { ratings } => ratings,
+            ParticipantAnswer::Pair { .. } => &[],
         }
     }
 
     /// Indices of the two texts of a comparison in the order in which they were shown: A, then B.
-    pub(super) fn sides(&self) -> [usize; 2] {
+    pub(super) fn shown_order(&self) -> [usize; 2] {
         if self.slot.is_turned { [1, 0] } else { [0, 1] }
     }
 
     /// In a comparison: the index of the text that was preferred, if one was.
-    pub(super) fn preferred(&self) -> Option<usize> {
+    pub(super) fn preferred_text(&self) -> Option<usize> {
         match self.answer {
-            Answer::Pair { choice: Choice::A } => Some(self.sides()[0]),
-            Answer::Pair { choice: Choice::B } => Some(self.sides()[1]),
+            ParticipantAnswer::Pair { choice: PairChoice::A } => Some(self.shown_order()[0]),
+            ParticipantAnswer::Pair { choice: PairChoice::B } => Some(self.shown_order()[1]),
             _ => None,
         }
     }
 
     /// Index of the condition of one of the item's texts.
-    pub(super) fn condition(&self, data: &Data, text: usize) -> Option<usize> {
+    pub(super) fn condition_of_text(&self, data: &StudyData, text: usize) -> Option<usize> {
         let told = self.item.texts.get(text)?;
         data.plan.conditions.iter().position(|condition| condition.name == told.condition)
     }
 
     /// Splits the answer into judgements, one for each text that was judged.
-    pub(super) fn given(&self, data: &Data) -> Vec<Given<'_>> {
+    pub(super) fn text_judgements(&self, data: &StudyData) -> Vec<TextJudgement<'_>> {
         let of_text = |text: usize| {
             let (gain, both_bad) = match self.answer {
-                Answer::Pair { choice } => {
-                    let gain = self.preferred().map_or(0.5, |preferred| f64::from(u8::from(preferred == text)));
-                    (Some(gain), Some(*choice == Choice::Bad))
+                ParticipantAnswer::Pair { choice } => {
+                    let gain = self.preferred_text().map_or(0.5, |preferred| f64::from(u8::from(preferred == text)));
+                    (Some(gain), Some(*choice == PairChoice::Bad))
                 }
-                Answer::Follow { .. } | Answer::Rate { .. } => (None, None),
+                ParticipantAnswer::Follow { .. } | ParticipantAnswer::Rate { .. } => (None, None),
             };
-            Some(Given {
+            Some(TextJudgement {
                 person: self.person,
                 route: self.item.route,
-                condition: self.condition(data, text)?,
-                levels: self.levels(),
+                condition: self.condition_of_text(data, text)?,
+                levels: self.chosen_levels(),
                 walk: self.score.as_ref(),
-                seconds: self.seconds(),
-                presses: self.presses(),
+                seconds: self.answer_seconds(),
+                presses: self.count_presses(),
                 gain,
                 both_bad,
             })
         };
-        let texts = if matches!(self.answer, Answer::Pair { .. }) { 2 } else { 1 };
+        let texts = if matches!(self.answer, ParticipantAnswer::Pair { .. }) { 2 } else { 1 };
         (0..texts).filter_map(of_text).collect()
     }
 }
 
 /// Seconds from one Unix time in milliseconds to another, not below 0.
-pub(super) fn seconds(from_ms: i64, to_ms: i64) -> f64 {
+pub(super) fn seconds_between(from_ms: i64, to_ms: i64) -> f64 {
     to_ms.saturating_sub(from_ms).max(0) as f64 / 1000.0
 }
 
 /// Which participants count in a version of the tables.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Whose {
+pub(super) enum ParticipantFilter {
     /// All participants except those who were screened out.
     Everybody,
     /// Only those who finished and passed the attention checks.
     Finished,
 }
 
-impl Whose {
-    pub(super) fn takes(self, participant: &Participant, most_failed: usize) -> bool {
+impl ParticipantFilter {
+    pub(super) fn accepts_participant(self, participant: &Participant, most_failed: usize) -> bool {
         let failed = participant.attention.iter().filter(|check| !check.passed).count();
         match self {
-            Self::Everybody => participant.status != Status::ScreenedOut,
-            Self::Finished => participant.status == Status::Complete && failed <= most_failed,
+            Self::Everybody => participant.status != ParticipantStatus::ScreenedOut,
+            Self::Finished => participant.status == ParticipantStatus::Complete && failed <= most_failed,
         }
     }
 }
 
 /// A walk as the metrics take it: its viewpoints, the start included.
-pub(super) fn trajectory(start: &wayword_core::ViewpointId, moves: &[crate::Move]) -> Trajectory {
+pub(super) fn walked_trajectory(
+    start: &wayword_core::ViewpointId,
+    moves: &[crate::ParticipantMove],
+) -> AgentTrajectory {
     let viewpoints = std::iter::once(start).chain(moves.iter().map(|step| &step.viewpoint)).cloned().collect();
-    Trajectory { viewpoints, object: None }
+    AgentTrajectory { viewpoints, object: None }
 }

@@ -3,23 +3,23 @@
 /// Longest name in a table, characters. Longer ones, which files may contain, are cut off.
 const MOST_NAME_CHARS: usize = 80;
 /// Replaces a character that cannot be shown.
-const REPLACED: char = '\u{fffd}';
+const REPLACEMENT_CHARACTER: char = '\u{fffd}';
 
 /// Replaces characters that act instead of being seen: control characters, and those that reverse the direction of the text around
 /// them. Ends of lines become `\n`, and tabs stay.
-pub(super) fn plain(text: &str) -> String {
+pub(super) fn strip_active_characters(text: &str) -> String {
     let lines = text.replace("\r\n", "\n").replace('\r', "\n");
-    lines.chars().map(|c| if is_active(c) && c != '\n' && c != '\t' { REPLACED } else { c }).collect()
+    lines.chars().map(|c| if is_active(c) && c != '\n' && c != '\t' { REPLACEMENT_CHARACTER } else { c }).collect()
 }
 
 /// Plain text on one line.
-pub(super) fn line(text: &str) -> String {
-    plain(text).split_whitespace().collect::<Vec<_>>().join(" ")
+pub(super) fn to_single_line(text: &str) -> String {
+    strip_active_characters(text).split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 /// A name from a file: plain, on one line, and not too long for a table.
-pub(super) fn name(text: &str) -> String {
-    let name = line(text);
+pub(super) fn to_table_name(text: &str) -> String {
+    let name = to_single_line(text);
     match name.char_indices().nth(MOST_NAME_CHARS) {
         Some((at, _)) => format!("{}…", &name[..at]),
         None if name.is_empty() => "(no name)".to_owned(),
@@ -34,9 +34,9 @@ fn is_active(c: char) -> bool {
 }
 
 /// Escapes text for Markdown, on one line.
-pub(super) fn markdown(text: &str) -> String {
+pub(super) fn escape_markdown(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
-    for c in line(text).chars() {
+    for c in to_single_line(text).chars() {
         match c {
             '<' => escaped.push_str("&lt;"),
             '>' => escaped.push_str("&gt;"),
@@ -49,9 +49,9 @@ pub(super) fn markdown(text: &str) -> String {
 }
 
 /// Escapes text for LaTeX, on one line.
-pub(super) fn latex(text: &str) -> String {
+pub(super) fn escape_latex(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
-    for c in line(text).chars() {
+    for c in to_single_line(text).chars() {
         match c {
             '\\' => escaped.push_str("\\textbackslash{}"),
             '~' => escaped.push_str("\\textasciitilde{}"),
@@ -66,7 +66,7 @@ pub(super) fn latex(text: &str) -> String {
             // At the beginning of a table row, `[` would begin an option of the `\\` before it.
             '[' => escaped.push_str("{[}"),
             '{' | '}' | '$' | '&' | '#' | '_' | '%' => escaped.extend(['\\', c]),
-            REPLACED => escaped.push('?'),
+            REPLACEMENT_CHARACTER => escaped.push('?'),
             c => escaped.push(c),
         }
     }
@@ -77,9 +77,9 @@ pub(super) fn latex(text: &str) -> String {
 ///
 /// A spreadsheet would compute a cell that begins like a formula (ASVS 5.0, 1.2.10), so that cell gets an apostrophe in front. A cell
 /// that already begins with an apostrophe gets one as well, so that a reader of the file can always take exactly one away.
-pub(super) fn cell(text: &str) -> String {
+pub(super) fn escape_csv_cell(text: &str) -> String {
     let begins = |c: char| matches!(c, '=' | '+' | '-' | '@' | '＝' | '＋' | '－' | '＠' | '−' | '\'');
     let is_formula = text.starts_with(['\t', '\r', '\n', '\0']) || text.trim_start().starts_with(begins);
-    let text = format!("{}{}", if is_formula { "'" } else { "" }, plain(text));
+    let text = format!("{}{}", if is_formula { "'" } else { "" }, strip_active_characters(text));
     if text.contains([',', '"', '\n', '\'', ';', '\t']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text }
 }

@@ -1,72 +1,76 @@
 //! Writes the results as Markdown.
 
 use super::{
-    Results,
-    inert::{self, markdown as escaped},
+    StudyReport,
+    inert::{self, escape_markdown as escaped},
     notes,
-    sheet::Sheet,
-    tables::{self, Table},
+    sheet::DataSheet,
+    tables::{self, ResultTable},
 };
 use std::fmt::Write;
 
 /// The whole report as Markdown. Its last section is the codebook: the meaning of every column of the CSV files.
-pub(super) fn markdown(results: &Results, sheets: &[Sheet]) -> String {
-    let mut page = format!("# {}\n\n{}\n\n", escaped(&inert::name(&results.title)), escaped(&notes::subject(results)));
-    for warning in notes::warnings(results) {
-        add(&mut page, format_args!("> **{}**\n\n", escaped(&warning)));
+pub(super) fn render_markdown(results: &StudyReport, sheets: &[DataSheet]) -> String {
+    let mut page = format!(
+        "# {}\n\n{}\n\n",
+        escaped(&inert::to_table_name(&results.title)),
+        escaped(&notes::describe_study(results))
+    );
+    for warning in notes::collect_warnings(results) {
+        append_text(&mut page, format_args!("> **{}**\n\n", escaped(&warning)));
     }
-    table(&mut page, 2, &tables::conditions(results));
+    add_table(&mut page, 2, &tables::condition_table(results));
     for version in &results.versions {
         let title = if version.name == "everybody" { "Figures: all answers" } else { "Figures: finished and passed" };
         let counts = format!("{} answers of {} persons.", version.answers, version.persons);
-        add(&mut page, format_args!("## {title}\n\n{} {counts}\n\n", escaped(version.rule)));
-        let paper = tables::of_the_paper(results, version);
-        let all = paper.into_iter().chain(tables::pairs(version)).chain([tables::figures(results, version)]);
-        for one in all.chain(tables::differences(results, version)) {
-            table(&mut page, 3, &one);
+        append_text(&mut page, format_args!("## {title}\n\n{} {counts}\n\n", escaped(version.rule)));
+        let paper = tables::paper_table(results, version);
+        let all = paper.into_iter().chain(tables::pair_tables(version)).chain([tables::figure_table(results, version)]);
+        for one in all.chain(tables::difference_table(results, version)) {
+            add_table(&mut page, 3, &one);
         }
-        for one in tables::levels(results, version, true).iter().chain([&tables::agreement(version)]) {
-            table(&mut page, 3, one);
+        for one in tables::level_tables(results, version, true).iter().chain([&tables::agreement_table(version)]) {
+            add_table(&mut page, 3, one);
         }
     }
     page.push_str("## People\n\n");
     let people = &results.people;
-    table(&mut page, 3, &tables::submissions(results));
-    table(&mut page, 3, &tables::attention(results));
-    table(&mut page, 3, &tables::handed("Drop-off by position", "Position", &people.by_position));
-    table(&mut page, 3, &tables::handed("Drop-off by condition", "Condition", &people.by_condition));
-    table(&mut page, 3, &tables::handed("Drop-off by item", "Item", &people.by_item));
+    add_table(&mut page, 3, &tables::submission_table(results));
+    add_table(&mut page, 3, &tables::attention_table(results));
+    add_table(&mut page, 3, &tables::handout_table("Drop-off by position", "Position", &people.by_position));
+    add_table(&mut page, 3, &tables::handout_table("Drop-off by condition", "Condition", &people.by_condition));
+    add_table(&mut page, 3, &tables::handout_table("Drop-off by item", "Item", &people.by_item));
     page.push_str("## How to read it\n\n");
-    for note in notes::notes(results) {
-        add(&mut page, format_args!("- {}\n", escaped(&note)));
+    for note in notes::collect_notes(results) {
+        append_text(&mut page, format_args!("- {}\n", escaped(&note)));
     }
     page.push('\n');
-    table(&mut page, 2, &tables::meanings(results));
-    if let Some(wording) = tables::wording(results) {
-        table(&mut page, 2, &wording);
+    add_table(&mut page, 2, &tables::meaning_table(results));
+    if let Some(wording) = tables::wording_table(results) {
+        add_table(&mut page, 2, &wording);
     }
-    codebook(&mut page, sheets);
+    add_codebook(&mut page, sheets);
     page
 }
 
-fn table(page: &mut String, depth: usize, table: &Table) {
-    add(page, format_args!("{} {}\n\n", "#".repeat(depth), escaped(&table.title)));
+fn add_table(page: &mut String, depth: usize, table: &ResultTable) {
+    append_text(page, format_args!("{} {}\n\n", "#".repeat(depth), escaped(&table.title)));
     if !table.rows.is_empty() {
         let heads: Vec<String> = table.heads.iter().map(|head| escaped(&head.text)).collect();
         let rules: Vec<&str> = table.heads.iter().map(|head| if head.is_number { "---:" } else { "---" }).collect();
-        add(page, format_args!("| {} |\n| {} |\n", heads.join(" | "), rules.join(" | ")));
+        append_text(page, format_args!("| {} |\n| {} |\n", heads.join(" | "), rules.join(" | ")));
         for row in &table.rows {
             let cells: Vec<String> = row.cells.iter().map(|cell| escaped(cell)).collect();
-            add(page, format_args!("| {} |\n", cells.join(" | ")));
+            append_text(page, format_args!("| {} |\n", cells.join(" | ")));
         }
         page.push('\n');
     }
     for note in &table.notes {
-        add(page, format_args!("{}\n\n", escaped(note)));
+        append_text(page, format_args!("{}\n\n", escaped(note)));
     }
 }
 
-fn codebook(page: &mut String, sheets: &[Sheet]) {
+fn add_codebook(page: &mut String, sheets: &[DataSheet]) {
     page.push_str("## Files\n\n");
     page.push_str(
         "CSV as in RFC 4180, UTF-8. Times are seconds after the participant's consent; no file has a clock or a date. Text that \
@@ -74,17 +78,17 @@ fn codebook(page: &mut String, sheets: &[Sheet]) {
          replaced by U+FFFD.\n\n",
     );
     for sheet in sheets {
-        add(page, format_args!("### {}\n\nA line is {}.\n\n", sheet.file, escaped(sheet.line)));
+        append_text(page, format_args!("### {}\n\nA line is {}.\n\n", sheet.file, escaped(sheet.line)));
         page.push_str("| Column | Meaning | Unit | Values |\n| --- | --- | --- | --- |\n");
         for column in &sheet.columns {
             let cells = [column.name, &column.meaning, column.unit, &column.values].map(escaped);
-            add(page, format_args!("| {} |\n", cells.join(" | ")));
+            append_text(page, format_args!("| {} |\n", cells.join(" | ")));
         }
         page.push('\n');
     }
 }
 
-fn add(page: &mut String, text: std::fmt::Arguments<'_>) {
+fn append_text(page: &mut String, text: std::fmt::Arguments<'_>) {
     // Writing to a text cannot fail.
     let _ = page.write_fmt(text);
 }

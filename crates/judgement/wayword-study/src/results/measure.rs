@@ -1,14 +1,14 @@
 //! The list of the figures that each mode of a study measures, with their names, units and meanings, and how each figure is read out
 //! of an answer.
 
-use super::given::Given;
-use crate::Mode;
+use super::given::TextJudgement;
+use crate::StudyTask;
 use serde::Serialize;
-use wayword_metrics::Score;
+use wayword_metrics::TrajectoryScore;
 
 /// A figure of a study.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Measure {
+pub struct StudyMeasure {
     /// Its name in files.
     pub name: &'static str,
     /// Its name in tables, without the unit.
@@ -16,13 +16,13 @@ pub struct Measure {
     /// Whether it is a share or a mean.
     pub kind: MeasureKind,
     /// The unit in which it is shown. Where this is per cent, the values themselves lie between 0 and 1.
-    pub unit: Unit,
+    pub unit: MeasureUnit,
     /// Its meaning, as a phrase for readers.
     pub meaning: &'static str,
     /// The lowest and the highest value that one answer can give; `None` where there is no bound.
     pub range: [Option<f64>; 2],
     #[serde(skip)]
-    of: Of,
+    of: MeasureSource,
 }
 
 /// How answers become a figure.
@@ -38,7 +38,7 @@ pub enum MeasureKind {
 /// The unit in which a figure is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Unit {
+pub enum MeasureUnit {
     /// Shown times a hundred.
     PerCent,
     /// Levels from 1 to 5.
@@ -53,8 +53,8 @@ pub enum Unit {
 
 /// Which part of an answer the value is read from.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Of {
-    Walk(Walked),
+enum MeasureSource {
+    Walk(WalkFigure),
     Seconds,
     Presses,
     Level(usize),
@@ -66,7 +66,7 @@ enum Of {
 
 /// A metric of a walk.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Walked {
+enum WalkFigure {
     Success,
     Spl,
     NavigationErrorM,
@@ -76,8 +76,8 @@ enum Walked {
     LengthM,
 }
 
-impl Walked {
-    fn of(self, score: &Score) -> Option<f64> {
+impl WalkFigure {
+    fn from_score(self, score: &TrajectoryScore) -> Option<f64> {
         let yes = |is: bool| f64::from(u8::from(is));
         match self {
             Self::Success => Some(yes(score.distance.success)),
@@ -91,55 +91,55 @@ impl Walked {
     }
 }
 
-impl Measure {
+impl StudyMeasure {
     /// All figures of a mode, in the order of the tables.
     #[must_use]
-    pub fn of_mode(mode: Mode) -> &'static [Self] {
+    pub fn for_mode(mode: StudyTask) -> &'static [Self] {
         match mode {
-            Mode::Follow => &FOLLOW,
-            Mode::Rate => &RATE,
-            Mode::Pair => &PAIR,
+            StudyTask::Follow => &FOLLOW_MEASURES,
+            StudyTask::Rate => &RATE_MEASURES,
+            StudyTask::Pair => &PAIR_MEASURES,
         }
     }
 
     /// The value of this figure for one judgement; `None` if the judgement has none.
-    pub(super) fn value(&self, given: &Given<'_>) -> Option<f64> {
+    pub(super) fn judgement_value(&self, given: &TextJudgement<'_>) -> Option<f64> {
         let level = |at: usize| given.levels.get(at).copied();
         let yes = |is: bool| f64::from(u8::from(is));
         match self.of {
-            Of::Walk(figure) => given.walk.and_then(|score| figure.of(score)),
-            Of::Seconds => given.seconds,
-            Of::Presses => given.presses.map(f64::from),
-            Of::Level(at) => level(at).map(f64::from),
-            Of::AtLeast(at, least) => level(at).map(|level| yes(level >= least)),
-            Of::AtMost(at, most) => level(at).map(|level| yes(level <= most)),
-            Of::Gain => given.gain,
-            Of::BothBad => given.both_bad.map(yes),
+            MeasureSource::Walk(figure) => given.walk.and_then(|score| figure.from_score(score)),
+            MeasureSource::Seconds => given.seconds,
+            MeasureSource::Presses => given.presses.map(f64::from),
+            MeasureSource::Level(at) => level(at).map(f64::from),
+            MeasureSource::AtLeast(at, least) => level(at).map(|level| yes(level >= least)),
+            MeasureSource::AtMost(at, most) => level(at).map(|level| yes(level <= most)),
+            MeasureSource::Gain => given.gain,
+            MeasureSource::BothBad => given.both_bad.map(yes),
         }
     }
 
     /// The figures of a walk, in the order of the tables.
-    pub(super) fn of_walks() -> impl Iterator<Item = &'static Self> {
-        FOLLOW.iter().filter(|measure| matches!(measure.of, Of::Walk(_)))
+    pub(super) fn walk_measures() -> impl Iterator<Item = &'static Self> {
+        FOLLOW_MEASURES.iter().filter(|measure| matches!(measure.of, MeasureSource::Walk(_)))
     }
 
     /// The value of this figure for one walk; `None` if it is not a figure of walks.
-    pub(super) fn of_walk(&self, score: &Score) -> Option<f64> {
+    pub(super) fn walk_value(&self, score: &TrajectoryScore) -> Option<f64> {
         match self.of {
-            Of::Walk(figure) => figure.of(score),
+            MeasureSource::Walk(figure) => figure.from_score(score),
             _ => None,
         }
     }
 
     /// The name with the unit, as the heading of a plot or table.
     #[must_use]
-    pub fn heading(&self) -> String {
+    pub fn heading_with_unit(&self) -> String {
         match self.unit {
-            Unit::PerCent => format!("{}, %", self.label),
-            Unit::Level => format!("{}, mean level 1 to 5", self.label),
-            Unit::Metres => format!("{}, m", self.label),
-            Unit::Seconds => format!("{}, s", self.label),
-            Unit::Count => self.label.to_owned(),
+            MeasureUnit::PerCent => format!("{}, %", self.label),
+            MeasureUnit::Level => format!("{}, mean level 1 to 5", self.label),
+            MeasureUnit::Metres => format!("{}, m", self.label),
+            MeasureUnit::Seconds => format!("{}, s", self.label),
+            MeasureUnit::Count => self.label.to_owned(),
         }
     }
 }
@@ -147,118 +147,153 @@ impl Measure {
 /// The names of the figures that count levels as arXiv 2403.11487 does.
 pub(super) const OF_THE_PAPER: [&str; 4] = ["similar_low", "accurate_high", "ghosts_any", "reachable_high"];
 
-const fn measure(
+const fn new_measure(
     name: &'static str,
     label: &'static str,
     kind: MeasureKind,
-    unit: Unit,
+    unit: MeasureUnit,
     meaning: &'static str,
-    of: Of,
-) -> Measure {
+    of: MeasureSource,
+) -> StudyMeasure {
     let range = match unit {
-        Unit::PerCent => [Some(0.0), Some(1.0)],
-        Unit::Level => [Some(1.0), Some(5.0)],
-        Unit::Metres | Unit::Seconds | Unit::Count => [Some(0.0), None],
+        MeasureUnit::PerCent => [Some(0.0), Some(1.0)],
+        MeasureUnit::Level => [Some(1.0), Some(5.0)],
+        MeasureUnit::Metres | MeasureUnit::Seconds | MeasureUnit::Count => [Some(0.0), None],
     };
-    Measure { name, label, kind, unit, meaning, range, of }
+    StudyMeasure { name, label, kind, unit, meaning, range, of }
 }
 
-const fn share(name: &'static str, label: &'static str, meaning: &'static str, of: Of) -> Measure {
-    measure(name, label, MeasureKind::Share, Unit::PerCent, meaning, of)
+const fn share_measure(
+    name: &'static str,
+    label: &'static str,
+    meaning: &'static str,
+    of: MeasureSource,
+) -> StudyMeasure {
+    new_measure(name, label, MeasureKind::Share, MeasureUnit::PerCent, meaning, of)
 }
 
-const fn mean(name: &'static str, label: &'static str, unit: Unit, meaning: &'static str, of: Of) -> Measure {
-    measure(name, label, MeasureKind::Mean, unit, meaning, of)
+const fn mean_measure(
+    name: &'static str,
+    label: &'static str,
+    unit: MeasureUnit,
+    meaning: &'static str,
+    of: MeasureSource,
+) -> StudyMeasure {
+    new_measure(name, label, MeasureKind::Mean, unit, meaning, of)
 }
 
-const fn level(name: &'static str, label: &'static str, meaning: &'static str, at: usize) -> Measure {
-    mean(name, label, Unit::Level, meaning, Of::Level(at))
+const fn level_measure(name: &'static str, label: &'static str, meaning: &'static str, at: usize) -> StudyMeasure {
+    mean_measure(name, label, MeasureUnit::Level, meaning, MeasureSource::Level(at))
 }
 
-const AGREES: &str = "share of level 4 or 5 (agree, strongly agree)";
+const AGREEMENT_SHARE_MEANING: &str = "share of level 4 or 5 (agree, strongly agree)";
 
-const FOLLOW: [Measure; 15] = [
-    share(
+const FOLLOW_MEASURES: [StudyMeasure; 15] = [
+    share_measure(
         "success",
         "SR",
         "success rate: stopped nearer than 3 m to the goal, along the graph",
-        Of::Walk(Walked::Success),
+        MeasureSource::Walk(WalkFigure::Success),
     ),
-    mean("spl", "SPL", Unit::PerCent, "success weighted by path length (Anderson et al. 2018)", Of::Walk(Walked::Spl)),
-    mean(
+    mean_measure(
+        "spl",
+        "SPL",
+        MeasureUnit::PerCent,
+        "success weighted by path length (Anderson et al. 2018)",
+        MeasureSource::Walk(WalkFigure::Spl),
+    ),
+    mean_measure(
         "navigation_error_m",
         "NE",
-        Unit::Metres,
+        MeasureUnit::Metres,
         "navigation error: from where the walk stopped to the goal, along the graph",
-        Of::Walk(Walked::NavigationErrorM),
+        MeasureSource::Walk(WalkFigure::NavigationErrorM),
     ),
-    mean("ndtw", "nDTW", Unit::PerCent, "normalised dynamic time warping", Of::Walk(Walked::Ndtw)),
-    mean("sdtw", "SDTW", Unit::PerCent, "nDTW of a success, 0 of a failure", Of::Walk(Walked::Sdtw)),
-    share(
+    mean_measure(
+        "ndtw",
+        "nDTW",
+        MeasureUnit::PerCent,
+        "normalised dynamic time warping",
+        MeasureSource::Walk(WalkFigure::Ndtw),
+    ),
+    mean_measure(
+        "sdtw",
+        "SDTW",
+        MeasureUnit::PerCent,
+        "nDTW of a success, 0 of a failure",
+        MeasureSource::Walk(WalkFigure::Sdtw),
+    ),
+    share_measure(
         "oracle_success",
         "OSR",
         "came nearer than 3 m to the goal at any point of the walk",
-        Of::Walk(Walked::OracleSuccess),
+        MeasureSource::Walk(WalkFigure::OracleSuccess),
     ),
-    mean("length_m", "TL", Unit::Metres, "length of the walk", Of::Walk(Walked::LengthM)),
-    mean("seconds", "Time", Unit::Seconds, "from getting the text to stopping", Of::Seconds),
-    mean("presses", "Presses", Unit::Count, "moves, and turns to look, as the page counted them", Of::Presses),
-    level("easy", "Easy", "the text was easy to follow", 0),
-    share("easy_high", "Easy: 4 or 5", AGREES, Of::AtLeast(0, 4)),
-    level("confident", "Confident", "confident to have gone the way that the text describes", 1),
-    share("confident_high", "Confident: 4 or 5", AGREES, Of::AtLeast(1, 4)),
-    level("demanding", "Demanding", "following the text was mentally demanding; lower is better", 2),
-    share("demanding_high", "Demanding: 4 or 5", AGREES, Of::AtLeast(2, 4)),
+    mean_measure("length_m", "TL", MeasureUnit::Metres, "length of the walk", MeasureSource::Walk(WalkFigure::LengthM)),
+    mean_measure("seconds", "Time", MeasureUnit::Seconds, "from getting the text to stopping", MeasureSource::Seconds),
+    mean_measure(
+        "presses",
+        "Presses",
+        MeasureUnit::Count,
+        "moves, and turns to look, as the page counted them",
+        MeasureSource::Presses,
+    ),
+    level_measure("easy", "Easy", "the text was easy to follow", 0),
+    share_measure("easy_high", "Easy: 4 or 5", AGREEMENT_SHARE_MEANING, MeasureSource::AtLeast(0, 4)),
+    level_measure("confident", "Confident", "confident to have gone the way that the text describes", 1),
+    share_measure("confident_high", "Confident: 4 or 5", AGREEMENT_SHARE_MEANING, MeasureSource::AtLeast(1, 4)),
+    level_measure("demanding", "Demanding", "following the text was mentally demanding; lower is better", 2),
+    share_measure("demanding_high", "Demanding: 4 or 5", AGREEMENT_SHARE_MEANING, MeasureSource::AtLeast(2, 4)),
 ];
 
-const RATE: [Measure; 9] = [
-    level("similar", "Similar", "how similar the text is to one that the participant would write", 0),
-    share(
+const RATE_MEASURES: [StudyMeasure; 9] = [
+    level_measure("similar", "Similar", "how similar the text is to one that the participant would write", 0),
+    share_measure(
         "similar_high",
         "Similar: 4 or 5",
         "share of level 4 or 5 (mostly similar, almost the same)",
-        Of::AtLeast(0, 4),
+        MeasureSource::AtLeast(0, 4),
     ),
-    share(
+    share_measure(
         "similar_low",
         "Similar: 1 or 2",
         "share of level 1 or 2 (very different, minor overlaps); lower is better; the paper's first question",
-        Of::AtMost(0, 2),
+        MeasureSource::AtMost(0, 2),
     ),
-    level("accurate", "Accurate", "how accurately the text describes the walk", 1),
-    share(
+    level_measure("accurate", "Accurate", "how accurately the text describes the walk", 1),
+    share_measure(
         "accurate_high",
         "Accurate: 4 or 5",
         "share of level 4 or 5, more than decent; the paper's second question",
-        Of::AtLeast(1, 4),
+        MeasureSource::AtLeast(1, 4),
     ),
-    level(
+    level_measure(
         "ghosts",
         "Ghosts",
         "how many things the text names that were not seen, from 1 (none) to 5 (more than three); lower is better",
         2,
     ),
-    share(
+    share_measure(
         "ghosts_any",
         "Ghosts: any",
         "share of level 2 or more, at least one ghost; lower is better; the paper's third question",
-        Of::AtLeast(2, 2),
+        MeasureSource::AtLeast(2, 2),
     ),
-    level("reachable", "Reachable", "whether a robot could reach the end of the walk by the text", 3),
-    share(
+    level_measure("reachable", "Reachable", "whether a robot could reach the end of the walk by the text", 3),
+    share_measure(
         "reachable_high",
         "Reachable: 4 or 5",
         "share of level 4 or 5 (probably, certainly); the paper's fourth question",
-        Of::AtLeast(3, 4),
+        MeasureSource::AtLeast(3, 4),
     ),
 ];
 
-const PAIR: [Measure; 2] = [
-    share(
+const PAIR_MEASURES: [StudyMeasure; 2] = [
+    share_measure(
         "gain",
         "Preferred",
         "over all comparisons in which the condition took part: 1 where its text was preferred, a half for a tie and for both bad, else 0",
-        Of::Gain,
+        MeasureSource::Gain,
     ),
-    share("both_bad", "Both bad", "comparisons in which neither text was good", Of::BothBad),
+    share_measure("both_bad", "Both bad", "comparisons in which neither text was good", MeasureSource::BothBad),
 ];

@@ -1,7 +1,7 @@
 //! Computes the results of a study: figures with intervals, agreement between participants, participation, and the files that report
 //! them.
 //!
-//! Everything is computed from [`Data`] alone, so the same answers give the same files. Texts that participants wrote appear only in
+//! Everything is computed from [`StudyData`] alone, so the same answers give the same files. Texts that participants wrote appear only in
 //! `answers.csv`, and never in a table or on a page.
 
 mod given;
@@ -24,25 +24,25 @@ mod walks;
 mod words;
 mod write;
 
-pub use measure::{Measure, MeasureKind, Unit};
-pub use outlook::{Found, Outlook, Planned};
-pub use pairs::{PairRow, Pairs, Strengths};
-pub use people::{Attention, Failed, Handed, People};
-pub use version::{Agreed, Less, Row, Version};
+pub use measure::{MeasureKind, MeasureUnit, StudyMeasure};
+pub use outlook::{DetectableDifference, PlannedCondition, StudyOutlook};
+pub use pairs::{ConditionStrengths, PairResults, PairRow};
+pub use people::{AttentionSummary, FailedChecks, HandoutCounts, ParticipantSummary};
+pub use version::{ConditionDifference, ConditionRow, QuestionAgreement, ResultVersion};
 
-use crate::{Data, Mode, StudyError, wording};
-use given::Whose;
-use names::Names;
+use crate::{StudyData, StudyError, StudyTask, wording};
+use given::ParticipantFilter;
+use names::ParticipantNames;
 use serde::Serialize;
-use sheet::Sheet;
-use sheets::Sources;
+use sheet::DataSheet;
+use sheets::SheetSources;
 
 /// Confidence level of all intervals.
-const LEVEL: f64 = 0.95;
+const CONFIDENCE_LEVEL: f64 = 0.95;
 
 /// All results of a study, as `results.json` contains them.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Results {
+pub struct StudyReport {
     /// Name and version of the file format.
     pub format: &'static str,
     /// The version of Wayword that made it.
@@ -50,7 +50,7 @@ pub struct Results {
     /// What the study is called.
     pub title: String,
     /// What people did.
-    pub mode: Mode,
+    pub mode: StudyTask,
     /// The style of the texts.
     pub style: String,
     /// Seed of everything random.
@@ -62,28 +62,28 @@ pub struct Results {
     /// Confidence level of the intervals.
     pub level: f64,
     /// The conditions of the plan.
-    pub conditions: Vec<crate::Condition>,
+    pub conditions: Vec<crate::StudyCondition>,
     /// The questions or statements, with the words of their levels.
-    pub scales: &'static [wording::Scale],
+    pub scales: &'static [wording::RatingScale],
     /// The figures of this mode, with their meanings.
-    pub measures: &'static [Measure],
+    pub measures: &'static [StudyMeasure],
     /// The values of the figures: for all participants, and for those who finished and passed the attention checks.
-    pub versions: [Version; 2],
+    pub versions: [ResultVersion; 2],
     /// Who took part, and where people stopped.
-    pub people: People,
+    pub people: ParticipantSummary,
     /// Problems of the data, in words.
     pub problems: Vec<String>,
     /// The CSV files.
     #[serde(skip)]
-    sheets: Vec<Sheet>,
+    sheets: Vec<DataSheet>,
 }
 
 /// The questions or statements of a mode.
-fn scales(mode: Mode) -> &'static [wording::Scale] {
+fn scales_for_mode(mode: StudyTask) -> &'static [wording::RatingScale] {
     match mode {
-        Mode::Follow => &wording::STATEMENTS,
-        Mode::Rate => &wording::QUESTIONS,
-        Mode::Pair => &[],
+        StudyTask::Follow => &wording::FOLLOW_STATEMENTS,
+        StudyTask::Rate => &wording::RATE_QUESTIONS,
+        StudyTask::Pair => &[],
     }
 }
 
@@ -92,18 +92,21 @@ fn scales(mode: Mode) -> &'static [wording::Scale] {
 ///
 /// # Errors
 /// When the study has no conditions.
-pub fn results(data: &Data, now_ms: i64) -> Result<Results, StudyError> {
+pub fn compute_results(data: &StudyData, now_ms: i64) -> Result<StudyReport, StudyError> {
     if data.plan.conditions.is_empty() {
-        return Err(StudyError::refused("the study has no conditions", "put back plan.json as `study new` wrote it"));
+        return Err(StudyError::refused_request(
+            "the study has no conditions",
+            "put back plan.json as `study new` wrote it",
+        ));
     }
-    let names = Names::new(data);
-    let (answered, problems) = given::answered(data, &names);
+    let names = ParticipantNames::new(data);
+    let (answered, problems) = given::collect_answers(data, &names);
     let most_failed = data.settings.most_failed();
-    let version = |whose| Version::new(data, &answered, whose, most_failed);
-    let people = People::new(data, &names, &answered, now_ms);
-    let sources = Sources { data, names: &names, answered: &answered, most_failed };
-    let sheets = sources.sheets(&people);
-    Ok(Results {
+    let version = |whose| ResultVersion::new(data, &answered, whose, most_failed);
+    let people = ParticipantSummary::new(data, &names, &answered, now_ms);
+    let sources = SheetSources { data, names: &names, answered: &answered, most_failed };
+    let sheets = sources.all_sheets(&people);
+    Ok(StudyReport {
         format: "wayword-study-results/1",
         wayword: env!("CARGO_PKG_VERSION"),
         title: data.settings.title.clone(),
@@ -112,11 +115,11 @@ pub fn results(data: &Data, now_ms: i64) -> Result<Results, StudyError> {
         seed: data.plan.seed,
         is_closed: data.is_closed,
         write_first: data.settings.write_first,
-        level: LEVEL,
+        level: CONFIDENCE_LEVEL,
         conditions: data.plan.conditions.clone(),
-        scales: scales(data.plan.mode),
-        measures: Measure::of_mode(data.plan.mode),
-        versions: [version(Whose::Everybody), version(Whose::Finished)],
+        scales: scales_for_mode(data.plan.mode),
+        measures: StudyMeasure::for_mode(data.plan.mode),
+        versions: [version(ParticipantFilter::Everybody), version(ParticipantFilter::Finished)],
         people,
         problems,
         sheets,

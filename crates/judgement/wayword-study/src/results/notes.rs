@@ -1,37 +1,39 @@
 //! Writes the sentences around the tables: a summary of the study, warnings, and how to read the figures.
 
-use super::{Results, Version, words};
-use crate::Mode;
+use super::{ResultVersion, StudyReport, words};
+use crate::StudyTask;
 use std::collections::BTreeSet;
-use wayword_metrics::Method;
+use wayword_metrics::IntervalMethod;
 
 /// A summary of the study: task, answers, persons, and whether it is closed.
-pub(super) fn subject(results: &Results) -> String {
+pub(super) fn describe_study(results: &StudyReport) -> String {
     let [everybody, _] = &results.versions;
     let task = match results.mode {
-        Mode::Follow => "people walked by the text alone",
-        Mode::Rate => "people watched a walk and rated a text about it",
-        Mode::Pair => "people watched a walk and chose between two texts about it",
+        StudyTask::Follow => "people walked by the text alone",
+        StudyTask::Rate => "people watched a walk and rated a text about it",
+        StudyTask::Pair => "people watched a walk and chose between two texts about it",
     };
-    let answers = words::count(everybody.answers, "answer", "answers");
-    let persons = words::count(everybody.persons, "person", "persons");
+    let answers = words::count_with_noun(everybody.answers, "answer", "answers");
+    let persons = words::count_with_noun(everybody.persons, "person", "persons");
     let state = if results.is_closed { "closed" } else { "not closed yet, so the figures can change" };
     let style = if results.style.is_empty() {
         String::new()
     } else {
-        format!(" Style of the texts: {}.", super::inert::name(&results.style))
+        format!(" Style of the texts: {}.", super::inert::to_table_name(&results.style))
     };
     format!("Mode {}: {task}. {answers} of {persons}. The study is {state}.{style}", results.mode.name())
 }
 
 /// Warnings that a reader has to see first: problems of the data, no answers, no control condition.
-pub(super) fn warnings(results: &Results) -> Vec<String> {
+pub(super) fn collect_warnings(results: &StudyReport) -> Vec<String> {
     let [everybody, _] = &results.versions;
     let mut warnings = Vec::new();
     if everybody.answers == 0 {
         warnings.push("There are no answers yet.".to_owned());
     }
-    if results.mode != Mode::Pair && !results.conditions.iter().any(|condition| condition.kind != crate::Kind::Run) {
+    if results.mode != StudyTask::Pair
+        && !results.conditions.iter().any(|condition| condition.kind != crate::ConditionKind::Run)
+    {
         warnings.push(
             "There is no control: no text of people and none of another path. So nothing shows how well a good or a wrong text does \
              here.".to_owned(),
@@ -42,7 +44,7 @@ pub(super) fn warnings(results: &Results) -> Vec<String> {
 }
 
 /// The names of the methods by which any interval of the tables was computed.
-fn methods(versions: &[Version]) -> BTreeSet<&'static str> {
+fn used_method_names(versions: &[ResultVersion]) -> BTreeSet<&'static str> {
     let of_rows = versions
         .iter()
         .flat_map(|version| &version.rows)
@@ -52,17 +54,17 @@ fn methods(versions: &[Version]) -> BTreeSet<&'static str> {
     let pairs = versions.iter().filter_map(|version| version.pairs.as_ref());
     let of_pairs =
         pairs.flat_map(|pairs| pairs.rows.iter().filter_map(|row| row.share.as_ref()).map(|share| share.method));
-    of_rows.chain(of_less).chain(of_pairs).map(words::method).collect()
+    of_rows.chain(of_less).chain(of_pairs).map(words::method_name).collect()
 }
 
 /// The methods by which intervals were computed, in the order in which the notes explain them.
-pub(super) fn used(versions: &[Version]) -> Vec<Method> {
-    let used = methods(versions);
-    words::METHODS.into_iter().filter(|method| used.contains(words::method(*method))).collect()
+pub(super) fn used_methods(versions: &[ResultVersion]) -> Vec<IntervalMethod> {
+    let used = used_method_names(versions);
+    words::ALL_METHODS.into_iter().filter(|method| used.contains(words::method_name(*method))).collect()
 }
 
 /// Explains how to read the figures, one note for each point.
-pub(super) fn notes(results: &Results) -> Vec<String> {
+pub(super) fn collect_notes(results: &StudyReport) -> Vec<String> {
     let mut notes = vec![
         "Practice is in no figure. Neither are answers of those who did not understand the task in two tries.".to_owned(),
         "Every figure is given twice: from all answers, and without those who failed attention checks or did not finish. Decide before the \
@@ -72,8 +74,8 @@ pub(super) fn notes(results: &Results) -> Vec<String> {
          where the scale ends."
             .to_owned(),
     ];
-    for method in used(&results.versions) {
-        notes.push(format!("Interval by {}: {}.", words::method(method), words::meaning(method)));
+    for method in used_methods(&results.versions) {
+        notes.push(format!("Interval by {}: {}.", words::method_name(method), words::method_meaning(method)));
     }
     if results.versions.iter().any(|version| !version.differences.is_empty()) {
         notes.push(
@@ -82,14 +84,14 @@ pub(super) fn notes(results: &Results) -> Vec<String> {
                 .to_owned(),
         );
     }
-    if results.mode == Mode::Follow {
+    if results.mode == StudyTask::Follow {
         notes.push(
             "Distances go along the viewpoint graph. A success is less than 3 m from the \
              goal. A walk to a goal that cannot be reached has no NE and is in no mean of it."
                 .to_owned(),
         );
     }
-    if results.mode == Mode::Rate {
+    if results.mode == StudyTask::Rate {
         notes.push(
             "A ghost is a thing that the text names and the participant did not see; whoever \
              overlooked it in the film reports one too."

@@ -3,20 +3,20 @@
 use super::{
     inert,
     sheets::kind_name,
-    words::{count, number},
+    words::{count_with_noun, format_number},
 };
-use crate::{Item, Kind, Mode, Plan, Settings};
+use crate::{ConditionKind, StudyDesign, StudyItem, StudySettings, StudyTask};
 use serde::Serialize;
 use std::{collections::BTreeSet, fmt};
-use wayword_metrics::{Detectable, detectable};
+use wayword_metrics::{DetectableShareDifference, detectable_difference};
 
 /// The needs of a planned study, and the smallest differences that it detects. `study plan` prints this.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Outlook {
+pub struct StudyOutlook {
     /// What people do.
-    pub mode: Mode,
+    pub mode: StudyTask,
     /// How many items each condition has; an item of two texts counts for both.
-    pub conditions: Vec<Planned>,
+    pub conditions: Vec<PlannedCondition>,
     /// All items, without those of practice.
     pub items: usize,
     /// The routes of these items.
@@ -38,23 +38,23 @@ pub struct Outlook {
     /// The share around which the two conditions are assumed to lie.
     pub base_share: f64,
     /// The smallest detectable differences, each under another assumption of how much persons and routes differ.
-    pub detectable: Vec<Found>,
+    pub detectable: Vec<DetectableDifference>,
 }
 
 /// How many items a condition has.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct Planned {
+pub struct PlannedCondition {
     /// The condition.
     pub condition: String,
     /// Where its texts come from.
-    pub kind: Kind,
+    pub kind: ConditionKind,
     /// The number of its items.
     pub items: usize,
 }
 
 /// The smallest difference that a study detects, under one assumption of how much persons and routes differ.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Found {
+pub struct DetectableDifference {
     /// How much they differ: `none`, `middle` or `large`.
     pub effects: &'static str,
     /// The standard deviation of persons, and of routes, on the logit scale.
@@ -69,19 +69,19 @@ pub struct Found {
 }
 
 /// Three assumptions of how much persons and routes differ: a name, and the standard deviation on the logit scale.
-const EFFECTS: [(&str, f64); 3] = [("none", 0.0), ("middle", 0.75), ("large", 1.5)];
-const POWER: f64 = 0.8;
-const SIGNIFICANCE: f64 = 0.05;
+const LOGIT_SPREADS: [(&str, f64); 3] = [("none", 0.0), ("middle", 0.75), ("large", 1.5)];
+const TEST_POWER: f64 = 0.8;
+const TEST_SIGNIFICANCE: f64 = 0.05;
 /// The assumed share. Around a half, a difference is hardest to detect.
-const BASE: f64 = 0.5;
+const BASE_SHARE: f64 = 0.5;
 
-impl Outlook {
+impl StudyOutlook {
     /// Computes the outlook from the plan and the items.
     #[must_use]
-    pub fn new(plan: &Plan, settings: &Settings, items: &[Item]) -> Self {
-        let items: Vec<&Item> = items.iter().filter(|item| !item.is_practice).collect();
-        let has = |item: &Item, name: &str| item.texts.iter().any(|told| told.condition == name);
-        let conditions = plan.conditions.iter().map(|condition| Planned {
+    pub fn new(plan: &StudyDesign, settings: &StudySettings, items: &[StudyItem]) -> Self {
+        let items: Vec<&StudyItem> = items.iter().filter(|item| !item.is_practice).collect();
+        let has = |item: &StudyItem, name: &str| item.texts.iter().any(|told| told.condition == name);
+        let conditions = plan.conditions.iter().map(|condition| PlannedCondition {
             condition: condition.name.clone(),
             kind: condition.kind,
             items: items.iter().filter(|item| has(item, &condition.name)).count(),
@@ -101,21 +101,23 @@ impl Outlook {
             per_participant,
             participants,
             minutes: settings.minutes,
-            power: POWER,
-            significance: SIGNIFICANCE,
-            base_share: BASE,
+            power: TEST_POWER,
+            significance: TEST_SIGNIFICANCE,
+            base_share: BASE_SHARE,
             detectable: Vec::new(),
         };
-        outlook.detectable = EFFECTS.iter().map(|(effects, sd)| outlook.found(effects, *sd, &items)).collect();
+        outlook.detectable =
+            LOGIT_SPREADS.iter().map(|(effects, sd)| outlook.detectable_difference(effects, *sd, &items)).collect();
         outlook
     }
 
-    fn found(&self, effects: &'static str, sd: f64, items: &[&Item]) -> Found {
-        let plan = if self.mode == Mode::Pair { self.of_pairs(sd) } else { self.of_two(sd, items) };
-        let found: Option<Detectable> = plan.and_then(|plan| detectable(&plan, POWER, SIGNIFICANCE));
+    fn detectable_difference(&self, effects: &'static str, sd: f64, items: &[&StudyItem]) -> DetectableDifference {
+        let plan = if self.mode == StudyTask::Pair { self.of_pairs(sd) } else { self.of_two(sd, items) };
+        let found: Option<DetectableShareDifference> =
+            plan.and_then(|plan| detectable_difference(&plan, TEST_POWER, TEST_SIGNIFICANCE));
         // One share against a half has half the variance of a difference between two.
-        let of_one = if self.mode == Mode::Pair { std::f64::consts::FRAC_1_SQRT_2 } else { 1.0 };
-        Found {
+        let of_one = if self.mode == StudyTask::Pair { std::f64::consts::FRAC_1_SQRT_2 } else { 1.0 };
+        DetectableDifference {
             effects,
             sd,
             difference: found.map(|found| of_one * found.difference),
@@ -125,21 +127,21 @@ impl Outlook {
     }
 
     /// The power calculation for two conditions, with their share of the answers.
-    fn of_two(&self, sd: f64, items: &[&Item]) -> Option<wayword_metrics::Plan> {
+    fn of_two(&self, sd: f64, items: &[&StudyItem]) -> Option<wayword_metrics::PowerPlan> {
         let [first, second] = self.conditions.get(..2)? else { return None };
         let routes = |name: &str| -> BTreeSet<u32> {
-            let of = |item: &&&Item| item.texts.iter().any(|told| told.condition == name);
+            let of = |item: &&&StudyItem| item.texts.iter().any(|told| told.condition == name);
             items.iter().filter(of).map(|item| item.route).collect()
         };
         let (first, second) = (routes(&first.condition), routes(&second.condition));
         let shared = first.intersection(&second).count();
         let all = first.union(&second).count();
         let each = 2.0 * self.per_participant as f64 / self.conditions.len() as f64;
-        Some(wayword_metrics::Plan {
+        Some(wayword_metrics::PowerPlan {
             persons: (self.participants as f64 * each.min(1.0)).round() as usize,
             items: all,
             answers_per_person: (each.round() as usize).max(1),
-            base_share: BASE,
+            base_share: BASE_SHARE,
             person_sd: sd,
             item_sd: sd,
             persons_see_both: each >= 2.0,
@@ -148,15 +150,15 @@ impl Outlook {
     }
 
     /// The power calculation for comparisons of two conditions. It is one share, which has half the variance of a difference between two.
-    fn of_pairs(&self, sd: f64) -> Option<wayword_metrics::Plan> {
+    fn of_pairs(&self, sd: f64) -> Option<wayword_metrics::PowerPlan> {
         let conditions = self.conditions.len();
         let pairs = (conditions * conditions.saturating_sub(1) / 2).max(1);
         let each = self.per_participant as f64 / pairs as f64;
-        (conditions > 1).then(|| wayword_metrics::Plan {
+        (conditions > 1).then(|| wayword_metrics::PowerPlan {
             persons: 2 * (self.participants as f64 * each.min(1.0)).round() as usize,
             items: 2 * self.routes,
             answers_per_person: (each.round() as usize).max(1),
-            base_share: BASE,
+            base_share: BASE_SHARE,
             person_sd: sd,
             item_sd: sd,
             persons_see_both: false,
@@ -165,30 +167,35 @@ impl Outlook {
     }
 }
 
-impl fmt::Display for Outlook {
+impl fmt::Display for StudyOutlook {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "mode          {}", self.mode.name())?;
         writeln!(f, "items         {} on {} routes", self.items, self.routes)?;
         for planned in &self.conditions {
-            let kind =
-                if planned.kind == Kind::Run { String::new() } else { format!(" ({})", kind_name(planned.kind)) };
-            writeln!(f, "  {:<11} {}{kind}", planned.items, inert::name(&planned.condition))?;
+            let kind = if planned.kind == ConditionKind::Run {
+                String::new()
+            } else {
+                format!(" ({})", kind_name(planned.kind))
+            };
+            writeln!(f, "  {:<11} {}{kind}", planned.items, inert::to_table_name(&planned.condition))?;
         }
         writeln!(f, "answers       {}: {} of each item", self.answers, self.per_item)?;
         writeln!(
             f,
             "participants  {}, if all finish: {} each",
             self.participants,
-            count(self.per_participant, "item", "items")
+            count_with_noun(self.per_participant, "item", "items")
         )?;
         writeln!(f, "minutes each  {}", self.minutes)?;
         let what = match self.mode {
-            Mode::Pair => "share of two compared conditions, in points from an even split",
-            Mode::Follow | Mode::Rate => "difference between the shares of two conditions near 50 %, in points",
+            StudyTask::Pair => "share of two compared conditions, in points from an even split",
+            StudyTask::Follow | StudyTask::Rate => {
+                "difference between the shares of two conditions near 50 %, in points"
+            }
         };
         writeln!(f, "\nThe smallest {what},\nthat 4 of 5 such studies find (two-sided test at 5 %):")?;
         for found in &self.detectable {
-            let points = found.difference.map_or_else(|| "none".to_owned(), |share| number(100.0 * share, 0));
+            let points = found.difference.map_or_else(|| "none".to_owned(), |share| format_number(100.0 * share, 0));
             let words = match found.effects {
                 "none" => "if persons and routes are all alike",
                 "middle" => "if they differ (standard deviation 0.75 on the logit scale)",
@@ -196,13 +203,13 @@ impl fmt::Display for Outlook {
             };
             writeln!(f, "  {points:<5} {words}")?;
         }
-        if self.mode != Mode::Pair {
+        if self.mode != StudyTask::Pair {
             writeln!(
                 f,
                 "What a person or a route does to both conditions alike cancels; where it does not, the study finds less."
             )?;
         }
-        if self.conditions.iter().all(|planned| planned.kind == Kind::Run) && self.mode != Mode::Pair {
+        if self.conditions.iter().all(|planned| planned.kind == ConditionKind::Run) && self.mode != StudyTask::Pair {
             writeln!(
                 f,
                 "\nThere is no control. --include people,other-path shows how well a good and a wrong text do."

@@ -1,10 +1,10 @@
 //! Writes the results as one HTML page, which runs no scripts and loads nothing from elsewhere.
 
 use super::{
-    Results, Version, inert, notes,
-    plot::{self, Bars, DropOff, Forest, Matrix},
-    sheet::Sheet,
-    tables::{self, Table},
+    ResultVersion, StudyReport, inert, notes,
+    plot::{self, DropOff, ForestPlot, LevelBars, WinMatrix},
+    sheet::DataSheet,
+    tables::{self, ResultTable},
 };
 use crate::StudyError;
 use minijinja::{AutoEscape, Environment, UndefinedBehavior, context};
@@ -16,15 +16,15 @@ struct VersionView {
     name: &'static str,
     title: &'static str,
     rule: String,
-    paper: Option<Table>,
-    forests: Vec<Forest>,
-    less: Vec<Forest>,
+    paper: Option<ResultTable>,
+    forests: Vec<ForestPlot>,
+    less: Vec<ForestPlot>,
     minus: String,
-    bars: Vec<Bars>,
-    matrix: Option<Matrix>,
-    pairs: Vec<Table>,
-    agreement: Table,
-    folded: Vec<Table>,
+    bars: Vec<LevelBars>,
+    matrix: Option<WinMatrix>,
+    pairs: Vec<ResultTable>,
+    agreement: ResultTable,
+    folded: Vec<ResultTable>,
 }
 
 /// A file as the template takes it.
@@ -36,32 +36,34 @@ struct FileView {
 }
 
 impl VersionView {
-    fn new(results: &Results, version: &Version) -> Self {
-        let levels = tables::levels(results, version, true);
-        let folded =
-            [tables::figures(results, version)].into_iter().chain(tables::differences(results, version)).chain(levels);
+    fn new(results: &StudyReport, version: &ResultVersion) -> Self {
+        let levels = tables::level_tables(results, version, true);
+        let folded = [tables::figure_table(results, version)]
+            .into_iter()
+            .chain(tables::difference_table(results, version))
+            .chain(levels);
         Self {
             name: version.name,
             title: if version.name == "everybody" { "All answers" } else { "Finished and passed" },
             rule: format!("{} {} answers of {} persons.", version.rule, version.answers, version.persons),
-            paper: tables::of_the_paper(results, version),
-            forests: plot::forests(results, version),
-            less: plot::less(results, version),
-            minus: version.differences.first().map_or_else(String::new, |less| inert::name(&less.minus)),
-            bars: plot::bars(results, version),
-            matrix: plot::matrix(version),
-            pairs: tables::pairs(version),
-            agreement: tables::agreement(version),
+            paper: tables::paper_table(results, version),
+            forests: plot::figure_plots(results, version),
+            less: plot::difference_plots(results, version),
+            minus: version.differences.first().map_or_else(String::new, |less| inert::to_table_name(&less.minus)),
+            bars: plot::level_bars(results, version),
+            matrix: plot::win_matrix(version),
+            pairs: tables::pair_tables(version),
+            agreement: tables::agreement_table(version),
             folded: folded.collect(),
         }
     }
 }
 
 /// Renders the page.
-pub(super) fn page(results: &Results, sheets: &[Sheet]) -> Result<String, StudyError> {
+pub(super) fn render_page(results: &StudyReport, sheets: &[DataSheet]) -> Result<String, StudyError> {
     let people = &results.people;
     let drop_off: Option<DropOff> = plot::drop_off(&people.by_position);
-    let file = |sheet: &Sheet| FileView {
+    let file = |sheet: &DataSheet| FileView {
         file: sheet.file,
         line: sheet.line,
         columns: sheet
@@ -73,29 +75,29 @@ pub(super) fn page(results: &Results, sheets: &[Sheet]) -> Result<String, StudyE
             .collect(),
     };
     let view = context! {
-        title => inert::name(&results.title),
-        subject => notes::subject(results),
-        warnings => notes::warnings(results),
-        conditions => tables::conditions(results),
+        title => inert::to_table_name(&results.title),
+        subject => notes::describe_study(results),
+        warnings => notes::collect_warnings(results),
+        conditions => tables::condition_table(results),
         versions => results.versions.iter().map(|version| VersionView::new(results, version)).collect::<Vec<_>>(),
-        people => [tables::submissions(results), tables::attention(results)],
+        people => [tables::submission_table(results), tables::attention_table(results)],
         drop_off => drop_off,
         handed => [
-            tables::handed("Drop-off by position", "Position", &people.by_position),
-            tables::handed("Drop-off by condition", "Condition", &people.by_condition),
-            tables::handed("Drop-off by item", "Item", &people.by_item),
+            tables::handout_table("Drop-off by position", "Position", &people.by_position),
+            tables::handout_table("Drop-off by condition", "Condition", &people.by_condition),
+            tables::handout_table("Drop-off by item", "Item", &people.by_item),
         ],
-        notes => notes::notes(results),
-        meanings => tables::meanings(results),
-        wording => tables::wording(results),
+        notes => notes::collect_notes(results),
+        meanings => tables::meaning_table(results),
+        wording => tables::wording_table(results),
         files => sheets.iter().map(file).collect::<Vec<_>>(),
     };
-    templates().and_then(|templates| templates.get_template("index.html")?.render(view)).map_err(|error| {
-        StudyError::refused(format!("the page of results cannot be drawn: {error:#}"), "report this as a bug")
+    load_templates().and_then(|templates| templates.get_template("index.html")?.render(view)).map_err(|error| {
+        StudyError::refused_request(format!("the page of results cannot be drawn: {error:#}"), "report this as a bug")
     })
 }
 
-fn templates() -> Result<Environment<'static>, minijinja::Error> {
+fn load_templates() -> Result<Environment<'static>, minijinja::Error> {
     let mut templates = Environment::new();
     templates.set_undefined_behavior(UndefinedBehavior::Strict);
     templates.set_auto_escape_callback(|name| if name.ends_with(".css") { AutoEscape::None } else { AutoEscape::Html });

@@ -1,16 +1,16 @@
 //! Counts the participants: how many took part, at which item people stopped, and who failed attention checks.
 
 use super::{
-    given::{Answered, seconds},
-    names::Names,
+    given::{AnsweredItem, seconds_between},
+    names::ParticipantNames,
 };
-use crate::{Data, Participant, Slot, SlotState, Status};
+use crate::{ItemSlot, Participant, ParticipantStatus, SlotState, StudyData};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
 /// Counts of participants by how far they came, and of items by what became of them.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct People {
+pub struct ParticipantSummary {
     /// Participants who consented, without the forgotten ones.
     pub consented: usize,
     /// Those who answered everything and passed the attention checks.
@@ -36,18 +36,18 @@ pub struct People {
     /// How many understood the task at once, at the second try, and not in two.
     pub misunderstood: [usize; 3],
     /// What became of the items, by their position in the sequence of a participant.
-    pub by_position: Vec<Handed>,
+    pub by_position: Vec<HandoutCounts>,
     /// The same by condition.
-    pub by_condition: Vec<Handed>,
+    pub by_condition: Vec<HandoutCounts>,
     /// The same by item.
-    pub by_item: Vec<Handed>,
+    pub by_item: Vec<HandoutCounts>,
     /// The attention checks.
-    pub attention: Attention,
+    pub attention: AttentionSummary,
 }
 
 /// What became of the items that were handed out, for one position, condition or item.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
-pub struct Handed {
+pub struct HandoutCounts {
     /// The position from 1, the name of the condition, or the number of the item.
     pub of: String,
     /// How often one was given.
@@ -64,7 +64,7 @@ pub struct Handed {
 
 /// The attention checks of a study.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Attention {
+pub struct AttentionSummary {
     /// How many a participant gets.
     pub per_participant: u32,
     /// How many failed checks are tolerated: one in a study of 5 minutes or more, none in a shorter one (Prolific's rule).
@@ -74,12 +74,12 @@ pub struct Attention {
     /// How many of them were failed.
     pub failed: usize,
     /// The participants who failed at least one check.
-    pub by_participant: Vec<Failed>,
+    pub by_participant: Vec<FailedChecks>,
 }
 
 /// The failed attention checks of a participant.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Failed {
+pub struct FailedChecks {
     /// The participant's name in the results.
     pub participant: String,
     /// How many checks were answered.
@@ -90,27 +90,32 @@ pub struct Failed {
     pub is_over: bool,
 }
 
-impl People {
-    pub(super) fn new(data: &Data, names: &Names<'_>, answered: &[Answered<'_>], now_ms: i64) -> Self {
+impl ParticipantSummary {
+    pub(super) fn new(
+        data: &StudyData,
+        names: &ParticipantNames<'_>,
+        answered: &[AnsweredItem<'_>],
+        now_ms: i64,
+    ) -> Self {
         let people = &data.participants;
         let count = |status| people.iter().filter(|person| person.status == status).count();
-        let is_quiet = |person: &&Participant| seconds(person.seen_ms, now_ms) > data.settings.lease_s as f64;
-        let started = people.iter().filter(|person| person.status == Status::Started);
+        let is_quiet = |person: &&Participant| seconds_between(person.seen_ms, now_ms) > data.settings.lease_s as f64;
+        let started = people.iter().filter(|person| person.status == ParticipantStatus::Started);
         let quiet = started.clone().filter(is_quiet).count();
-        let minutes = people.iter().filter_map(minutes).collect();
+        let minutes = people.iter().filter_map(minutes_taken).collect();
         // Participants who left at the questions have neither understood the task nor failed to.
-        let is_known = |person: &&Participant| person.understood || person.status == Status::ScreenedOut;
+        let is_known = |person: &&Participant| person.understood || person.status == ParticipantStatus::ScreenedOut;
         let known = || people.iter().filter(is_known);
         let times = |times: usize| known().filter(|person| person.misunderstood.min(2) as usize == times).count();
-        let tally = Tally::new(data, answered);
+        let tally = HandoutTally::new(data, answered);
         Self {
             consented: people.len(),
-            complete: count(Status::Complete),
+            complete: count(ParticipantStatus::Complete),
             live: started.count() - quiet,
             quiet,
-            withdrawn: count(Status::Withdrawn),
-            screened_out: count(Status::ScreenedOut),
-            attention_failed: count(Status::AttentionFailed),
+            withdrawn: count(ParticipantStatus::Withdrawn),
+            screened_out: count(ParticipantStatus::ScreenedOut),
+            attention_failed: count(ParticipantStatus::AttentionFailed),
             forgotten: data.forgotten,
             lease_s: data.settings.lease_s,
             median_minutes: median(minutes),
@@ -119,16 +124,16 @@ impl People {
             by_position: tally.by_position(),
             by_condition: tally.by_condition(),
             by_item: tally.by_item(),
-            attention: Attention::new(data, names),
+            attention: AttentionSummary::new(data, names),
         }
     }
 }
 
 /// Minutes from consent to the end, of a participant who answered everything.
-fn minutes(person: &Participant) -> Option<f64> {
-    let is_done = matches!(person.status, Status::Complete | Status::AttentionFailed);
+fn minutes_taken(person: &Participant) -> Option<f64> {
+    let is_done = matches!(person.status, ParticipantStatus::Complete | ParticipantStatus::AttentionFailed);
     let end_ms = person.finished_ms.filter(|_| is_done)?;
-    Some(seconds(person.consented_ms, end_ms) / 60.0)
+    Some(seconds_between(person.consented_ms, end_ms) / 60.0)
 }
 
 /// The median: the middle value, or the mean of the two in the middle.
@@ -143,22 +148,23 @@ fn median(mut values: Vec<f64>) -> Option<f64> {
 }
 
 /// Counts handed-out items by position, condition and item.
-struct Tally<'a> {
-    data: &'a Data,
-    slots: Vec<(&'a Slot, u32)>,
+struct HandoutTally<'a> {
+    data: &'a StudyData,
+    slots: Vec<(&'a ItemSlot, u32)>,
     /// The seconds of an answer, by participant and item.
     seconds: BTreeMap<(&'a str, u32), f64>,
 }
 
-impl<'a> Tally<'a> {
-    fn new(data: &'a Data, answered: &'a [Answered<'a>]) -> Self {
+impl<'a> HandoutTally<'a> {
+    fn new(data: &'a StudyData, answered: &'a [AnsweredItem<'a>]) -> Self {
         let slots = data.slots.iter().filter_map(|slot| Some((slot, slot.position?))).collect();
-        let time = |one: &'a Answered<'a>| Some(((one.participant.id.as_str(), one.item.id), one.seconds()?));
+        let time =
+            |one: &'a AnsweredItem<'a>| Some(((one.participant.id.as_str(), one.item.id), one.answer_seconds()?));
         Self { data, slots, seconds: answered.iter().filter_map(time).collect() }
     }
 
-    fn given(&self, of: String, slots: impl Iterator<Item = &'a Slot>) -> Handed {
-        let mut given = Handed { of, ..Handed::default() };
+    fn count_handouts(&self, of: String, slots: impl Iterator<Item = &'a ItemSlot>) -> HandoutCounts {
+        let mut given = HandoutCounts { of, ..HandoutCounts::default() };
         let mut times = Vec::new();
         for slot in slots {
             given.given += 1;
@@ -173,50 +179,50 @@ impl<'a> Tally<'a> {
         given
     }
 
-    fn by_position(&self) -> Vec<Handed> {
+    fn by_position(&self) -> Vec<HandoutCounts> {
         let last = self.slots.iter().map(|(_, position)| *position + 1).max().unwrap_or(0);
         let at = |place: u32| self.slots.iter().filter(move |(_, position)| *position == place).map(|(slot, _)| *slot);
         // The bound keeps the table small if a damaged store contains an impossible position.
-        (0..last.min(10_000)).map(|place| self.given((place + 1).to_string(), at(place))).collect()
+        (0..last.min(10_000)).map(|place| self.count_handouts((place + 1).to_string(), at(place))).collect()
     }
 
-    fn by_condition(&self) -> Vec<Handed> {
-        let has = |slot: &Slot, name: &str| {
+    fn by_condition(&self) -> Vec<HandoutCounts> {
+        let has = |slot: &ItemSlot, name: &str| {
             let item = self.data.items.get(slot.item as usize);
             item.is_some_and(|item| item.texts.iter().any(|told| told.condition == name))
         };
         let of = |name: &str| {
             let slots = self.slots.iter().map(|(slot, _)| *slot).filter(|slot| has(slot, name));
-            self.given(name.to_owned(), slots)
+            self.count_handouts(name.to_owned(), slots)
         };
         self.data.plan.conditions.iter().map(|condition| of(&condition.name)).collect()
     }
 
-    fn by_item(&self) -> Vec<Handed> {
-        let mut slots: BTreeMap<u32, Vec<&Slot>> = BTreeMap::new();
+    fn by_item(&self) -> Vec<HandoutCounts> {
+        let mut slots: BTreeMap<u32, Vec<&ItemSlot>> = BTreeMap::new();
         for (slot, _) in &self.slots {
             slots.entry(slot.item).or_default().push(slot);
         }
         let items = self.data.items.iter().filter(|item| !item.is_practice);
-        let of = |id: u32| self.given(id.to_string(), slots.get(&id).into_iter().flatten().copied());
+        let of = |id: u32| self.count_handouts(id.to_string(), slots.get(&id).into_iter().flatten().copied());
         items.map(|item| of(item.id)).collect()
     }
 }
 
-impl Attention {
-    fn new(data: &Data, names: &Names<'_>) -> Self {
+impl AttentionSummary {
+    fn new(data: &StudyData, names: &ParticipantNames<'_>) -> Self {
         let most_failed = data.settings.most_failed();
         let failed = |person: &Participant| {
             let checks: Vec<u32> =
                 person.attention.iter().filter(|check| !check.passed).map(|check| check.number + 1).collect();
-            (!checks.is_empty()).then(|| Failed {
-                participant: names.of(&person.id).to_owned(),
+            (!checks.is_empty()).then(|| FailedChecks {
+                participant: names.name_for_id(&person.id).to_owned(),
                 answered: person.attention.len(),
                 is_over: checks.len() > most_failed,
                 checks,
             })
         };
-        let mut by_participant: Vec<Failed> = data.participants.iter().filter_map(failed).collect();
+        let mut by_participant: Vec<FailedChecks> = data.participants.iter().filter_map(failed).collect();
         by_participant.sort_by(|a, b| a.participant.cmp(&b.participant));
         Self {
             per_participant: data.settings.attention_checks,

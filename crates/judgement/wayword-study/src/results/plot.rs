@@ -1,27 +1,27 @@
 //! Computes the positions, labels and captions of the plots on the page: figures with intervals, levels, wins and drop-off.
 
 use super::{
-    Handed, Measure, Results, Unit, Version,
-    inert::name,
+    HandoutCounts, MeasureUnit, ResultVersion, StudyMeasure, StudyReport,
+    inert::to_table_name,
     tables,
-    words::{self, number},
+    words::{self, format_number},
 };
 use serde::Serialize;
 
 /// A forest plot: the figures of the conditions with their intervals, one below the other on a common axis. Positions are in per cent
 /// of the plot's width.
 #[derive(Debug, Serialize)]
-pub(super) struct Forest {
+pub(super) struct ForestPlot {
     title: String,
-    rows: Vec<ForestRow>,
-    ticks: Vec<Tick>,
+    rows: Vec<ForestPlotRow>,
+    ticks: Vec<AxisTick>,
     /// Position of zero, in a plot of differences.
     zero: Option<f64>,
     caption: String,
 }
 
 #[derive(Debug, Serialize)]
-struct ForestRow {
+struct ForestPlotRow {
     id: String,
     label: String,
     is_control: bool,
@@ -35,29 +35,29 @@ struct ForestRow {
 }
 
 #[derive(Debug, Serialize)]
-struct Tick {
+struct AxisTick {
     at: f64,
     label: String,
 }
 
 /// Margin on either side, per cent of the plot's width, so that no dot is cut off.
-const EDGE: f64 = 3.0;
+const PLOT_MARGIN_PERCENT: f64 = 3.0;
 
 /// The range of values of a plot, and the distance between two ticks.
-struct Axis {
+struct PlotAxis {
     low: f64,
     high: f64,
     step: f64,
 }
 
-impl Axis {
+impl PlotAxis {
     /// The axis of a measure: its whole range, or from 0 to a round number above all values.
-    fn of(measure: &Measure, ends: &[f64]) -> Self {
+    fn for_measure(measure: &StudyMeasure, ends: &[f64]) -> Self {
         match measure.unit {
-            Unit::PerCent => Self { low: 0.0, high: 1.0, step: 0.25 },
-            Unit::Level => Self { low: 1.0, high: 5.0, step: 1.0 },
-            Unit::Metres | Unit::Seconds | Unit::Count => {
-                let step = step(largest(ends));
+            MeasureUnit::PerCent => Self { low: 0.0, high: 1.0, step: 0.25 },
+            MeasureUnit::Level => Self { low: 1.0, high: 5.0, step: 1.0 },
+            MeasureUnit::Metres | MeasureUnit::Seconds | MeasureUnit::Count => {
+                let step = quarter_of_round_number(largest_magnitude(ends));
                 Self { low: 0.0, high: 4.0 * step, step }
             }
         }
@@ -65,40 +65,40 @@ impl Axis {
 
     /// The axis of differences, which is symmetric around zero.
     fn around_zero(ends: &[f64]) -> Self {
-        let step = 2.0 * step(largest(ends));
+        let step = 2.0 * quarter_of_round_number(largest_magnitude(ends));
         Self { low: -2.0 * step, high: 2.0 * step, step }
     }
 
-    fn place(&self, value: f64) -> f64 {
+    fn place_percent(&self, value: f64) -> f64 {
         let along = (value.clamp(self.low, self.high) - self.low) / (self.high - self.low);
-        ((EDGE + along * (100.0 - 2.0 * EDGE)) * 100.0).round() / 100.0
+        ((PLOT_MARGIN_PERCENT + along * (100.0 - 2.0 * PLOT_MARGIN_PERCENT)) * 100.0).round() / 100.0
     }
 
-    fn ticks(&self, measure: &Measure) -> Vec<Tick> {
+    fn axis_ticks(&self, measure: &StudyMeasure) -> Vec<AxisTick> {
         let count = ((self.high - self.low) / self.step).round() as usize;
-        let digits = if self.step * scale(measure) < 1.0 {
+        let digits = if self.step * display_factor(measure) < 1.0 {
             2
         } else {
-            usize::from(self.step * scale(measure) < 5.0 && self.step.fract() != 0.0)
+            usize::from(self.step * display_factor(measure) < 5.0 && self.step.fract() != 0.0)
         };
         let tick = |at: usize| {
             let value = self.low + at as f64 * self.step;
-            Tick { at: self.place(value), label: number(value * scale(measure), digits) }
+            AxisTick { at: self.place_percent(value), label: format_number(value * display_factor(measure), digits) }
         };
         (0..=count).map(tick).collect()
     }
 }
 
-fn scale(measure: &Measure) -> f64 {
-    if measure.unit == Unit::PerCent { 100.0 } else { 1.0 }
+fn display_factor(measure: &StudyMeasure) -> f64 {
+    if measure.unit == MeasureUnit::PerCent { 100.0 } else { 1.0 }
 }
 
-fn largest(ends: &[f64]) -> f64 {
+fn largest_magnitude(ends: &[f64]) -> f64 {
     ends.iter().copied().filter(|end| end.is_finite()).map(f64::abs).fold(0.0, f64::max)
 }
 
 /// A quarter of the smallest round number that is at least `most`.
-fn step(most: f64) -> f64 {
+fn quarter_of_round_number(most: f64) -> f64 {
     let round = [
         0.01, 0.02, 0.05, 0.1, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 25.0, 50.0, 100.0, 250.0, 500.0, 1000.0, 10_000.0,
     ];
@@ -106,106 +106,119 @@ fn step(most: f64) -> f64 {
 }
 
 /// One plot for each measure for which any condition has a figure.
-pub(super) fn forests(results: &Results, version: &Version) -> Vec<Forest> {
-    let forest = |measure: &Measure| {
+pub(super) fn figure_plots(results: &StudyReport, version: &ResultVersion) -> Vec<ForestPlot> {
+    let forest = |measure: &StudyMeasure| {
         let figures: Vec<_> =
             version.rows.iter().filter_map(|row| Some((row, row.figures.get(measure.name)?))).collect();
         let ends: Vec<f64> =
             figures.iter().flat_map(|(_, figure)| with_ends(figure.value, figure.interval.as_ref())).collect();
-        let axis = (!figures.is_empty()).then(|| Axis::of(measure, &ends))?;
-        let row = |(at, (row, figure)): (usize, &(&super::Row, &wayword_metrics::Figure))| {
-            let shown = shown(measure, figure.value, figure.interval.as_ref());
-            let label = tables::title(&row.condition, row.kind);
+        let axis = (!figures.is_empty()).then(|| PlotAxis::for_measure(measure, &ends))?;
+        let row = |(at, (row, figure)): (usize, &(&super::ConditionRow, &wayword_metrics::StudyFigure))| {
+            let shown = figure_text(measure, figure.value, figure.interval.as_ref());
+            let label = tables::condition_title(&row.condition, row.kind);
             let counts = format!(
                 "{}, {}, {}; {}",
-                words::count(figure.answers, "answer", "answers"),
-                words::count(figure.persons, "person", "persons"),
-                words::count(figure.items, "route", "routes"),
-                words::method(figure.method)
+                words::count_with_noun(figure.answers, "answer", "answers"),
+                words::count_with_noun(figure.persons, "person", "persons"),
+                words::count_with_noun(figure.items, "route", "routes"),
+                words::method_name(figure.method)
             );
-            ForestRow {
+            ForestPlotRow {
                 id: format!("f-{}-{}-{at}", version.name, measure.name),
                 description: format!("{label}: {shown}. {counts}."),
                 label,
                 is_control: row.is_control,
-                at: axis.place(figure.value),
-                whisker: figure.interval.as_ref().map(|interval| [axis.place(interval.low), axis.place(interval.high)]),
+                at: axis.place_percent(figure.value),
+                whisker: figure
+                    .interval
+                    .as_ref()
+                    .map(|interval| [axis.place_percent(interval.low), axis.place_percent(interval.high)]),
                 is_filled: true,
                 figure: shown,
                 counts,
             }
         };
-        Some(Forest {
-            title: measure.heading(),
+        Some(ForestPlot {
+            title: measure.heading_with_unit(),
             rows: figures.iter().enumerate().map(row).collect(),
-            ticks: axis.ticks(measure),
+            ticks: axis.axis_ticks(measure),
             zero: None,
-            caption: sentence(measure.meaning),
+            caption: to_sentence(measure.meaning),
         })
     };
     results.measures.iter().filter_map(forest).collect()
 }
 
 /// One plot of the differences to the first condition for each measure that has any.
-pub(super) fn less(results: &Results, version: &Version) -> Vec<Forest> {
-    let forest = |measure: &Measure| {
+pub(super) fn difference_plots(results: &StudyReport, version: &ResultVersion) -> Vec<ForestPlot> {
+    let forest = |measure: &StudyMeasure| {
         let figures: Vec<_> =
             version.differences.iter().filter_map(|less| Some((less, less.figures.get(measure.name)?))).collect();
         let ends: Vec<f64> =
             figures.iter().flat_map(|(_, figure)| with_ends(figure.value, figure.interval.as_ref())).collect();
-        let axis = (!figures.is_empty()).then(|| Axis::around_zero(&ends))?;
-        let row = |(at, (less, figure)): (usize, &(&super::Less, &wayword_metrics::Difference))| {
-            let shown = shown(measure, figure.value, figure.interval.as_ref());
-            let kind = version
-                .rows
-                .iter()
-                .find(|row| row.condition == less.condition)
-                .map_or(crate::Kind::Run, |row| row.kind);
-            let label = tables::title(&less.condition, kind);
-            let beside_zero = |interval: &wayword_metrics::Interval| interval.low > 0.0 || interval.high < 0.0;
-            let counts = words::method(figure.method).to_owned();
-            ForestRow {
-                id: format!("d-{}-{}-{at}", version.name, measure.name),
-                description: format!("{label} minus {}: {shown}. {counts}.", name(&less.minus)),
-                label,
-                is_control: kind != crate::Kind::Run,
-                at: axis.place(figure.value),
-                whisker: figure.interval.as_ref().map(|interval| [axis.place(interval.low), axis.place(interval.high)]),
-                is_filled: figure.interval.as_ref().is_some_and(beside_zero),
-                figure: shown,
-                counts,
-            }
+        let axis = (!figures.is_empty()).then(|| PlotAxis::around_zero(&ends))?;
+        let row =
+            |(at, (less, figure)): (usize, &(&super::ConditionDifference, &wayword_metrics::FigureDifference))| {
+                let shown = figure_text(measure, figure.value, figure.interval.as_ref());
+                let kind = version
+                    .rows
+                    .iter()
+                    .find(|row| row.condition == less.condition)
+                    .map_or(crate::ConditionKind::Run, |row| row.kind);
+                let label = tables::condition_title(&less.condition, kind);
+                let beside_zero =
+                    |interval: &wayword_metrics::ConfidenceInterval| interval.low > 0.0 || interval.high < 0.0;
+                let counts = words::method_name(figure.method).to_owned();
+                ForestPlotRow {
+                    id: format!("d-{}-{}-{at}", version.name, measure.name),
+                    description: format!("{label} minus {}: {shown}. {counts}.", to_table_name(&less.minus)),
+                    label,
+                    is_control: kind != crate::ConditionKind::Run,
+                    at: axis.place_percent(figure.value),
+                    whisker: figure
+                        .interval
+                        .as_ref()
+                        .map(|interval| [axis.place_percent(interval.low), axis.place_percent(interval.high)]),
+                    is_filled: figure.interval.as_ref().is_some_and(beside_zero),
+                    figure: shown,
+                    counts,
+                }
+            };
+        let unit = if measure.unit == MeasureUnit::PerCent {
+            format!("{}, points", measure.label)
+        } else {
+            measure.heading_with_unit()
         };
-        let unit = if measure.unit == Unit::PerCent { format!("{}, points", measure.label) } else { measure.heading() };
-        Some(Forest {
+        Some(ForestPlot {
             title: unit,
             rows: figures.iter().enumerate().map(row).collect(),
-            ticks: axis.ticks(measure),
-            zero: Some(axis.place(0.0)),
-            caption: sentence(measure.meaning),
+            ticks: axis.axis_ticks(measure),
+            zero: Some(axis.place_percent(0.0)),
+            caption: to_sentence(measure.meaning),
         })
     };
     results.measures.iter().filter_map(forest).collect()
 }
 
-fn with_ends(value: f64, interval: Option<&wayword_metrics::Interval>) -> Vec<f64> {
+fn with_ends(value: f64, interval: Option<&wayword_metrics::ConfidenceInterval>) -> Vec<f64> {
     std::iter::once(value).chain(interval.into_iter().flat_map(|interval| [interval.low, interval.high])).collect()
 }
 
-fn shown(measure: &Measure, value: f64, interval: Option<&wayword_metrics::Interval>) -> String {
-    let ends = interval.map_or_else(|| "no interval".to_owned(), |interval| words::interval(measure, Some(interval)));
-    format!("{} {ends}", words::value(measure, value))
+fn figure_text(measure: &StudyMeasure, value: f64, interval: Option<&wayword_metrics::ConfidenceInterval>) -> String {
+    let ends =
+        interval.map_or_else(|| "no interval".to_owned(), |interval| words::format_interval(measure, Some(interval)));
+    format!("{} {ends}", words::format_value(measure, value))
 }
 
 /// Makes a sentence of a phrase: a capital letter in front and a full stop behind.
-fn sentence(meaning: &str) -> String {
+fn to_sentence(meaning: &str) -> String {
     let mut letters = meaning.chars();
     letters.next().map_or_else(String::new, |first| format!("{}{}.", first.to_uppercase(), letters.as_str()))
 }
 
 /// How often each level of a question was chosen, as one bar for each condition.
 #[derive(Debug, Serialize)]
-pub(super) struct Bars {
+pub(super) struct LevelBars {
     title: String,
     rows: Vec<BarRow>,
     levels: Vec<String>,
@@ -216,13 +229,13 @@ struct BarRow {
     id: String,
     label: String,
     description: String,
-    parts: Vec<Part>,
+    parts: Vec<BarSegment>,
     answers: usize,
 }
 
 /// A piece of a bar.
 #[derive(Debug, Serialize)]
-struct Part {
+struct BarSegment {
     /// Number of the segment's colour class, from 1.
     class: usize,
     at: f64,
@@ -232,10 +245,10 @@ struct Part {
 }
 
 /// Width of a digit on a phone, per cent of a bar of levels, and of a narrow bar in the matrix.
-const DIGIT: f64 = 4.0;
+const DIGIT_WIDTH_PERCENT: f64 = 4.0;
 const NARROW_DIGIT: f64 = 6.0;
 
-fn parts(counts: &[usize], digit: f64) -> Vec<Part> {
+fn bar_segments(counts: &[usize], digit: f64) -> Vec<BarSegment> {
     let all: usize = counts.iter().sum();
     let share = |count: usize| 100.0 * count as f64 / all.max(1) as f64;
     let round = |place: f64| (place * 100.0).round() / 100.0;
@@ -245,14 +258,14 @@ fn parts(counts: &[usize], digit: f64) -> Vec<Part> {
         before += count;
         let number = count.to_string();
         let label = if share(*count) < digit * (number.len() + 1) as f64 { String::new() } else { number };
-        (*count > 0).then(|| Part { class, at: round(at), width: round(share(*count)), label })
+        (*count > 0).then(|| BarSegment { class, at: round(at), width: round(share(*count)), label })
     };
     (1..).zip(counts).filter_map(&mut part).collect()
 }
 
 /// One plot of levels for each question.
-pub(super) fn bars(results: &Results, version: &Version) -> Vec<Bars> {
-    let of = |scale: &crate::wording::Scale| Bars {
+pub(super) fn level_bars(results: &StudyReport, version: &ResultVersion) -> Vec<LevelBars> {
+    let of = |scale: &crate::wording::RatingScale| LevelBars {
         title: scale.text.to_owned(),
         levels: (1..).zip(scale.levels).map(|(level, word): (u8, &str)| format!("{level} {word}")).collect(),
         rows: version
@@ -262,14 +275,14 @@ pub(super) fn bars(results: &Results, version: &Version) -> Vec<Bars> {
             .filter_map(|(at, row)| {
                 let counts = row.levels.get(scale.name)?;
                 let answers: usize = counts.iter().sum();
-                let label = tables::title(&row.condition, row.kind);
+                let label = tables::condition_title(&row.condition, row.kind);
                 let told: Vec<String> =
                     counts.iter().zip(scale.levels).map(|(count, word)| format!("{word} {count}")).collect();
                 (answers > 0).then(|| BarRow {
                     id: format!("b-{}-{}-{at}", version.name, scale.name),
                     description: format!("{label}: {}.", told.join(", ")),
                     label,
-                    parts: parts(counts, DIGIT),
+                    parts: bar_segments(counts, DIGIT_WIDTH_PERCENT),
                     answers,
                 })
             })
@@ -280,7 +293,7 @@ pub(super) fn bars(results: &Results, version: &Version) -> Vec<Bars> {
 
 /// How often each condition wins against each other one.
 #[derive(Debug, Serialize)]
-pub(super) struct Matrix {
+pub(super) struct WinMatrix {
     conditions: Vec<String>,
     rows: Vec<MatrixRow>,
 }
@@ -297,11 +310,11 @@ struct MatrixCell {
     share: String,
     interval: String,
     description: String,
-    parts: Vec<Part>,
+    parts: Vec<BarSegment>,
 }
 
 /// The matrix of the comparisons of a version; `None` if there are none.
-pub(super) fn matrix(version: &Version) -> Option<Matrix> {
+pub(super) fn win_matrix(version: &ResultVersion) -> Option<WinMatrix> {
     let pairs = version.pairs.as_ref().filter(|pairs| !pairs.rows.is_empty())?;
     let names: Vec<&str> = version.rows.iter().map(|row| row.condition.as_str()).collect();
     let cell = |row: usize, column: usize| {
@@ -316,27 +329,30 @@ pub(super) fn matrix(version: &Version) -> Option<Matrix> {
         let turn = |value: f64| if is_first { value } else { 1.0 - value };
         let ends = share.interval.as_ref().map(|interval| {
             let (a, b) = (turn(interval.low), turn(interval.high));
-            wayword_metrics::Interval { low: a.min(b), high: a.max(b) }
+            wayword_metrics::ConfidenceInterval { low: a.min(b), high: a.max(b) }
         });
         Some(MatrixCell {
             id: format!("m-{}-{row}-{column}", version.name),
-            share: format!("{} %", number(100.0 * turn(share.value), 1)),
+            share: format!("{} %", format_number(100.0 * turn(share.value), 1)),
             interval: tables::per_cent(ends.as_ref()),
             description: format!(
                 "{} against {}: {wins} wins, {} ties, {} both bad, {losses} losses.",
-                name(this),
-                name(other),
+                to_table_name(this),
+                to_table_name(other),
                 pair.ties,
                 pair.both_bad
             ),
-            parts: parts(&[wins, pair.ties, pair.both_bad, losses], NARROW_DIGIT),
+            parts: bar_segments(&[wins, pair.ties, pair.both_bad, losses], NARROW_DIGIT),
         })
     };
     let row = |row: usize| MatrixRow {
-        label: name(names[row]),
+        label: to_table_name(names[row]),
         cells: (0..names.len()).map(|column| cell(row, column)).collect(),
     };
-    Some(Matrix { conditions: names.iter().map(|one| name(one)).collect(), rows: (0..names.len()).map(row).collect() })
+    Some(WinMatrix {
+        conditions: names.iter().map(|one| to_table_name(one)).collect(),
+        rows: (0..names.len()).map(row).collect(),
+    })
 }
 
 /// The drop-off plot: how many participants got an item at each position, and how many answered it.
@@ -345,34 +361,36 @@ pub(super) struct DropOff {
     given: String,
     answered: String,
     dots: Vec<[f64; 2]>,
-    across: Vec<Tick>,
-    up: Vec<Tick>,
+    across: Vec<AxisTick>,
+    up: Vec<AxisTick>,
     description: String,
 }
 
 /// The plot's inner size and its margins.
-const WIDE: f64 = 300.0;
-const HIGH: f64 = 140.0;
-const LEFT: f64 = 34.0;
-const TOP: f64 = 10.0;
+const PLOT_WIDTH: f64 = 300.0;
+const PLOT_HEIGHT: f64 = 140.0;
+const PLOT_LEFT_MARGIN: f64 = 34.0;
+const PLOT_TOP_MARGIN: f64 = 10.0;
 
 /// Computes the drop-off plot; `None` if no item was handed out.
-pub(super) fn drop_off(rows: &[Handed]) -> Option<DropOff> {
+pub(super) fn drop_off(rows: &[HandoutCounts]) -> Option<DropOff> {
     let most = rows.iter().map(|row| row.given).max().filter(|most| *most > 0)? as f64;
-    let top = 4.0 * step(most).max(1.0);
+    let top = 4.0 * quarter_of_round_number(most).max(1.0);
     let last = (rows.len().max(2) - 1) as f64;
     let round = |place: f64| (place * 10.0).round() / 10.0;
-    let x = |at: usize| round(LEFT + WIDE * at as f64 / last);
-    let y = |count: f64| round(TOP + HIGH * (1.0 - count / top));
-    let line = |of: &dyn Fn(&Handed) -> usize| {
+    let x = |at: usize| round(PLOT_LEFT_MARGIN + PLOT_WIDTH * at as f64 / last);
+    let y = |count: f64| round(PLOT_TOP_MARGIN + PLOT_HEIGHT * (1.0 - count / top));
+    let line = |of: &dyn Fn(&HandoutCounts) -> usize| {
         let points: Vec<String> =
             rows.iter().enumerate().map(|(at, row)| format!("{} {}", x(at), y(of(row) as f64))).collect();
         format!("M{}", points.join("L"))
     };
     let every = rows.len().div_ceil(10).max(1);
-    let across = (0..rows.len()).filter(|at| at % every == 0).map(|at| Tick { at: x(at), label: (at + 1).to_string() });
-    let up = (0..=4).map(|at| Tick { at: y(top / 4.0 * f64::from(at)), label: number(top / 4.0 * f64::from(at), 0) });
-    let ends = |row: &Handed| format!("{} were given one and {} answered it", row.given, row.answered);
+    let across =
+        (0..rows.len()).filter(|at| at % every == 0).map(|at| AxisTick { at: x(at), label: (at + 1).to_string() });
+    let up = (0..=4)
+        .map(|at| AxisTick { at: y(top / 4.0 * f64::from(at)), label: format_number(top / 4.0 * f64::from(at), 0) });
+    let ends = |row: &HandoutCounts| format!("{} were given one and {} answered it", row.given, row.answered);
     let (first, end) = (rows.first()?, rows.last()?);
     Some(DropOff {
         given: line(&|row| row.given),

@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 /// A column of a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Column {
+pub(super) struct SheetColumn {
     pub(super) name: &'static str,
     pub(super) meaning: String,
     /// Unit of a number; empty where it has none, or where it is text.
@@ -16,7 +16,7 @@ pub(super) struct Column {
 
 /// A cell.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Cell {
+pub(super) enum SheetCell {
     /// No value.
     Empty,
     Whole(i64),
@@ -28,20 +28,20 @@ pub(super) enum Cell {
 
 /// A CSV file.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Sheet {
+pub(super) struct DataSheet {
     pub(super) file: &'static str,
     /// The meaning of one line of the file, as a phrase.
     pub(super) line: &'static str,
-    pub(super) columns: Vec<Column>,
-    pub(super) rows: Vec<Vec<Cell>>,
+    pub(super) columns: Vec<SheetColumn>,
+    pub(super) rows: Vec<Vec<SheetCell>>,
 }
 
 /// A column, described by name, meaning, unit and values.
-pub(super) fn column(name: &'static str, meaning: &str, unit: &'static str, values: &str) -> Column {
-    Column { name, meaning: meaning.to_owned(), unit, values: values.to_owned() }
+pub(super) fn sheet_column(name: &'static str, meaning: &str, unit: &'static str, values: &str) -> SheetColumn {
+    SheetColumn { name, meaning: meaning.to_owned(), unit, values: values.to_owned() }
 }
 
-impl Cell {
+impl SheetCell {
     pub(super) fn text(text: impl Into<String>) -> Self {
         Self::Text(text.into())
     }
@@ -50,7 +50,7 @@ impl Cell {
         i64::try_from(count).map_or(Self::Empty, Self::Whole)
     }
 
-    pub(super) fn yes(is: bool) -> Self {
+    pub(super) fn yes_or_no(is: bool) -> Self {
         Self::Whole(i64::from(is))
     }
 
@@ -58,27 +58,27 @@ impl Cell {
         value.filter(|value| value.is_finite()).map_or(Self::Empty, |value| Self::Number(value, digits))
     }
 
-    fn written(&self) -> String {
+    fn csv_text(&self) -> String {
         match self {
             Self::Empty => String::new(),
             Self::Whole(number) => number.to_string(),
             Self::Number(number, digits) => format!("{number:.digits$}"),
-            Self::Text(text) => inert::cell(text),
+            Self::Text(text) => inert::escape_csv_cell(text),
         }
     }
 }
 
-impl Sheet {
-    pub(super) fn new(file: &'static str, line: &'static str, columns: Vec<Column>) -> Self {
+impl DataSheet {
+    pub(super) fn new(file: &'static str, line: &'static str, columns: Vec<SheetColumn>) -> Self {
         Self { file, line, columns, rows: Vec::new() }
     }
 
     /// The file's text: a line of names, then a line for each row, each ended by CR and LF.
-    pub(super) fn csv(&self) -> String {
+    pub(super) fn to_csv(&self) -> String {
         let mut text = self.columns.iter().map(|column| column.name).collect::<Vec<_>>().join(",");
         text.push_str("\r\n");
         for row in &self.rows {
-            let cells: Vec<String> = row.iter().map(Cell::written).collect();
+            let cells: Vec<String> = row.iter().map(SheetCell::csv_text).collect();
             // Writing to a text cannot fail.
             let _ = write!(text, "{}\r\n", cells.join(","));
         }
@@ -87,19 +87,19 @@ impl Sheet {
 }
 
 /// Makes the codebook: one line for every column of every file.
-pub(super) fn codebook(sheets: &[Sheet]) -> Sheet {
+pub(super) fn codebook_sheet(sheets: &[DataSheet]) -> DataSheet {
     let columns = vec![
-        column("file", "the file", "", "a name"),
-        column("column", "the column", "", "a name"),
-        column("meaning", "what it says", "", "text"),
-        column("unit", "in what it is counted", "", "text; empty where there is no unit"),
-        column("values", "what it can be", "", "text"),
+        sheet_column("file", "the file", "", "a name"),
+        sheet_column("column", "the column", "", "a name"),
+        sheet_column("meaning", "what it says", "", "text"),
+        sheet_column("unit", "in what it is counted", "", "text; empty where there is no unit"),
+        sheet_column("values", "what it can be", "", "text"),
     ];
-    let mut book = Sheet::new("codebook.csv", "a column of a file", columns);
+    let mut book = DataSheet::new("codebook.csv", "a column of a file", columns);
     for sheet in sheets {
         for column in &sheet.columns {
             let cells = [sheet.file, column.name, &column.meaning, column.unit, &column.values];
-            book.rows.push(cells.into_iter().map(Cell::text).collect());
+            book.rows.push(cells.into_iter().map(SheetCell::text).collect());
         }
     }
     book

@@ -1,44 +1,44 @@
 //! Makes the tables of the report as text, independent of the output format; Markdown, LaTeX and the page all print these.
 
 use super::{
-    Agreed, Handed, Less, Measure, Results, Version,
-    inert::name,
+    ConditionDifference, HandoutCounts, QuestionAgreement, ResultVersion, StudyMeasure, StudyReport,
+    inert::to_table_name,
     measure::OF_THE_PAPER,
-    pairs::{PairRow, Strengths},
-    version::CHOICE,
-    words::{self, NOTHING, count, number},
+    pairs::{ConditionStrengths, PairRow},
+    version::CHOICE_QUESTION_NAME,
+    words::{self, NO_FIGURE, count_with_noun, format_number},
 };
-use crate::Kind;
+use crate::ConditionKind;
 use serde::Serialize;
-use wayword_metrics::wilson;
+use wayword_metrics::wilson_interval;
 
 /// A table of text.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub(super) struct Table {
+pub(super) struct ResultTable {
     pub(super) title: String,
     pub(super) notes: Vec<String>,
-    pub(super) heads: Vec<Head>,
-    pub(super) rows: Vec<Cells>,
+    pub(super) heads: Vec<ColumnHeading>,
+    pub(super) rows: Vec<ResultRow>,
 }
 
 /// The head of a column.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub(super) struct Head {
+pub(super) struct ColumnHeading {
     pub(super) text: String,
     pub(super) is_number: bool,
 }
 
 /// A row. `opens` marks the first row of a group.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub(super) struct Cells {
+pub(super) struct ResultRow {
     pub(super) cells: Vec<String>,
     pub(super) opens: bool,
 }
 
-impl Table {
+impl ResultTable {
     /// A table without rows. Its first `texts` columns contain text, the others numbers.
     fn new(title: impl Into<String>, heads: &[&str], texts: usize) -> Self {
-        let head = |(at, text): (usize, &&str)| Head { text: (*text).to_owned(), is_number: at >= texts };
+        let head = |(at, text): (usize, &&str)| ColumnHeading { text: (*text).to_owned(), is_number: at >= texts };
         Self {
             title: title.into(),
             notes: Vec::new(),
@@ -47,78 +47,84 @@ impl Table {
         }
     }
 
-    fn add(&mut self, opens: bool, cells: impl IntoIterator<Item = String>) {
-        self.rows.push(Cells { cells: cells.into_iter().collect(), opens });
+    fn add_row(&mut self, opens: bool, cells: impl IntoIterator<Item = String>) {
+        self.rows.push(ResultRow { cells: cells.into_iter().collect(), opens });
     }
 }
 
 /// A condition's name, with a note if it is a control.
-pub(super) fn title(condition: &str, kind: Kind) -> String {
+pub(super) fn condition_title(condition: &str, kind: ConditionKind) -> String {
     let note = match kind {
-        Kind::Run => "",
-        Kind::People => " (control: people)",
-        Kind::OtherPath => " (control: other path)",
+        ConditionKind::Run => "",
+        ConditionKind::People => " (control: people)",
+        ConditionKind::OtherPath => " (control: other path)",
     };
-    format!("{}{note}", name(condition))
+    format!("{}{note}", to_table_name(condition))
 }
 
 /// All figures of a version.
-pub(super) fn figures(results: &Results, version: &Version) -> Table {
+pub(super) fn figure_table(results: &StudyReport, version: &ResultVersion) -> ResultTable {
     let heads = ["Figure", "Condition", "Value", "95 % interval", "Answers", "Persons", "Routes", "Interval by"];
-    let mut table = Table::new("All figures", &heads, 2);
+    let mut table = ResultTable::new("All figures", &heads, 2);
     if let Some(last) = table.heads.last_mut() {
         last.is_number = false;
     }
     for measure in results.measures {
         for (at, row) in version.rows.iter().enumerate() {
             let figure = row.figures.get(measure.name);
-            let cell = |of: &dyn Fn(&wayword_metrics::Figure) -> String| figure.map_or_else(|| NOTHING.to_owned(), of);
+            let cell =
+                |of: &dyn Fn(&wayword_metrics::StudyFigure) -> String| figure.map_or_else(|| NO_FIGURE.to_owned(), of);
             let cells = [
-                if at == 0 { measure.heading() } else { String::new() },
-                title(&row.condition, row.kind),
-                cell(&|figure| words::value(measure, figure.value)),
-                cell(&|figure| words::interval(measure, figure.interval.as_ref())),
+                if at == 0 { measure.heading_with_unit() } else { String::new() },
+                condition_title(&row.condition, row.kind),
+                cell(&|figure| words::format_value(measure, figure.value)),
+                cell(&|figure| words::format_interval(measure, figure.interval.as_ref())),
                 figure.map_or(0, |figure| figure.answers).to_string(),
                 figure.map_or(0, |figure| figure.persons).to_string(),
                 figure.map_or(0, |figure| figure.items).to_string(),
-                cell(&|figure| words::method(figure.method).to_owned()),
+                cell(&|figure| words::method_name(figure.method).to_owned()),
             ];
-            table.add(at == 0, cells);
+            table.add_row(at == 0, cells);
         }
     }
     table
 }
 
 /// Each condition minus the first one; `None` where there are no differences.
-pub(super) fn differences(results: &Results, version: &Version) -> Option<Table> {
+pub(super) fn difference_table(results: &StudyReport, version: &ResultVersion) -> Option<ResultTable> {
     let first = version.differences.first()?;
     let heads = ["Figure", "Condition", "Difference", "95 % interval", "Interval by"];
-    let mut table = Table::new(format!("Minus {}", name(&first.minus)), &heads, 2);
+    let mut table = ResultTable::new(format!("Minus {}", to_table_name(&first.minus)), &heads, 2);
     if let Some(last) = table.heads.last_mut() {
         last.is_number = false;
     }
     for measure in results.measures {
         for (at, less) in version.differences.iter().enumerate() {
-            let heading = if at == 0 { measure.heading() } else { String::new() };
-            table.add(at == 0, difference(measure, less, heading, kind_of(version, &less.condition)));
+            let heading = if at == 0 { measure.heading_with_unit() } else { String::new() };
+            table.add_row(at == 0, difference_row(measure, less, heading, kind_of(version, &less.condition)));
         }
     }
     Some(table)
 }
 
-fn kind_of(version: &Version, condition: &str) -> Kind {
-    version.rows.iter().find(|row| row.condition == condition).map_or(Kind::Run, |row| row.kind)
+fn kind_of(version: &ResultVersion, condition: &str) -> ConditionKind {
+    version.rows.iter().find(|row| row.condition == condition).map_or(ConditionKind::Run, |row| row.kind)
 }
 
-fn difference(measure: &Measure, less: &Less, heading: String, kind: Kind) -> [String; 5] {
+fn difference_row(
+    measure: &StudyMeasure,
+    less: &ConditionDifference,
+    heading: String,
+    kind: ConditionKind,
+) -> [String; 5] {
     let figure = less.figures.get(measure.name);
-    let nothing = || NOTHING.to_owned();
+    let nothing = || NO_FIGURE.to_owned();
     [
         heading,
-        title(&less.condition, kind),
-        figure.map_or_else(nothing, |figure| words::value(measure, figure.value)),
-        figure.map_or_else(nothing, |figure| words::interval(measure, figure.interval.as_ref())),
-        figure.map_or_else(nothing, |figure| words::method(figure.method).to_owned()),
+        condition_title(&less.condition, kind),
+        figure.map_or_else(nothing, |figure| words::format_value(measure, figure.value)),
+        figure.map_or_else(nothing, |figure| words::format_interval(measure, figure.interval.as_ref())),
+        figure.map_or_else(nothing, |figure| words::method_name(figure.method).to_owned()),
     ]
 }
 
@@ -127,32 +133,36 @@ const THE_PAPER: [f64; 4] = [13.0, 25.0, 5.0, 22.0];
 const OF_PEOPLE: f64 = 30.0;
 
 /// The four questions evaluated as the paper does it, with the paper's own figures in the last row. `None` unless the mode is rating.
-pub(super) fn of_the_paper(results: &Results, version: &Version) -> Option<Table> {
+pub(super) fn paper_table(results: &StudyReport, version: &ResultVersion) -> Option<ResultTable> {
     let find = |name: &&str| results.measures.iter().find(|measure| measure.name == *name);
-    let measures: Vec<&Measure> = OF_THE_PAPER.iter().filter_map(find).collect();
+    let measures: Vec<&StudyMeasure> = OF_THE_PAPER.iter().filter_map(find).collect();
     if measures.len() < OF_THE_PAPER.len() {
         return None;
     }
-    let headings: Vec<String> = measures.iter().map(|measure| measure.heading()).collect();
+    let headings: Vec<String> = measures.iter().map(|measure| measure.heading_with_unit()).collect();
     let heads: Vec<&str> = std::iter::once("Condition").chain(headings.iter().map(String::as_str)).collect();
-    let mut table = Table::new("As the paper reads the questions", &heads, 1);
+    let mut table = ResultTable::new("As the paper reads the questions", &heads, 1);
     for row in &version.rows {
         let figures = measures.iter().map(|measure| {
             row.figures.get(measure.name).map_or_else(
-                || NOTHING.to_owned(),
+                || NO_FIGURE.to_owned(),
                 |figure| {
-                    let value = words::value(measure, figure.value);
-                    format!("{value} {}", words::interval(measure, figure.interval.as_ref()))
+                    let value = words::format_value(measure, figure.value);
+                    format!("{value} {}", words::format_interval(measure, figure.interval.as_ref()))
                 },
             )
         });
-        table.add(false, std::iter::once(title(&row.condition, row.kind)).chain(figures));
+        table.add_row(false, std::iter::once(condition_title(&row.condition, row.kind)).chain(figures));
     }
     let told = measures.iter().zip(THE_PAPER).map(|(measure, count)| {
-        let interval = wilson(count, OF_PEOPLE, results.level);
-        format!("{} {}", words::value(measure, count / OF_PEOPLE), words::interval(measure, interval.as_ref()))
+        let interval = wilson_interval(count, OF_PEOPLE, results.level);
+        format!(
+            "{} {}",
+            words::format_value(measure, count / OF_PEOPLE),
+            words::format_interval(measure, interval.as_ref())
+        )
     });
-    table.add(true, std::iter::once("arXiv 2403.11487: 30 people, one item each".to_owned()).chain(told));
+    table.add_row(true, std::iter::once("arXiv 2403.11487: 30 people, one item each".to_owned()).chain(told));
     table.notes.push(
         "The wording and the scale of the paper's questions are lost, and it showed no text of people or of another path beside. So \
          the last row tells how far its own figures reach (Wilson's interval of 30 answers), not what to expect here."
@@ -162,18 +172,18 @@ pub(super) fn of_the_paper(results: &Results, version: &Version) -> Option<Table
 }
 
 /// How often each level was chosen. With `in_words` the column headings have the words of the levels, else only their numbers.
-pub(super) fn levels(results: &Results, version: &Version, in_words: bool) -> Vec<Table> {
+pub(super) fn level_tables(results: &StudyReport, version: &ResultVersion, in_words: bool) -> Vec<ResultTable> {
     let head = |level: u8, word: &str| if in_words { format!("{level} {word}") } else { level.to_string() };
-    let table = |scale: &crate::wording::Scale| {
+    let table = |scale: &crate::wording::RatingScale| {
         let heads: Vec<String> = (1..).zip(scale.levels).map(|(level, word): (u8, &str)| head(level, word)).collect();
         let heads: Vec<&str> =
             ["Condition"].into_iter().chain(heads.iter().map(String::as_str)).chain(["Answers"]).collect();
-        let mut table = Table::new(format!("{}: {}", scale.name, scale.text), &heads, 1);
+        let mut table = ResultTable::new(format!("{}: {}", scale.name, scale.text), &heads, 1);
         for row in &version.rows {
             let counts = row.levels.get(scale.name).copied().unwrap_or_default();
             let all: usize = counts.iter().sum();
             let cells = counts.iter().map(ToString::to_string).chain([all.to_string()]);
-            table.add(false, std::iter::once(title(&row.condition, row.kind)).chain(cells));
+            table.add_row(false, std::iter::once(condition_title(&row.condition, row.kind)).chain(cells));
         }
         table
     };
@@ -181,15 +191,15 @@ pub(super) fn levels(results: &Results, version: &Version, in_words: bool) -> Ve
 }
 
 /// The tables of comparisons: one row for each pair of conditions, and the strengths of the conditions.
-pub(super) fn pairs(version: &Version) -> Vec<Table> {
+pub(super) fn pair_tables(version: &ResultVersion) -> Vec<ResultTable> {
     let Some(pairs) = &version.pairs else { return Vec::new() };
     let heads = ["First", "Second", "Wins", "Losses", "Ties", "Both bad", "Share, %", "95 % interval", "Interval by"];
-    let mut table = Table::new("Comparisons", &heads, 2);
+    let mut table = ResultTable::new("Comparisons", &heads, 2);
     if let Some(last) = table.heads.last_mut() {
         last.is_number = false;
     }
     for row in &pairs.rows {
-        table.add(false, pair(row));
+        table.add_row(false, pair_cells(row));
     }
     if let Some(side) = &pairs.side {
         table.notes.push(
@@ -197,65 +207,65 @@ pub(super) fn pairs(version: &Version) -> Vec<Table> {
         );
         table.notes.push(format!(
             "Of the comparisons with a preference, {} % preferred the text shown as A, {} ({}).",
-            number(100.0 * side.value, 1),
+            format_number(100.0 * side.value, 1),
             per_cent(side.interval.as_ref()),
-            words::method(side.method)
+            words::method_name(side.method)
         ));
     }
-    vec![table, strengths(&pairs.strengths)]
+    vec![table, strength_table(&pairs.strengths)]
 }
 
-fn pair(row: &PairRow) -> [String; 9] {
-    let nothing = || NOTHING.to_owned();
+fn pair_cells(row: &PairRow) -> [String; 9] {
+    let nothing = || NO_FIGURE.to_owned();
     [
-        name(&row.first),
-        name(&row.second),
+        to_table_name(&row.first),
+        to_table_name(&row.second),
         row.first_wins.to_string(),
         row.second_wins.to_string(),
         row.ties.to_string(),
         row.both_bad.to_string(),
-        row.share.as_ref().map_or_else(nothing, |share| number(100.0 * share.value, 1)),
+        row.share.as_ref().map_or_else(nothing, |share| format_number(100.0 * share.value, 1)),
         row.share.as_ref().map_or_else(nothing, |share| per_cent(share.interval.as_ref())),
-        row.share.as_ref().map_or_else(nothing, |share| words::method(share.method).to_owned()),
+        row.share.as_ref().map_or_else(nothing, |share| words::method_name(share.method).to_owned()),
     ]
 }
 
 /// An interval of a share, in per cent.
-pub(super) fn per_cent(interval: Option<&wayword_metrics::Interval>) -> String {
-    let ends = |interval: &wayword_metrics::Interval| {
-        format!("[{}, {}]", number(100.0 * interval.low, 1), number(100.0 * interval.high, 1))
+pub(super) fn per_cent(interval: Option<&wayword_metrics::ConfidenceInterval>) -> String {
+    let ends = |interval: &wayword_metrics::ConfidenceInterval| {
+        format!("[{}, {}]", format_number(100.0 * interval.low, 1), format_number(100.0 * interval.high, 1))
     };
-    interval.map_or_else(|| NOTHING.to_owned(), ends)
+    interval.map_or_else(|| NO_FIGURE.to_owned(), ends)
 }
 
-fn strengths(strengths: &Strengths) -> Table {
+fn strength_table(strengths: &ConditionStrengths) -> ResultTable {
     let heads = ["Condition", "Wins", "Losses", "Ties", "Both bad", "Strength", "95 % interval"];
-    let mut table = Table::new("Strengths (Bradley-Terry, ties after Davidson)", &heads, 1);
+    let mut table = ResultTable::new("Strengths (Bradley-Terry, ties after Davidson)", &heads, 1);
     match strengths {
-        Strengths::Unknown { why, .. } => {
-            table.notes.push(format!("There are no strengths: {}.", name(why)));
+        ConditionStrengths::Unknown { why, .. } => {
+            table.notes.push(format!("There are no strengths: {}.", to_table_name(why)));
         }
-        Strengths::Known(known) => {
+        ConditionStrengths::Known(known) => {
             for one in &known.strengths {
                 let counts = [one.wins, one.losses, one.ties, one.both_bad].map(|count| count.to_string());
-                let term = [number(one.term.value, 3), words::ends(Some(&one.term.interval), 3)];
-                table.add(false, std::iter::once(name(&one.system)).chain(counts).chain(term));
+                let term = [format_number(one.term.value, 3), words::format_ends(Some(&one.term.interval), 3)];
+                table.add_row(false, std::iter::once(to_table_name(&one.system)).chain(counts).chain(term));
             }
             table.notes.push(format!(
                 "Strengths are logarithms that sum to 0: the difference of two is the log of the odds of the one over the other where \
                  neither ties. The text shown as A gains {} {} on the same scale. {}, {}, {}; the variance is clustered by persons and by \
                  routes.",
-                number(known.side.value, 3),
-                words::ends(Some(&known.side.interval), 3),
-                count(known.comparisons, "comparison", "comparisons"),
-                count(known.persons, "person", "persons"),
-                count(known.items, "route", "routes"),
+                format_number(known.side.value, 3),
+                words::format_ends(Some(&known.side.interval), 3),
+                count_with_noun(known.comparisons, "comparison", "comparisons"),
+                count_with_noun(known.persons, "person", "persons"),
+                count_with_noun(known.items, "route", "routes"),
             ));
             if let Some(tie) = &known.tie {
                 table.notes.push(format!(
                     "The log of Davidson's parameter of ties is {} {}; both bad counts as a tie.",
-                    number(tie.value, 3),
-                    words::ends(Some(&tie.interval), 3)
+                    format_number(tie.value, 3),
+                    words::format_ends(Some(&tie.interval), 3)
                 ));
             }
         }
@@ -264,22 +274,22 @@ fn strengths(strengths: &Strengths) -> Table {
 }
 
 /// Krippendorff's alpha of each question.
-pub(super) fn agreement(version: &Version) -> Table {
+pub(super) fn agreement_table(version: &ResultVersion) -> ResultTable {
     let heads = ["Question", "Alpha", "95 % interval", "Answers", "Persons", "Items"];
-    let mut table = Table::new("Agreement (Krippendorff's alpha)", &heads, 1);
-    for Agreed { name, alpha } in &version.agreement {
-        let label = if *name == CHOICE { "choice between the texts (nominal)" } else { name };
+    let mut table = ResultTable::new("Agreement (Krippendorff's alpha)", &heads, 1);
+    for QuestionAgreement { name, alpha } in &version.agreement {
+        let label = if *name == CHOICE_QUESTION_NAME { "choice between the texts (nominal)" } else { name };
         let cells = match alpha {
             Some(alpha) => [
-                number(alpha.alpha, 3),
-                words::ends(alpha.interval.as_ref(), 3),
+                format_number(alpha.alpha, 3),
+                words::format_ends(alpha.interval.as_ref(), 3),
                 alpha.answers.to_string(),
                 alpha.persons.to_string(),
                 alpha.items.to_string(),
             ],
-            None => [NOTHING, NOTHING, "0", "0", "0"].map(str::to_owned),
+            None => [NO_FIGURE, NO_FIGURE, "0", "0", "0"].map(str::to_owned),
         };
-        table.add(false, std::iter::once(label.to_owned()).chain(cells));
+        table.add_row(false, std::iter::once(label.to_owned()).chain(cells));
     }
     table.notes.push(
         "1: those who judged the same item always agree; 0: as often as by chance. The interval is a jackknife's over persons and \
@@ -291,7 +301,7 @@ pub(super) fn agreement(version: &Version) -> Table {
 }
 
 /// How many participants there are, by how far they came.
-pub(super) fn submissions(results: &Results) -> Table {
+pub(super) fn submission_table(results: &StudyReport) -> ResultTable {
     let people = &results.people;
     let lease = format!("Started, gone quiet for more than {} minutes", people.lease_s.div_ceil(60));
     let rows: [(&str, u64); 9] = [
@@ -305,27 +315,30 @@ pub(super) fn submissions(results: &Results) -> Table {
         ("Forgotten: answers deleted, in no other number", people.forgotten),
         ("Understood the task at the second try only", people.misunderstood[1] as u64),
     ];
-    let mut table = Table::new("Submissions", &["Status", "Participants"], 1);
+    let mut table = ResultTable::new("Submissions", &["Status", "Participants"], 1);
     for (status, count) in rows {
-        table.add(false, [status.to_owned(), count.to_string()]);
+        table.add_row(false, [status.to_owned(), count.to_string()]);
     }
     let took = people.median_minutes.map_or_else(
         || "Nobody has finished yet".to_owned(),
-        |minutes| format!("Those who finished took {} minutes (median)", number(minutes, 1)),
+        |minutes| format!("Those who finished took {} minutes (median)", format_number(minutes, 1)),
     );
     table.notes.push(format!("{took}; they were told {}.", people.announced_minutes));
     table
 }
 
 /// The attention checks of each participant who failed any.
-pub(super) fn attention(results: &Results) -> Table {
+pub(super) fn attention_table(results: &StudyReport) -> ResultTable {
     let attention = &results.people.attention;
-    let mut table =
-        Table::new("Attention checks that were failed", &["Participant", "Checks answered", "Failed", "Submission"], 1);
+    let mut table = ResultTable::new(
+        "Attention checks that were failed",
+        &["Participant", "Checks answered", "Failed", "Submission"],
+        1,
+    );
     for failed in &attention.by_participant {
         let checks: Vec<String> = failed.checks.iter().map(|number| format!("number {number}")).collect();
         let verdict = if failed.is_over { "may be rejected" } else { "passes" };
-        table.add(
+        table.add_row(
             false,
             [failed.participant.clone(), failed.answered.to_string(), checks.join(", "), verdict.to_owned()],
         );
@@ -335,51 +348,56 @@ pub(super) fn attention(results: &Results) -> Table {
     } else {
         "A study of 5 minutes or more: two failed checks are needed to reject a submission (Prolific's rule)."
     };
-    let answered = count(attention.answered, "check was answered", "checks were answered");
+    let answered = count_with_noun(attention.answered, "check was answered", "checks were answered");
     table.notes.push(format!("{rule} {answered}, {} failed.", attention.failed));
     table
 }
 
 /// What became of the items that were handed out.
-pub(super) fn handed(title: &str, label: &str, rows: &[Handed]) -> Table {
-    let mut table = Table::new(title, &[label, "Given", "Answered", "Went back", "Still out", "Seconds (median)"], 1);
+pub(super) fn handout_table(title: &str, label: &str, rows: &[HandoutCounts]) -> ResultTable {
+    let mut table =
+        ResultTable::new(title, &[label, "Given", "Answered", "Went back", "Still out", "Seconds (median)"], 1);
     for row in rows {
-        let seconds = row.median_seconds.map_or_else(|| NOTHING.to_owned(), |seconds| number(seconds, 1));
+        let seconds = row.median_seconds.map_or_else(|| NO_FIGURE.to_owned(), |seconds| format_number(seconds, 1));
         let counts = [row.given, row.answered, row.returned, row.live].map(|count| count.to_string());
-        table.add(false, std::iter::once(name(&row.of)).chain(counts).chain([seconds]));
+        table.add_row(false, std::iter::once(to_table_name(&row.of)).chain(counts).chain([seconds]));
     }
     table
 }
 
 /// The questions with the words of their levels.
-pub(super) fn wording(results: &Results) -> Option<Table> {
-    let mut table = Table::new("Questions and scales", &["Name", "Question", "1", "2", "3", "4", "5"], 7);
+pub(super) fn wording_table(results: &StudyReport) -> Option<ResultTable> {
+    let mut table = ResultTable::new("Questions and scales", &["Name", "Question", "1", "2", "3", "4", "5"], 7);
     for scale in results.scales {
         let cells = [scale.name, scale.text].into_iter().chain(scale.levels);
-        table.add(false, cells.map(str::to_owned));
+        table.add_row(false, cells.map(str::to_owned));
     }
     (!table.rows.is_empty()).then_some(table)
 }
 
 /// The meaning of each figure.
-pub(super) fn meanings(results: &Results) -> Table {
-    let mut table = Table::new("What is measured", &["Figure", "Name in files", "Meaning"], 3);
+pub(super) fn meaning_table(results: &StudyReport) -> ResultTable {
+    let mut table = ResultTable::new("What is measured", &["Figure", "Name in files", "Meaning"], 3);
     for measure in results.measures {
-        table.add(false, [measure.heading(), measure.name.to_owned(), measure.meaning.to_owned()]);
+        table.add_row(false, [measure.heading_with_unit(), measure.name.to_owned(), measure.meaning.to_owned()]);
     }
     table
 }
 
 /// The conditions: their kinds, and the sources of their texts.
-pub(super) fn conditions(results: &Results) -> Table {
-    let mut table = Table::new("Conditions", &["Condition", "Texts", "Answers", "Persons", "Routes"], 2);
+pub(super) fn condition_table(results: &StudyReport) -> ResultTable {
+    let mut table = ResultTable::new("Conditions", &["Condition", "Texts", "Answers", "Persons", "Routes"], 2);
     let [everybody, _] = &results.versions;
     for (condition, row) in results.conditions.iter().zip(&everybody.rows) {
-        table.add(
+        table.add_row(
             false,
             [
-                title(&condition.name, condition.kind),
-                format!("{}{}", name(&condition.source), if condition.shows_doubts { " (doubts marked)" } else { "" }),
+                condition_title(&condition.name, condition.kind),
+                format!(
+                    "{}{}",
+                    to_table_name(&condition.source),
+                    if condition.shows_doubts { " (doubts marked)" } else { "" }
+                ),
                 row.answers.to_string(),
                 row.persons.to_string(),
                 row.items.to_string(),

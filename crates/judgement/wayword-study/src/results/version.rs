@@ -2,21 +2,22 @@
 //! and only those who finished and passed the attention checks.
 
 use super::{
-    LEVEL,
-    given::{Answered, Given, Whose},
-    measure::{Measure, MeasureKind},
-    pairs::Pairs,
+    CONFIDENCE_LEVEL,
+    given::{AnsweredItem, ParticipantFilter, TextJudgement},
+    measure::{MeasureKind, StudyMeasure},
+    pairs::PairResults,
 };
-use crate::{Data, Kind, Mode, wording::Scale};
+use crate::{ConditionKind, StudyData, StudyTask, wording::RatingScale};
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 use wayword_metrics::{
-    Agreement, Answer, Difference, Figure, Interval, agreement, mean, mean_difference, share, share_difference,
+    ConfidenceInterval, FigureDifference, RaterAgreement, StudyAnswer, StudyFigure, answer_mean, answer_share,
+    krippendorff_alpha, mean_difference, share_difference,
 };
 
 /// The figures under one rule of which participants count.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Version {
+pub struct ResultVersion {
     /// A short name: `everybody` or `finished`.
     pub name: &'static str,
     /// Which answers count, in words.
@@ -26,22 +27,22 @@ pub struct Version {
     /// How many answers count.
     pub answers: usize,
     /// One for each condition, in the order of the plan.
-    pub rows: Vec<Row>,
-    /// Each condition minus the first one. Empty where texts are compared; [`Version::pairs`] then has the comparisons.
-    pub differences: Vec<Less>,
+    pub rows: Vec<ConditionRow>,
+    /// Each condition minus the first one. Empty where texts are compared; [`ResultVersion::pair_tables`] then has the comparisons.
+    pub differences: Vec<ConditionDifference>,
     /// How well participants who judged the same item agree.
-    pub agreement: Vec<Agreed>,
+    pub agreement: Vec<QuestionAgreement>,
     /// The results of the comparisons, where texts are compared.
-    pub pairs: Option<Pairs>,
+    pub pairs: Option<PairResults>,
 }
 
 /// The figures of a condition.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Row {
+pub struct ConditionRow {
     /// Its name.
     pub condition: String,
     /// Where its texts come from.
-    pub kind: Kind,
+    pub kind: ConditionKind,
     /// Whether it is a control: people's texts, or those of another path.
     pub is_control: bool,
     /// How many answers it has.
@@ -51,50 +52,58 @@ pub struct Row {
     /// How many routes they are about.
     pub items: usize,
     /// The figures, by name. A figure without any value is left out.
-    pub figures: BTreeMap<&'static str, Figure>,
+    pub figures: BTreeMap<&'static str, StudyFigure>,
     /// How often each level was chosen, by the name of the question.
     pub levels: BTreeMap<&'static str, [usize; 5]>,
 }
 
 /// A condition minus the first one.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Less {
+pub struct ConditionDifference {
     /// The condition.
     pub condition: String,
     /// The first one.
     pub minus: String,
     /// The differences, by the name of the figure.
-    pub figures: BTreeMap<&'static str, Difference>,
+    pub figures: BTreeMap<&'static str, FigureDifference>,
 }
 
 /// How well participants who judged the same item agree on one question.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Agreed {
+pub struct QuestionAgreement {
     /// The name of the question.
     pub name: &'static str,
     /// Krippendorff's alpha; `None` if no item has two answers, or all answers are the same.
-    pub alpha: Option<Agreement>,
+    pub alpha: Option<RaterAgreement>,
 }
 
 /// The name under which a choice between texts is listed among questions.
-pub(super) const CHOICE: &str = "choice";
+pub(super) const CHOICE_QUESTION_NAME: &str = "choice";
 
-impl Version {
-    pub(super) fn new(data: &Data, answered: &[Answered<'_>], whose: Whose, most_failed: usize) -> Self {
-        let taken: Vec<&Answered<'_>> =
-            answered.iter().filter(|one| whose.takes(one.participant, most_failed)).collect();
-        let given: Vec<Given<'_>> = taken.iter().flat_map(|one| one.given(data)).collect();
-        let measures = Measure::of_mode(data.plan.mode);
-        let scales = super::scales(data.plan.mode);
-        let rows = (0..data.plan.conditions.len()).map(|at| row(data, &given, at, measures, scales)).collect();
-        let is_pair = data.plan.mode == Mode::Pair;
+impl ResultVersion {
+    pub(super) fn new(
+        data: &StudyData,
+        answered: &[AnsweredItem<'_>],
+        whose: ParticipantFilter,
+        most_failed: usize,
+    ) -> Self {
+        let taken: Vec<&AnsweredItem<'_>> =
+            answered.iter().filter(|one| whose.accepts_participant(one.participant, most_failed)).collect();
+        let given: Vec<TextJudgement<'_>> = taken.iter().flat_map(|one| one.text_judgements(data)).collect();
+        let measures = StudyMeasure::for_mode(data.plan.mode);
+        let scales = super::scales_for_mode(data.plan.mode);
+        let rows =
+            (0..data.plan.conditions.len()).map(|at| condition_row(data, &given, at, measures, scales)).collect();
+        let is_pair = data.plan.mode == StudyTask::Pair;
         let others = if is_pair { 0..0 } else { 1..data.plan.conditions.len() };
         let (name, rule) = match whose {
-            Whose::Everybody => (
+            ParticipantFilter::Everybody => (
                 "everybody",
                 "All answers, also of those who did not finish or failed attention checks; none of those who were screened out.",
             ),
-            Whose::Finished => ("finished", "Only answers of those who finished and passed the attention checks."),
+            ParticipantFilter::Finished => {
+                ("finished", "Only answers of those who finished and passed the attention checks.")
+            }
         };
         Self {
             name,
@@ -102,25 +111,31 @@ impl Version {
             persons: taken.iter().map(|one| one.person).collect::<BTreeSet<_>>().len(),
             answers: taken.len(),
             rows,
-            differences: others.map(|at| less(data, &given, at, measures)).collect(),
-            agreement: agreed(data, &taken, scales),
-            pairs: is_pair.then(|| Pairs::new(data, &taken)),
+            differences: others.map(|at| condition_difference(data, &given, at, measures)).collect(),
+            agreement: question_agreements(data, &taken, scales),
+            pairs: is_pair.then(|| PairResults::new(data, &taken)),
         }
     }
 }
 
-fn row(data: &Data, given: &[Given<'_>], at: usize, measures: &[Measure], scales: &'static [Scale]) -> Row {
+fn condition_row(
+    data: &StudyData,
+    given: &[TextJudgement<'_>],
+    at: usize,
+    measures: &[StudyMeasure],
+    scales: &'static [RatingScale],
+) -> ConditionRow {
     let condition = &data.plan.conditions[at];
-    let own: Vec<&Given<'_>> = given.iter().filter(|one| one.condition == at).collect();
-    let figure = |measure: &Measure| {
-        let values = values(&own, measure);
+    let own: Vec<&TextJudgement<'_>> = given.iter().filter(|one| one.condition == at).collect();
+    let figure = |measure: &StudyMeasure| {
+        let values = measure_values(&own, measure);
         let figure = match measure.kind {
-            MeasureKind::Share => share(&values, LEVEL),
-            MeasureKind::Mean => mean(&values, LEVEL),
+            MeasureKind::Share => answer_share(&values, CONFIDENCE_LEVEL),
+            MeasureKind::Mean => answer_mean(&values, CONFIDENCE_LEVEL),
         };
-        figure.map(|figure| (measure.name, within(figure, measure)))
+        figure.map(|figure| (measure.name, clip_figure(figure, measure)))
     };
-    let levels = |(number, scale): (usize, &Scale)| {
+    let levels = |(number, scale): (usize, &RatingScale)| {
         let mut counts = [0; 5];
         for level in own.iter().filter_map(|one| one.levels.get(number)) {
             if let Some(count) = usize::from(*level).checked_sub(1).and_then(|at| counts.get_mut(at)) {
@@ -129,10 +144,10 @@ fn row(data: &Data, given: &[Given<'_>], at: usize, measures: &[Measure], scales
         }
         (scale.name, counts)
     };
-    Row {
+    ConditionRow {
         condition: condition.name.clone(),
         kind: condition.kind,
-        is_control: condition.kind != Kind::Run,
+        is_control: condition.kind != ConditionKind::Run,
         answers: own.len(),
         persons: own.iter().map(|one| one.person).collect::<BTreeSet<_>>().len(),
         items: own.iter().map(|one| one.route).collect::<BTreeSet<_>>().len(),
@@ -141,74 +156,92 @@ fn row(data: &Data, given: &[Given<'_>], at: usize, measures: &[Measure], scales
     }
 }
 
-fn less(data: &Data, given: &[Given<'_>], at: usize, measures: &[Measure]) -> Less {
+fn condition_difference(
+    data: &StudyData,
+    given: &[TextJudgement<'_>],
+    at: usize,
+    measures: &[StudyMeasure],
+) -> ConditionDifference {
     let of = |at: usize| given.iter().filter(move |one| one.condition == at).collect::<Vec<_>>();
     let (this, first) = (of(at), of(0));
-    let difference = |measure: &Measure| {
-        let (this, first) = (values(&this, measure), values(&first, measure));
+    let difference = |measure: &StudyMeasure| {
+        let (this, first) = (measure_values(&this, measure), measure_values(&first, measure));
         let difference = match measure.kind {
-            MeasureKind::Share => share_difference(&this, &first, LEVEL),
-            MeasureKind::Mean => mean_difference(&this, &first, LEVEL),
+            MeasureKind::Share => share_difference(&this, &first, CONFIDENCE_LEVEL),
+            MeasureKind::Mean => mean_difference(&this, &first, CONFIDENCE_LEVEL),
         };
-        difference.map(|difference| (measure.name, apart(difference, measure)))
+        difference.map(|difference| (measure.name, clip_difference(difference, measure)))
     };
     let name = |at: usize| data.plan.conditions[at].name.clone();
-    Less { condition: name(at), minus: name(0), figures: measures.iter().filter_map(difference).collect() }
+    ConditionDifference {
+        condition: name(at),
+        minus: name(0),
+        figures: measures.iter().filter_map(difference).collect(),
+    }
 }
 
 /// The values of a figure. Conditions share routes, so the route is the item for the statistics.
-fn values(given: &[&Given<'_>], measure: &Measure) -> Vec<Answer<usize, u32>> {
-    let answer =
-        |one: &&Given<'_>| measure.value(one).map(|value| Answer { person: one.person, item: one.route, value });
+fn measure_values(given: &[&TextJudgement<'_>], measure: &StudyMeasure) -> Vec<StudyAnswer<usize, u32>> {
+    let answer = |one: &&TextJudgement<'_>| {
+        measure.judgement_value(one).map(|value| StudyAnswer { person: one.person, item: one.route, value })
+    };
     given.iter().filter_map(answer).collect()
 }
 
 /// Clips the interval of a figure to the range of its values.
-fn within(mut figure: Figure, measure: &Measure) -> Figure {
+fn clip_figure(mut figure: StudyFigure, measure: &StudyMeasure) -> StudyFigure {
     let [low, high] = measure.range;
-    figure.interval = figure.interval.map(|interval| cut(&interval, low, high));
+    figure.interval = figure.interval.map(|interval| clip_interval(&interval, low, high));
     figure
 }
 
 /// Clips the interval of a difference to the range that differences of two values can have.
-fn apart(mut difference: Difference, measure: &Measure) -> Difference {
+fn clip_difference(mut difference: FigureDifference, measure: &StudyMeasure) -> FigureDifference {
     if let [Some(low), Some(high)] = measure.range {
-        difference.interval = difference.interval.map(|interval| cut(&interval, Some(low - high), Some(high - low)));
+        difference.interval =
+            difference.interval.map(|interval| clip_interval(&interval, Some(low - high), Some(high - low)));
     }
-    difference.first = within(difference.first, measure);
-    difference.second = within(difference.second, measure);
+    difference.first = clip_figure(difference.first, measure);
+    difference.second = clip_figure(difference.second, measure);
     difference
 }
 
-fn cut(interval: &Interval, low: Option<f64>, high: Option<f64>) -> Interval {
+fn clip_interval(interval: &ConfidenceInterval, low: Option<f64>, high: Option<f64>) -> ConfidenceInterval {
     let (low, high) = (low.unwrap_or(f64::NEG_INFINITY), high.unwrap_or(f64::INFINITY));
-    Interval { low: interval.low.clamp(low, high), high: interval.high.clamp(low, high) }
+    ConfidenceInterval { low: interval.low.clamp(low, high), high: interval.high.clamp(low, high) }
 }
 
 /// Agreement of those who judged the same item: by levels, or by the choice between its texts.
-fn agreed(data: &Data, taken: &[&Answered<'_>], scales: &'static [Scale]) -> Vec<Agreed> {
-    let alpha = |values: &[Answer<usize, u32>], scale| agreement(values, scale, LEVEL);
-    if data.plan.mode == Mode::Pair {
-        let values: Vec<Answer<usize, u32>> = taken.iter().filter_map(|one| choice(one)).collect();
-        return vec![Agreed { name: CHOICE, alpha: alpha(&values, wayword_metrics::Scale::Nominal) }];
+fn question_agreements(
+    data: &StudyData,
+    taken: &[&AnsweredItem<'_>],
+    scales: &'static [RatingScale],
+) -> Vec<QuestionAgreement> {
+    let alpha = |values: &[StudyAnswer<usize, u32>], scale| krippendorff_alpha(values, scale, CONFIDENCE_LEVEL);
+    if data.plan.mode == StudyTask::Pair {
+        let values: Vec<StudyAnswer<usize, u32>> = taken.iter().filter_map(|one| choice_as_number(one)).collect();
+        return vec![QuestionAgreement {
+            name: CHOICE_QUESTION_NAME,
+            alpha: alpha(&values, wayword_metrics::AnswerScale::Nominal),
+        }];
     }
-    let of = |(number, scale): (usize, &'static Scale)| {
-        let value = |one: &&Answered<'_>| {
-            let value = f64::from(*one.levels().get(number)?);
-            Some(Answer { person: one.person, item: one.item.id, value })
+    let of = |(number, scale): (usize, &'static RatingScale)| {
+        let value = |one: &&AnsweredItem<'_>| {
+            let value = f64::from(*one.chosen_levels().get(number)?);
+            Some(StudyAnswer { person: one.person, item: one.item.id, value })
         };
-        let values: Vec<Answer<usize, u32>> = taken.iter().filter_map(value).collect();
-        Agreed { name: scale.name, alpha: alpha(&values, wayword_metrics::Scale::Ordinal) }
+        let values: Vec<StudyAnswer<usize, u32>> = taken.iter().filter_map(value).collect();
+        QuestionAgreement { name: scale.name, alpha: alpha(&values, wayword_metrics::AnswerScale::Ordinal) }
     };
     scales.iter().enumerate().map(of).collect()
 }
 
 /// A choice as a number that does not depend on the sides: the item's first text, its second, a tie, both bad.
-fn choice(one: &Answered<'_>) -> Option<Answer<usize, u32>> {
+fn choice_as_number(one: &AnsweredItem<'_>) -> Option<StudyAnswer<usize, u32>> {
     let value = match one.answer {
-        crate::Answer::Pair { choice: crate::Choice::Tie } => 2.0,
-        crate::Answer::Pair { choice: crate::Choice::Bad } => 3.0,
-        _ => one.preferred()? as f64,
+        crate::ParticipantAnswer::Pair { choice: crate::PairChoice::Tie } => 2.0,
+        crate::ParticipantAnswer::Pair { choice: crate::PairChoice::Bad } => 3.0,
+        _ => one.preferred_text()? as f64,
     };
-    Some(Answer { person: one.person, item: one.item.id, value })
+    Some(StudyAnswer { person: one.person, item: one.item.id, value })
 }

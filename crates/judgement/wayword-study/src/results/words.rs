@@ -1,15 +1,15 @@
 //! Formats numbers, intervals and methods for the tables.
 
-use super::measure::{Measure, Unit};
-use wayword_metrics::{Interval, Method};
+use super::measure::{MeasureUnit, StudyMeasure};
+use wayword_metrics::{ConfidenceInterval, IntervalMethod};
 
 /// Shown in place of a missing figure.
-pub(super) const NOTHING: &str = "–";
+pub(super) const NO_FIGURE: &str = "–";
 
 /// A number with `digits` digits after the point, with a typographic minus, and without a minus before zero.
-pub(super) fn number(value: f64, digits: usize) -> String {
+pub(super) fn format_number(value: f64, digits: usize) -> String {
     if !value.is_finite() {
-        return NOTHING.to_owned();
+        return NO_FIGURE.to_owned();
     }
     let text = format!("{value:.digits$}");
     let is_zero = !text.chars().any(|c| ('1'..='9').contains(&c));
@@ -17,78 +17,88 @@ pub(super) fn number(value: f64, digits: usize) -> String {
 }
 
 /// A value of a measure, in the unit in which it is shown.
-pub(super) fn value(measure: &Measure, value: f64) -> String {
+pub(super) fn format_value(measure: &StudyMeasure, value: f64) -> String {
     match measure.unit {
-        Unit::PerCent => number(100.0 * value, 1),
-        Unit::Level => number(value, 2),
-        Unit::Metres | Unit::Count | Unit::Seconds => number(value, 1),
+        MeasureUnit::PerCent => format_number(100.0 * value, 1),
+        MeasureUnit::Level => format_number(value, 2),
+        MeasureUnit::Metres | MeasureUnit::Count | MeasureUnit::Seconds => format_number(value, 1),
     }
 }
 
 /// An interval of a measure, as `[low, high]`.
-pub(super) fn interval(measure: &Measure, interval: Option<&Interval>) -> String {
-    let ends = |interval: &Interval| format!("[{}, {}]", value(measure, interval.low), value(measure, interval.high));
-    interval.map_or_else(|| NOTHING.to_owned(), ends)
+pub(super) fn format_interval(measure: &StudyMeasure, interval: Option<&ConfidenceInterval>) -> String {
+    let ends = |interval: &ConfidenceInterval| {
+        format!("[{}, {}]", format_value(measure, interval.low), format_value(measure, interval.high))
+    };
+    interval.map_or_else(|| NO_FIGURE.to_owned(), ends)
 }
 
 /// An interval of numbers, as `[low, high]`.
-pub(super) fn ends(interval: Option<&Interval>, digits: usize) -> String {
-    let ends = |interval: &Interval| format!("[{}, {}]", number(interval.low, digits), number(interval.high, digits));
-    interval.map_or_else(|| NOTHING.to_owned(), ends)
+pub(super) fn format_ends(interval: Option<&ConfidenceInterval>, digits: usize) -> String {
+    let ends = |interval: &ConfidenceInterval| {
+        format!("[{}, {}]", format_number(interval.low, digits), format_number(interval.high, digits))
+    };
+    interval.map_or_else(|| NO_FIGURE.to_owned(), ends)
 }
 
 /// The name of the method by which an interval was computed.
-pub(super) fn method(method: Method) -> &'static str {
+pub(super) fn method_name(method: IntervalMethod) -> &'static str {
     match method {
-        Method::Wilson => "Wilson",
-        Method::Student => "Student",
-        Method::Clustered => "clustered",
-        Method::Extreme => "extreme",
-        Method::Newcombe => "Newcombe",
-        Method::None => "none",
+        IntervalMethod::Wilson => "Wilson",
+        IntervalMethod::Student => "Student",
+        IntervalMethod::Clustered => "clustered",
+        IntervalMethod::Extreme => "extreme",
+        IntervalMethod::Newcombe => "Newcombe",
+        IntervalMethod::None => "none",
     }
 }
 
 /// The method as one letter, for superscripts.
-pub(super) fn letter(method: Method) -> &'static str {
+pub(super) fn method_letter(method: IntervalMethod) -> &'static str {
     match method {
-        Method::Wilson => "w",
-        Method::Student => "s",
-        Method::Clustered => "c",
-        Method::Extreme => "e",
-        Method::Newcombe => "n",
-        Method::None => "",
+        IntervalMethod::Wilson => "w",
+        IntervalMethod::Student => "s",
+        IntervalMethod::Clustered => "c",
+        IntervalMethod::Extreme => "e",
+        IntervalMethod::Newcombe => "n",
+        IntervalMethod::None => "",
     }
 }
 
 /// Explains a method in a phrase.
-pub(super) fn meaning(method: Method) -> &'static str {
+pub(super) fn method_meaning(method: IntervalMethod) -> &'static str {
     match method {
-        Method::Wilson => "Wilson's interval; every person and every route occurs once",
-        Method::Student => "Student's t; every person and every route occurs once",
-        Method::Clustered => {
+        IntervalMethod::Wilson => "Wilson's interval; every person and every route occurs once",
+        IntervalMethod::Student => "Student's t; every person and every route occurs once",
+        IntervalMethod::Clustered => {
             "from the variance clustered by persons and by routes, V(persons) + V(routes) − V(cells), never below the larger of the \
              first two, with Student's t of the fewer of persons and routes, less one; of a share on the logit scale; of a difference from \
              both intervals and the correlation through shared persons and routes"
         }
-        Method::Extreme => {
+        IntervalMethod::Extreme => {
             "a share of 0 or 100 % of answers that depend on each other: Wilson's interval of as many answers as there are persons or \
              routes, whichever are fewer"
         }
-        Method::Newcombe => {
+        IntervalMethod::Newcombe => {
             "Newcombe's interval of a difference between two shares; every person and every route occurs once"
         }
-        Method::None => {
+        IntervalMethod::None => {
             "no interval: the answers do not show how far the figure can be trusted (one person, one route, or no spread)"
         }
     }
 }
 
 /// All methods, in the order in which they are explained.
-pub(super) const METHODS: [Method; 6] =
-    [Method::Wilson, Method::Student, Method::Clustered, Method::Extreme, Method::Newcombe, Method::None];
+pub(super) const ALL_METHODS: [IntervalMethod; 6] = [
+    IntervalMethod::Wilson,
+    IntervalMethod::Student,
+    IntervalMethod::Clustered,
+    IntervalMethod::Extreme,
+    IntervalMethod::Newcombe,
+    IntervalMethod::None,
+];
 
 /// A count with its noun.
-pub(super) fn count(number: usize, one: &str, many: &str) -> String {
+pub(super) fn count_with_noun(number: usize, one: &str, many: &str) -> String {
     format!("{number} {}", if number == 1 { one } else { many })
 }

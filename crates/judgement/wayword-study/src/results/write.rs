@@ -1,6 +1,6 @@
 //! Writes the files of the results into a folder.
 
-use super::{Results, latex, markdown, page, sheet};
+use super::{StudyReport, latex, markdown, page, sheet};
 use crate::StudyError;
 use std::{
     fs,
@@ -8,40 +8,40 @@ use std::{
     path::{Path, PathBuf},
 };
 
-impl Results {
+impl StudyReport {
     /// Writes the results into a folder: a page, Markdown, LaTeX, JSON, and the answers as CSV with a codebook. Files of an
     /// earlier call are replaced, each as a whole.
     ///
     /// # Errors
     /// When a file cannot be written.
-    pub fn write(&self, folder: &Path) -> Result<Vec<PathBuf>, StudyError> {
-        fs::create_dir_all(folder).map_err(StudyError::io(folder, "make the folder"))?;
-        self.files()?.into_iter().map(|(name, text)| write(folder, name, &text)).collect()
+    pub fn write_files(&self, folder: &Path) -> Result<Vec<PathBuf>, StudyError> {
+        fs::create_dir_all(folder).map_err(StudyError::io_error(folder, "make the folder"))?;
+        self.render_files()?.into_iter().map(|(name, text)| write_file(folder, name, &text)).collect()
     }
 
-    /// The files with their names, as [`Results::write`] writes them.
+    /// The files with their names, as [`StudyReport::write`] writes them.
     ///
     /// # Errors
     /// When the page cannot be drawn.
-    pub fn files(&self) -> Result<Vec<(&'static str, String)>, StudyError> {
+    pub fn render_files(&self) -> Result<Vec<(&'static str, String)>, StudyError> {
         let json = serde_json::to_string_pretty(self).map_err(|error| {
-            StudyError::refused(format!("results.json cannot be written: {error}"), "report this as a bug")
+            StudyError::refused_request(format!("results.json cannot be written: {error}"), "report this as a bug")
         })?;
-        let codebook = sheet::codebook(&self.sheets);
+        let codebook = sheet::codebook_sheet(&self.sheets);
         let mut files = vec![
-            ("index.html", page::page(self, &self.sheets)?),
-            ("results.md", markdown::markdown(self, &self.sheets)),
-            ("results.tex", latex::latex(self)),
+            ("index.html", page::render_page(self, &self.sheets)?),
+            ("results.md", markdown::render_markdown(self, &self.sheets)),
+            ("results.tex", latex::render_latex(self)),
             ("results.json", json + "\n"),
         ];
-        files.extend(self.sheets.iter().map(|sheet| (sheet.file, sheet.csv())));
-        files.push((codebook.file, codebook.csv()));
+        files.extend(self.sheets.iter().map(|sheet| (sheet.file, sheet.to_csv())));
+        files.push((codebook.file, codebook.to_csv()));
         Ok(files)
     }
 }
 
 /// Writes a file under a temporary name and renames it, so that a crash leaves either the old file or the complete new one.
-fn write(folder: &Path, name: &str, text: &str) -> Result<PathBuf, StudyError> {
+fn write_file(folder: &Path, name: &str, text: &str) -> Result<PathBuf, StudyError> {
     let place = folder.join(name);
     let beside = folder.join(format!(".{name}.part"));
     let written = fs::File::create(&beside).and_then(|mut file| {
@@ -49,6 +49,6 @@ fn write(folder: &Path, name: &str, text: &str) -> Result<PathBuf, StudyError> {
         file.sync_all()?;
         fs::rename(&beside, &place)
     });
-    written.map_err(StudyError::io(&place, "write"))?;
+    written.map_err(StudyError::io_error(&place, "write"))?;
     Ok(place)
 }

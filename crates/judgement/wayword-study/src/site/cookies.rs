@@ -1,70 +1,70 @@
 //! The two cookies of the site: the session of a participant, and, before the consent, the link by which the visitor came.
 
-use crate::store::Arrival;
+use crate::store::ParticipantArrival;
 use axum::http::{HeaderMap, HeaderValue, header};
 use base64::{Engine as _, engine::general_purpose::URL_SAFE_NO_PAD};
 
 /// Longest cookie value that is read, bytes. Longer ones are ignored.
-const LONGEST: usize = 1024;
+const MAX_COOKIE_BYTES: usize = 1024;
 
 /// Reads and writes the cookies.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Cookies {
+pub(super) struct StudyCookies {
     /// Whether browsers reach the site over TLS.
     pub(super) is_secure: bool,
 }
 
-impl Cookies {
-    fn name(self, what: &'static str) -> String {
+impl StudyCookies {
+    fn cookie_name(self, what: &'static str) -> String {
         // A browser takes a `__Host-` cookie only from the host itself, over TLS.
         if self.is_secure { format!("__Host-{what}") } else { what.to_owned() }
     }
 
     /// The session's token.
-    pub(super) fn session(self, headers: &HeaderMap) -> Option<String> {
-        value(headers, &self.name("session"))
+    pub(super) fn session_token(self, headers: &HeaderMap) -> Option<String> {
+        cookie_value(headers, &self.cookie_name("session"))
     }
 
     /// The link by which the visitor came, from the cookie.
-    pub(super) fn arrival(self, headers: &HeaderMap) -> Option<Arrival> {
-        let bytes = URL_SAFE_NO_PAD.decode(value(headers, &self.name("arrival"))?).ok()?;
+    pub(super) fn pending_arrival(self, headers: &HeaderMap) -> Option<ParticipantArrival> {
+        let bytes = URL_SAFE_NO_PAD.decode(cookie_value(headers, &self.cookie_name("arrival"))?).ok()?;
         serde_json::from_slice(&bytes).ok()
     }
 
     /// Sets the session's token. It outlives the browser, so that a participant can go on tomorrow.
     pub(super) fn set_session(self, token: &str) -> Option<HeaderValue> {
-        self.set("session", token, "; Max-Age=604800")
+        self.cookie_header("session", token, "; Max-Age=604800")
     }
 
     /// Stores the link by which the visitor came, for the hour in which they read and consent.
-    pub(super) fn set_arrival(self, arrival: &Arrival) -> Option<HeaderValue> {
+    pub(super) fn set_arrival(self, arrival: &ParticipantArrival) -> Option<HeaderValue> {
         let json = serde_json::to_vec(arrival).ok()?;
-        self.set("arrival", &URL_SAFE_NO_PAD.encode(json), "; Max-Age=3600")
+        self.cookie_header("arrival", &URL_SAFE_NO_PAD.encode(json), "; Max-Age=3600")
     }
 
     /// Removes the arrival cookie.
     pub(super) fn drop_arrival(self) -> Option<HeaderValue> {
-        self.set("arrival", "", "; Max-Age=0")
+        self.cookie_header("arrival", "", "; Max-Age=0")
     }
 
     /// Removes the session cookie.
     pub(super) fn drop_session(self) -> Option<HeaderValue> {
-        self.set("session", "", "; Max-Age=0")
+        self.cookie_header("session", "", "; Max-Age=0")
     }
 
-    fn set(self, what: &'static str, value: &str, age: &str) -> Option<HeaderValue> {
+    fn cookie_header(self, what: &'static str, value: &str, age: &str) -> Option<HeaderValue> {
         let secure = if self.is_secure { "; Secure" } else { "" };
         // Lax, not Strict: a recruiter's link comes from another site, and must find the session.
-        let text = format!("{}={value}; Path=/; HttpOnly; SameSite=Lax{secure}{age}", self.name(what));
+        let text = format!("{}={value}; Path=/; HttpOnly; SameSite=Lax{secure}{age}", self.cookie_name(what));
         HeaderValue::from_str(&text).ok()
     }
 }
 
-fn value(headers: &HeaderMap, name: &str) -> Option<String> {
+fn cookie_value(headers: &HeaderMap, name: &str) -> Option<String> {
     let all = headers.get_all(header::COOKIE).iter().filter_map(|line| line.to_str().ok());
     let pairs = all.flat_map(|line| line.split(';')).filter_map(|pair| pair.trim().split_once('='));
     let mut found = pairs.filter(|(key, _)| *key == name).map(|(_, value)| value);
-    found.next().filter(|value| !value.is_empty() && value.len() <= LONGEST).map(str::to_owned)
+    found.next().filter(|value| !value.is_empty() && value.len() <= MAX_COOKIE_BYTES).map(str::to_owned)
 }
 
 #[cfg(test)]
@@ -77,8 +77,8 @@ mod tests {
 
     #[test]
     fn what_was_set_is_read() {
-        let cookies = Cookies { is_secure: true };
-        let arrival = Arrival::Recruit { person: "p".into(), study: "s".into(), session: "x".into() };
+        let cookies = StudyCookies { is_secure: true };
+        let arrival = ParticipantArrival::Recruit { person: "p".into(), study: "s".into(), session: "x".into() };
         let set = cookies.set_arrival(&arrival).unwrap();
         let set = set.to_str().unwrap();
         assert!(
@@ -86,16 +86,20 @@ mod tests {
             "{set}"
         );
         let pair = set.split(';').next().unwrap();
-        assert_eq!(cookies.arrival(&sent(&format!("a=b; {pair}"))), Some(arrival));
-        assert_eq!(Cookies { is_secure: false }.arrival(&sent(pair)), None);
+        assert_eq!(cookies.pending_arrival(&sent(&format!("a=b; {pair}"))), Some(arrival));
+        assert_eq!(StudyCookies { is_secure: false }.pending_arrival(&sent(pair)), None);
     }
 
     #[test]
     fn malformed_and_oversized_cookies_are_ignored() {
-        let cookies = Cookies { is_secure: false };
+        let cookies = StudyCookies { is_secure: false };
         for text in ["", "session=", "session", "x=y; =; ;;", "arrival=%%%"] {
-            assert_eq!((cookies.session(&sent(text)), cookies.arrival(&sent(text))), (None, None), "{text}");
+            assert_eq!(
+                (cookies.session_token(&sent(text)), cookies.pending_arrival(&sent(text))),
+                (None, None),
+                "{text}"
+            );
         }
-        assert_eq!(cookies.session(&sent(&format!("session={}", "a".repeat(LONGEST + 1)))), None);
+        assert_eq!(cookies.session_token(&sent(&format!("session={}", "a".repeat(MAX_COOKIE_BYTES + 1)))), None);
     }
 }

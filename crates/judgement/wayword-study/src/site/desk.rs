@@ -4,7 +4,7 @@
 //! transaction (a group commit), and answers each of them only when the transaction is on disk.
 
 use crate::{
-    store::{Book, Store},
+    store::{StudyStore, StudyTransaction},
     study::{Study, StudyError},
 };
 use std::{
@@ -14,89 +14,89 @@ use std::{
 use tokio::sync::oneshot;
 
 /// Most requests in one transaction.
-const TOGETHER: usize = 64;
+const MAX_BATCH_REQUESTS: usize = 64;
 /// Most requests in the queue.
-const WAITING: usize = 1024;
+const MAX_WAITING_REQUESTS: usize = 1024;
 
 /// The store cannot take the request now: trying again is safe.
 #[derive(Debug)]
-pub(crate) struct Busy;
+pub(crate) struct DeskBusyError;
 
 /// Sends the reply to the request. The argument is true if the transaction is on disk.
-type Deliver = Box<dyn FnOnce(bool) + Send>;
-type Job = Box<dyn FnOnce(&Book<'_>) -> (bool, Deliver) + Send>;
+type ReplyDelivery = Box<dyn FnOnce(bool) + Send>;
+type DeskJob = Box<dyn FnOnce(&StudyTransaction<'_>) -> (bool, ReplyDelivery) + Send>;
 
 /// A message to the thread.
-enum Work {
-    Ask(Job),
+enum DeskTask {
+    Ask(DeskJob),
     /// Empty the log after a deletion.
     Sweep,
 }
 
 /// Passes requests to the writing thread. Clones share one thread, which ends with the last of them.
 #[derive(Clone)]
-pub(crate) struct Desk {
-    jobs: mpsc::SyncSender<Work>,
+pub(crate) struct StudyDesk {
+    jobs: mpsc::SyncSender<DeskTask>,
 }
 
-impl Desk {
+impl StudyDesk {
     /// Starts the thread.
     ///
     /// # Errors
     /// When the database cannot be opened, or the system has no thread.
     pub(crate) fn open(study: Arc<Study>) -> Result<(Self, JoinHandle<()>), StudyError> {
-        let mut store = Store::open(&study.database())?;
-        let (jobs, waiting) = mpsc::sync_channel::<Work>(WAITING);
+        let mut store = StudyStore::open(&study.database_file())?;
+        let (jobs, waiting) = mpsc::sync_channel::<DeskTask>(MAX_WAITING_REQUESTS);
         let thread = thread::Builder::new()
             .name("study-desk".to_owned())
             .spawn(move || {
                 while let Ok(first) = waiting.recv() {
                     let (mut batch, mut is_sweep) = (Vec::new(), false);
-                    for one in std::iter::once(first).chain(waiting.try_iter().take(TOGETHER - 1)) {
+                    for one in std::iter::once(first).chain(waiting.try_iter().take(MAX_BATCH_REQUESTS - 1)) {
                         match one {
-                            Work::Ask(job) => batch.push(job),
-                            Work::Sweep => is_sweep = true,
+                            DeskTask::Ask(job) => batch.push(job),
+                            DeskTask::Sweep => is_sweep = true,
                         }
                     }
-                    work(&mut store, &study, batch);
+                    run_batch(&mut store, &study, batch);
                     if is_sweep {
-                        store.sweep();
+                        store.empty_log();
                     }
                 }
             })
-            .map_err(StudyError::io("study-desk", "start the thread"))?;
+            .map_err(StudyError::io_error("study-desk", "start the thread"))?;
         Ok((Self { jobs }, thread))
     }
 
     /// Empties the database's log after the pending writes, so that deleted data remain nowhere on the disk.
-    pub(crate) fn sweep(&self) {
+    pub(crate) fn request_sweep(&self) {
         // If the queue is full, the next sweep does it.
-        let _ = self.jobs.try_send(Work::Sweep);
+        let _ = self.jobs.try_send(DeskTask::Sweep);
     }
 
     /// Runs `work` in a transaction, and returns its result when that is on disk. After `Err(Busy)` nothing was written.
-    pub(crate) async fn ask<T: Send + 'static>(
+    pub(crate) async fn ask_store<T: Send + 'static>(
         &self,
-        work: impl FnOnce(&Book<'_>) -> Result<T, StudyError> + Send + 'static,
-    ) -> Result<T, Busy> {
+        work: impl FnOnce(&StudyTransaction<'_>) -> Result<T, StudyError> + Send + 'static,
+    ) -> Result<T, DeskBusyError> {
         let (reply, answer) = oneshot::channel();
-        let job: Job = Box::new(move |book| {
+        let job: DeskJob = Box::new(move |book| {
             let done = work(book);
             let is_good = done.is_ok();
-            let deliver: Deliver = Box::new(move |is_kept| {
+            let deliver: ReplyDelivery = Box::new(move |is_kept| {
                 // The request may have been given up, and then needs no reply.
                 let _ = reply.send(done.ok().filter(|_| is_kept));
             });
             (is_good, deliver)
         });
-        self.jobs.try_send(Work::Ask(job)).map_err(|_| Busy)?;
-        answer.await.ok().flatten().ok_or(Busy)
+        self.jobs.try_send(DeskTask::Ask(job)).map_err(|_| DeskBusyError)?;
+        answer.await.ok().flatten().ok_or(DeskBusyError)
     }
 }
 
-fn work(store: &mut Store, study: &Study, batch: Vec<Job>) {
-    let mut replies: Vec<(bool, Deliver)> = Vec::new();
-    let kept = store.together(study, batch.into_iter(), |job, book| {
+fn run_batch(store: &mut StudyStore, study: &Study, batch: Vec<DeskJob>) {
+    let mut replies: Vec<(bool, ReplyDelivery)> = Vec::new();
+    let kept = store.write_batch(study, batch.into_iter(), |job, book| {
         let (is_good, deliver) = job(book);
         replies.push((is_good, deliver));
         is_good

@@ -1,25 +1,25 @@
 //! Reads and checks the forms that the pages send. The checks of a browser can be bypassed, so all of them are made here again.
 
 use crate::{
-    store::{Given, LONGEST_TEXT},
-    study::{Choice, Mode},
+    store::{LONGEST_TEXT, ParticipantInput},
+    study::{PairChoice, StudyTask},
 };
 use std::collections::BTreeMap;
 
 /// The fields of a form. If a name occurs twice, the last one counts.
-pub(super) type Fields = BTreeMap<String, String>;
+pub(super) type FormFields = BTreeMap<String, String>;
 
 /// Reads the answers to the questions about the task.
 ///
 /// # Errors
 /// A message for the participant that names the missing part.
-pub(super) fn understood(fields: &Fields, questions: usize) -> Result<Given, &'static str> {
-    let all = (0..questions).map(|at| number(fields, &format!("q{at}"))).collect::<Option<Vec<usize>>>();
-    let attempt = number(fields, "try").unwrap_or(0);
-    Ok(Given::Understood { attempt, answers: all.ok_or("Please answer every question.")? })
+pub(super) fn read_comprehension(fields: &FormFields, questions: usize) -> Result<ParticipantInput, &'static str> {
+    let all = (0..questions).map(|at| number_field(fields, &format!("q{at}"))).collect::<Option<Vec<usize>>>();
+    let attempt = number_field(fields, "try").unwrap_or(0);
+    Ok(ParticipantInput::Understood { attempt, answers: all.ok_or("Please answer every question.")? })
 }
 
-pub(super) fn own_text(fields: &Fields) -> Result<Given, &'static str> {
+pub(super) fn own_text(fields: &FormFields) -> Result<ParticipantInput, &'static str> {
     let text = fields.get("own_text").map_or("", String::as_str).trim();
     if text.is_empty() {
         return Err("Please write a text.");
@@ -27,63 +27,71 @@ pub(super) fn own_text(fields: &Fields) -> Result<Given, &'static str> {
     if text.chars().count() > LONGEST_TEXT {
         return Err("Your text is too long. Please write at most 1000 characters.");
     }
-    Ok(Given::OwnText { slot: slot(fields)?, text: text.to_owned() })
+    Ok(ParticipantInput::OwnText { slot: slot_field(fields)?, text: text.to_owned() })
 }
 
-pub(super) fn step(fields: &Fields) -> Result<Given, &'static str> {
-    let (seq, to) = (number(fields, "seq"), number(fields, "to"));
-    Ok(Given::Move { slot: slot(fields)?, seq: seq.ok_or(WAY)?, to: to.ok_or(WAY)? })
+pub(super) fn read_move(fields: &FormFields) -> Result<ParticipantInput, &'static str> {
+    let (seq, to) = (number_field(fields, "seq"), number_field(fields, "to"));
+    Ok(ParticipantInput::Move {
+        slot: slot_field(fields)?,
+        seq: seq.ok_or(MISSING_WAY_MESSAGE)?,
+        to: to.ok_or(MISSING_WAY_MESSAGE)?,
+    })
 }
 
-const WAY: &str = "Please choose a way.";
+const MISSING_WAY_MESSAGE: &str = "Please choose a way.";
 
-pub(super) fn stop(fields: &Fields) -> Result<Given, &'static str> {
-    let seq = number(fields, "seq").ok_or("This page is old. Please load it again.")?;
-    Ok(Given::Stop { slot: slot(fields)?, seq, looks: number(fields, "looks").unwrap_or(0) })
+pub(super) fn read_stop(fields: &FormFields) -> Result<ParticipantInput, &'static str> {
+    let seq = number_field(fields, "seq").ok_or("This page is old. Please load it again.")?;
+    Ok(ParticipantInput::Stop { slot: slot_field(fields)?, seq, looks: number_field(fields, "looks").unwrap_or(0) })
 }
 
-pub(super) fn answer(fields: &Fields, mode: Mode) -> Result<Given, &'static str> {
-    let slot = slot(fields)?;
+pub(super) fn read_answer(fields: &FormFields, mode: StudyTask) -> Result<ParticipantInput, &'static str> {
+    let slot = slot_field(fields)?;
     match mode {
-        Mode::Follow => Ok(Given::Followed {
+        StudyTask::Follow => Ok(ParticipantInput::Followed {
             slot,
-            statements: levels(fields, 's').ok_or("Please choose one answer for every statement.")?,
+            statements: level_fields(fields, 's').ok_or("Please choose one answer for every statement.")?,
         }),
-        Mode::Rate => Ok(Given::Rated {
+        StudyTask::Rate => Ok(ParticipantInput::Rated {
             slot,
-            ratings: levels(fields, 'q').ok_or("Please choose one answer for every question.")?,
+            ratings: level_fields(fields, 'q').ok_or("Please choose one answer for every question.")?,
         }),
-        Mode::Pair => {
+        StudyTask::Pair => {
             let choice = match fields.get("choice").map(String::as_str) {
-                Some("a") => Choice::A,
-                Some("b") => Choice::B,
-                Some("tie") => Choice::Tie,
-                Some("bad") => Choice::Bad,
+                Some("a") => PairChoice::A,
+                Some("b") => PairChoice::B,
+                Some("tie") => PairChoice::Tie,
+                Some("bad") => PairChoice::Bad,
                 _ => return Err("Please choose one of the four answers."),
             };
-            Ok(Given::Chosen { slot, choice })
+            Ok(ParticipantInput::Chosen { slot, choice })
         }
     }
 }
 
-pub(super) fn attention(fields: &Fields) -> Result<Given, &'static str> {
-    let choice = number(fields, "choice").filter(|level| (1..=5).contains(level)).ok_or("Please choose one answer.")?;
-    Ok(Given::Attention { number: number(fields, "number").ok_or("Please choose one answer.")?, choice })
+pub(super) fn read_attention(fields: &FormFields) -> Result<ParticipantInput, &'static str> {
+    let choice =
+        number_field(fields, "choice").filter(|level| (1..=5).contains(level)).ok_or("Please choose one answer.")?;
+    Ok(ParticipantInput::Attention {
+        number: number_field(fields, "number").ok_or("Please choose one answer.")?,
+        choice,
+    })
 }
 
-fn slot(fields: &Fields) -> Result<String, &'static str> {
+fn slot_field(fields: &FormFields) -> Result<String, &'static str> {
     fields.get("slot").cloned().ok_or("This page is old. Please load it again.")
 }
 
-fn levels<const N: usize>(fields: &Fields, letter: char) -> Option<[u8; N]> {
+fn level_fields<const N: usize>(fields: &FormFields, letter: char) -> Option<[u8; N]> {
     let mut levels = [0; N];
     for (at, level) in levels.iter_mut().enumerate() {
-        *level = number(fields, &format!("{letter}{at}")).filter(|level| (1..=5).contains(level))?;
+        *level = number_field(fields, &format!("{letter}{at}")).filter(|level| (1..=5).contains(level))?;
     }
     Some(levels)
 }
 
-fn number<T: std::str::FromStr>(fields: &Fields, name: &str) -> Option<T> {
+fn number_field<T: std::str::FromStr>(fields: &FormFields, name: &str) -> Option<T> {
     fields.get(name)?.parse().ok()
 }
 
@@ -91,7 +99,7 @@ fn number<T: std::str::FromStr>(fields: &Fields, name: &str) -> Option<T> {
 mod tests {
     use super::*;
 
-    fn fields(pairs: &[(&str, &str)]) -> Fields {
+    fn fields(pairs: &[(&str, &str)]) -> FormFields {
         pairs.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect()
     }
 
@@ -99,10 +107,13 @@ mod tests {
     fn a_level_outside_the_scale_is_refused() {
         for level in ["0", "6", "-1", "256", "", "3.5", "<b>"] {
             let all = fields(&[("slot", "s"), ("q0", "1"), ("q1", "2"), ("q2", level), ("q3", "5")]);
-            assert!(answer(&all, Mode::Rate).is_err(), "{level}");
+            assert!(read_answer(&all, StudyTask::Rate).is_err(), "{level}");
         }
         let all = fields(&[("slot", "s"), ("q0", "1"), ("q1", "2"), ("q2", "3"), ("q3", "5")]);
-        assert_eq!(answer(&all, Mode::Rate), Ok(Given::Rated { slot: "s".into(), ratings: [1, 2, 3, 5] }));
+        assert_eq!(
+            read_answer(&all, StudyTask::Rate),
+            Ok(ParticipantInput::Rated { slot: "s".into(), ratings: [1, 2, 3, 5] })
+        );
     }
 
     #[test]

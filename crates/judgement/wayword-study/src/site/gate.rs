@@ -8,22 +8,22 @@ use std::{
 };
 
 /// Limit for a participant's requests: a burst, and a number for each second after that.
-const OF_PERSON: Rate = Rate { at_once: 120.0, each_second: 20.0 };
+const OF_PERSON: RequestPace = RequestPace { at_once: 120.0, each_second: 20.0 };
 /// Limit for a participant's pictures. It is higher, because a page without script loads a whole film at once.
-const OF_PICTURES: Rate = Rate { at_once: 600.0, each_second: 60.0 };
+const OF_PICTURES: RequestPace = RequestPace { at_once: 600.0, each_second: 60.0 };
 /// Limit for the requests of all visitors without a session together.
-const OF_STRANGERS: Rate = Rate { at_once: 600.0, each_second: 100.0 };
+const OF_STRANGERS: RequestPace = RequestPace { at_once: 600.0, each_second: 100.0 };
 /// Most entries in the limiter's tables, so that its memory is bounded.
-const REMEMBERED: usize = 20_000;
+const MAX_REMEMBERED_PARTICIPANTS: usize = 20_000;
 
 /// Content security policy: a page loads nothing from other sites, runs no inline script, and cannot be embedded in another page.
-const POLICY: &str = "default-src 'none'; img-src 'self'; style-src 'self'; script-src 'self'; connect-src 'self'; form-action 'self'; \
+const PAGE_SECURITY_POLICY: &str = "default-src 'none'; img-src 'self'; style-src 'self'; script-src 'self'; connect-src 'self'; form-action 'self'; \
                       base-uri 'none'; frame-ancestors 'none'";
 
 /// The headers of every response.
-pub(super) fn headers(is_secure: bool) -> Vec<(HeaderName, HeaderValue)> {
+pub(super) fn response_headers(is_secure: bool) -> Vec<(HeaderName, HeaderValue)> {
     let mut all = vec![
-        (header::CONTENT_SECURITY_POLICY, HeaderValue::from_static(POLICY)),
+        (header::CONTENT_SECURITY_POLICY, HeaderValue::from_static(PAGE_SECURITY_POLICY)),
         (header::X_CONTENT_TYPE_OPTIONS, HeaderValue::from_static("nosniff")),
         // The address by which a participant came identifies the participant, so no other site may get it. Not `no-referrer`: with
         // that, browsers send forms without an origin.
@@ -56,13 +56,13 @@ pub(super) fn is_own(headers: &HeaderMap, public: Option<&str>, scheme: &str) ->
 }
 
 /// Whether a request with this method changes something.
-pub(super) fn changes(method: &Method) -> bool {
+pub(super) fn changes_state(method: &Method) -> bool {
     !matches!(*method, Method::GET | Method::HEAD)
 }
 
 /// The sender of a request, for the rate limits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(super) enum Asker {
+pub(super) enum RequestSource {
     /// A participant.
     Person(i64),
     /// A participant's pictures.
@@ -71,8 +71,8 @@ pub(super) enum Asker {
     Stranger,
 }
 
-impl Asker {
-    fn rate(self) -> Rate {
+impl RequestSource {
+    fn allowed_rate(self) -> RequestPace {
         match self {
             Self::Person(_) => OF_PERSON,
             Self::Pictures(_) => OF_PICTURES,
@@ -83,7 +83,7 @@ impl Asker {
 
 /// A rate limit: the size of a burst, and the requests per second.
 #[derive(Debug, Clone, Copy)]
-struct Rate {
+struct RequestPace {
     at_once: f64,
     each_second: f64,
 }
@@ -91,51 +91,51 @@ struct Rate {
 /// Limits how fast each participant asks, by the token bucket algorithm: each request takes a token from the participant's bucket, and
 /// the bucket refills at a constant rate. It goes by participant and not by network address, which a whole university may share.
 #[derive(Debug)]
-pub(super) struct Pace {
+pub(super) struct RequestLimiter {
     began: Instant,
-    buckets: Mutex<HashMap<Asker, Bucket>>,
+    buckets: Mutex<HashMap<RequestSource, RequestBucket>>,
     known: Mutex<HashSet<String>>,
 }
 
 #[derive(Debug, Clone, Copy)]
-struct Bucket {
+struct RequestBucket {
     left: f64,
     at_s: f64,
 }
 
-impl Pace {
+impl RequestLimiter {
     pub(super) fn new() -> Self {
         Self { began: Instant::now(), buckets: Mutex::default(), known: Mutex::default() }
     }
 
     /// Whether a session was valid before.
-    pub(super) fn knows(&self, session: &str) -> bool {
+    pub(super) fn knows_session(&self, session: &str) -> bool {
         self.known.lock().unwrap_or_else(PoisonError::into_inner).contains(session)
     }
 
     /// Remembers a valid session.
-    pub(super) fn remember(&self, session: String) {
+    pub(super) fn remember_session(&self, session: String) {
         let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
-        if known.len() >= REMEMBERED {
+        if known.len() >= MAX_REMEMBERED_PARTICIPANTS {
             known.clear();
         }
         known.insert(session);
     }
 
     /// Whether a request is allowed now. If so, it uses up one token.
-    pub(super) fn allows(&self, asker: Asker) -> bool {
+    pub(super) fn allows_request(&self, asker: RequestSource) -> bool {
         self.allows_at(asker, self.began.elapsed().as_secs_f64())
     }
 
-    fn allows_at(&self, asker: Asker, now_s: f64) -> bool {
-        let rate = asker.rate();
+    fn allows_at(&self, asker: RequestSource, now_s: f64) -> bool {
+        let rate = asker.allowed_rate();
         let mut buckets = self.buckets.lock().unwrap_or_else(PoisonError::into_inner);
-        if buckets.len() >= REMEMBERED {
+        if buckets.len() >= MAX_REMEMBERED_PARTICIPANTS {
             // A bucket that has had the time to fill up again need not be remembered.
             let full_after_s = OF_PICTURES.at_once / OF_PICTURES.each_second;
             buckets.retain(|_, bucket| now_s - bucket.at_s < full_after_s);
         }
-        let bucket = buckets.entry(asker).or_insert(Bucket { left: rate.at_once, at_s: now_s });
+        let bucket = buckets.entry(asker).or_insert(RequestBucket { left: rate.at_once, at_s: now_s });
         bucket.left = (bucket.left + (now_s - bucket.at_s) * rate.each_second).min(rate.at_once);
         bucket.at_s = now_s;
         let is_allowed = bucket.left >= 1.0;
@@ -171,25 +171,26 @@ mod tests {
 
     #[test]
     fn who_asks_too_fast_waits_and_nobody_else_does() {
-        let pace = Pace::new();
-        let asked = (0..200).filter(|_| pace.allows_at(Asker::Person(1), 0.0)).count();
+        let pace = RequestLimiter::new();
+        let asked = (0..200).filter(|_| pace.allows_at(RequestSource::Person(1), 0.0)).count();
         assert_eq!(asked, 120);
-        assert!(pace.allows_at(Asker::Person(2), 0.0) && pace.allows_at(Asker::Stranger, 0.0));
-        assert_eq!((0..200).filter(|_| pace.allows_at(Asker::Person(1), 1.0)).count(), 20);
+        assert!(pace.allows_at(RequestSource::Person(2), 0.0) && pace.allows_at(RequestSource::Stranger, 0.0));
+        assert_eq!((0..200).filter(|_| pace.allows_at(RequestSource::Person(1), 1.0)).count(), 20);
     }
 
     #[test]
     fn over_tls_browsers_come_back_over_tls() {
-        let has = |is_secure| headers(is_secure).iter().any(|(name, _)| *name == header::STRICT_TRANSPORT_SECURITY);
+        let has =
+            |is_secure| response_headers(is_secure).iter().any(|(name, _)| *name == header::STRICT_TRANSPORT_SECURITY);
         assert!(has(true) && !has(false));
     }
 
     #[test]
     fn memory_of_the_pace_is_bounded() {
-        let pace = Pace::new();
+        let pace = RequestLimiter::new();
         for person in 0..100_000 {
-            pace.allows_at(Asker::Person(person), f64::from(u32::try_from(person).unwrap()));
+            pace.allows_at(RequestSource::Person(person), f64::from(u32::try_from(person).unwrap()));
         }
-        assert!(pace.buckets.lock().unwrap().len() <= REMEMBERED);
+        assert!(pace.buckets.lock().unwrap().len() <= MAX_REMEMBERED_PARTICIPANTS);
     }
 }

@@ -1,14 +1,14 @@
 //! Starts the site: checks the options, listens, serves HTTP or HTTPS on each connection, and shuts down in order.
 
 use super::{
-    cookies::Cookies,
-    desk::Desk,
-    gate::Pace,
-    pages::Pages,
-    routes::{Site, router},
+    cookies::StudyCookies,
+    desk::StudyDesk,
+    gate::RequestLimiter,
+    pages::PageTemplates,
+    routes::{StudySite, build_router},
     tls,
 };
-use crate::study::{Recruiter, Study, StudyError};
+use crate::study::{RecruiterSettings, Study, StudyError};
 use axum::{Router, extract::Request};
 use hyper::{body::Incoming, server::conn::http1, service::service_fn};
 use hyper_util::rt::{TokioIo, TokioTimer};
@@ -28,34 +28,34 @@ use tokio_rustls::TlsAcceptor;
 use tower_service::Service as _;
 
 /// Most connections at once. More wait for one to end.
-const CONNECTIONS: usize = 1024;
+const MAX_CONNECTIONS: usize = 1024;
 /// Most picture files that are read at once.
-const PICTURES: usize = 64;
+const MAX_PICTURE_READS: usize = 64;
 /// How long a TLS handshake or the head of a request may take.
-const HEAD: Duration = Duration::from_secs(10);
+const HEAD_TIMEOUT: Duration = Duration::from_secs(10);
 /// How long a connection lasts at most. Browsers then open a new one.
-const CONNECTION: Duration = Duration::from_secs(300);
+const CONNECTION_LIFETIME: Duration = Duration::from_secs(300);
 /// How long running requests may go on after the site was asked to stop.
-const GRACE: Duration = Duration::from_secs(5);
+const SHUTDOWN_GRACE: Duration = Duration::from_secs(5);
 /// How often the caller is asked whether to stop.
-const POLL: Duration = Duration::from_millis(100);
+const STOP_POLL_INTERVAL: Duration = Duration::from_millis(100);
 /// Largest head of a request, bytes.
 const MOST_HEAD: usize = 16 * 1024;
 
 /// How the site can be reached.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Listen {
+pub struct ListenOptions {
     /// The address on which it listens. Port 0 takes any free port.
     pub address: SocketAddr,
     /// Whether it speaks TLS.
-    pub security: Security,
+    pub security: SiteSecurity,
     /// The address that participants use, as `https://study.example.org`, if another server forwards their requests to this one.
     pub public: Option<String>,
 }
 
 /// Whether the site speaks TLS.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Security {
+pub enum SiteSecurity {
     /// It does not, and listens on this machine alone.
     Loopback,
     /// It does not, and others in the network can read along. Only if the user asks for it.
@@ -73,7 +73,7 @@ pub enum Security {
 
 /// The addresses of a running site.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Started {
+pub struct SiteAddress {
     /// The address on which it listens.
     pub address: SocketAddr,
     /// The URL that participants open, without a slash at the end.
@@ -84,82 +84,86 @@ pub struct Started {
 ///
 /// # Errors
 /// When the settings forbid it, the address cannot be had, or a file cannot be used.
-pub fn serve(
+pub fn serve_study(
     study: Study,
-    listen: &Listen,
-    started: impl FnOnce(&Started),
+    listen: &ListenOptions,
+    started: impl FnOnce(&SiteAddress),
     should_stop: impl Fn() -> bool,
 ) -> Result<(), StudyError> {
-    check(&study, listen)?;
-    let host = host(listen.address.ip());
+    check_listen_options(&study, listen)?;
+    let host = reachable_host(listen.address.ip());
     let acceptor = match &listen.security {
-        Security::Loopback | Security::InsecureLan => None,
-        Security::Tls { certificate, key } => Some(tls::of_files(certificate, key)?),
-        Security::SelfSigned => Some(tls::self_signed(&study.folder, host)?),
+        SiteSecurity::Loopback | SiteSecurity::InsecureLan => None,
+        SiteSecurity::Tls { certificate, key } => Some(tls::of_files(certificate, key)?),
+        SiteSecurity::SelfSigned => Some(tls::self_signed(&study.folder, host)?),
     };
     let scheme = if acceptor.is_some() { "https" } else { "http" };
     let public = listen.public.as_ref().map(|url| url.trim_end_matches('/').to_owned());
     let is_secure = public.as_ref().map_or(acceptor.is_some(), |url| url.starts_with("https://"));
     let study = Arc::new(study);
-    let (desk, thread) = Desk::open(Arc::clone(&study))?;
-    let site = Site {
+    let (desk, thread) = StudyDesk::open(Arc::clone(&study))?;
+    let site = StudySite {
         study,
         desk,
-        pages: Pages::new()?,
-        cookies: Cookies { is_secure },
-        pace: Pace::new(),
-        readers: Semaphore::new(PICTURES),
+        pages: PageTemplates::new()?,
+        cookies: StudyCookies { is_secure },
+        pace: RequestLimiter::new(),
+        readers: Semaphore::new(MAX_PICTURE_READS),
         public: public.clone(),
         scheme,
     };
     let runtime = tokio::runtime::Builder::new_multi_thread()
         .enable_all()
         .build()
-        .map_err(StudyError::io("the async runtime", "start"))?;
+        .map_err(StudyError::io_error("the async runtime", "start"))?;
     let served = runtime.block_on(async {
-        let listener =
-            TcpListener::bind(listen.address).await.map_err(StudyError::io(listen.address.to_string(), "listen on"))?;
-        let address = listener.local_addr().map_err(StudyError::io(listen.address.to_string(), "listen on"))?;
+        let listener = TcpListener::bind(listen.address)
+            .await
+            .map_err(StudyError::io_error(listen.address.to_string(), "listen on"))?;
+        let address = listener.local_addr().map_err(StudyError::io_error(listen.address.to_string(), "listen on"))?;
         let url = public.unwrap_or_else(|| format!("{scheme}://{}", SocketAddr::new(host, address.port())));
-        started(&Started { address, url });
-        accept(listener, acceptor, router(Arc::new(site)), should_stop).await;
+        started(&SiteAddress { address, url });
+        accept_connections(listener, acceptor, build_router(Arc::new(site)), should_stop).await;
         Ok(())
     });
-    runtime.shutdown_timeout(GRACE);
+    runtime.shutdown_timeout(SHUTDOWN_GRACE);
     // The desk's thread ends when the last request has gone.
     let _ = thread.join();
     served
 }
 
-fn check(study: &Study, listen: &Listen) -> Result<(), StudyError> {
+fn check_listen_options(study: &Study, listen: &ListenOptions) -> Result<(), StudyError> {
     let is_loopback = listen.address.ip().is_loopback();
-    if !is_loopback && listen.security == Security::Loopback {
+    if !is_loopback && listen.security == SiteSecurity::Loopback {
         let problem = format!("{}: others could read along, and the cookies with it", listen.address);
         let hint =
             "listen on 127.0.0.1 behind a server with TLS, or give --tls CERT KEY, --self-signed, or --insecure-lan";
-        return Err(StudyError::refused(problem, hint));
+        return Err(StudyError::refused_request(problem, hint));
     }
     let is_plain = listen.public.as_ref().is_some_and(|url| !url.starts_with("https://"));
-    if is_plain && listen.security != Security::InsecureLan {
+    if is_plain && listen.security != SiteSecurity::InsecureLan {
         let problem = "--public: participants would come without TLS";
-        return Err(StudyError::refused(problem, "give an address that begins with https://, or --insecure-lan"));
+        return Err(StudyError::refused_request(
+            problem,
+            "give an address that begins with https://, or --insecure-lan",
+        ));
     }
     let is_open = !is_loopback || listen.public.is_some();
-    let is_recruited = matches!(study.settings.recruiter, Recruiter::Parameters { .. });
+    let is_recruited = matches!(study.settings.recruiter, RecruiterSettings::Parameters { .. });
     if is_open && is_recruited && study.settings.codes.done.is_empty() {
         let problem =
             "study.toml: `codes.done` is empty, so participants would have nothing to take back to the recruiter";
-        return Err(StudyError::refused(problem, "copy the codes from the recruiter's page into [codes]"));
+        return Err(StudyError::refused_request(problem, "copy the codes from the recruiter's page into [codes]"));
     }
     if is_open && study.settings.contact.trim().is_empty() {
         let problem = "study.toml: `contact` is empty, so participants could ask nobody";
-        return Err(StudyError::refused(problem, "give a name, an institution and an address"));
+        return Err(StudyError::refused_request(problem, "give a name, an institution and an address"));
     }
     Ok(())
 }
 
 /// The address that a participant's browser can open. For `0.0.0.0` this is the address of this machine in its network.
-fn host(listen: IpAddr) -> IpAddr {
+fn reachable_host(listen: IpAddr) -> IpAddr {
     if !listen.is_unspecified() {
         return listen;
     }
@@ -170,10 +174,15 @@ fn host(listen: IpAddr) -> IpAddr {
     own.map_or(IpAddr::V4(Ipv4Addr::LOCALHOST), |own| own.ip())
 }
 
-async fn accept(listener: TcpListener, acceptor: Option<TlsAcceptor>, router: Router, should_stop: impl Fn() -> bool) {
-    let places = Arc::new(Semaphore::new(CONNECTIONS));
+async fn accept_connections(
+    listener: TcpListener,
+    acceptor: Option<TlsAcceptor>,
+    router: Router,
+    should_stop: impl Fn() -> bool,
+) {
+    let places = Arc::new(Semaphore::new(MAX_CONNECTIONS));
     let (end, ending) = watch::channel(());
-    let mut poll = time::interval(POLL);
+    let mut poll = time::interval(STOP_POLL_INTERVAL);
     loop {
         let stream = tokio::select! {
             _ = poll.tick() => {
@@ -186,7 +195,7 @@ async fn accept(listener: TcpListener, acceptor: Option<TlsAcceptor>, router: Ro
                 Ok((stream, _)) => stream,
                 // Too many open files, or a connection that went away: the next may do better.
                 Err(_) => {
-                    time::sleep(POLL).await;
+                    time::sleep(STOP_POLL_INTERVAL).await;
                     continue;
                 }
             },
@@ -197,30 +206,35 @@ async fn accept(listener: TcpListener, acceptor: Option<TlsAcceptor>, router: Ro
         };
         let (acceptor, router, ending) = (acceptor.clone(), router.clone(), ending.clone());
         tokio::spawn(async move {
-            converse(stream, acceptor, router, ending).await;
+            handle_connection(stream, acceptor, router, ending).await;
             drop(place);
         });
     }
     drop(ending);
     let _ = end.send(());
-    let _ = time::timeout(GRACE, end.closed()).await;
+    let _ = time::timeout(SHUTDOWN_GRACE, end.closed()).await;
 }
 
-async fn converse(stream: TcpStream, acceptor: Option<TlsAcceptor>, router: Router, ending: watch::Receiver<()>) {
+async fn handle_connection(
+    stream: TcpStream,
+    acceptor: Option<TlsAcceptor>,
+    router: Router,
+    ending: watch::Receiver<()>,
+) {
     // Answers are small and complete: waiting for more to send with them costs time.
     let _ = stream.set_nodelay(true);
     match acceptor {
-        None => speak(stream, router, ending).await,
+        None => serve_http(stream, router, ending).await,
         Some(acceptor) => {
-            if let Ok(Ok(stream)) = time::timeout(HEAD, acceptor.accept(stream)).await {
-                speak(stream, router, ending).await;
+            if let Ok(Ok(stream)) = time::timeout(HEAD_TIMEOUT, acceptor.accept(stream)).await {
+                serve_http(stream, router, ending).await;
             }
         }
     }
 }
 
 /// Serves HTTP on one connection. Errors on it are the client's and are not reported.
-async fn speak(
+async fn serve_http(
     stream: impl AsyncRead + AsyncWrite + Unpin + Send + 'static,
     router: Router,
     mut ending: watch::Receiver<()>,
@@ -228,15 +242,15 @@ async fn speak(
     let service = service_fn(move |request: Request<Incoming>| router.clone().call(request));
     let connection = http1::Builder::new()
         .timer(TokioTimer::new())
-        .header_read_timeout(HEAD)
+        .header_read_timeout(HEAD_TIMEOUT)
         .max_buf_size(MOST_HEAD)
         .serve_connection(TokioIo::new(stream), service);
     tokio::pin!(connection);
     tokio::select! {
         _ = connection.as_mut() => return,
         _ = ending.changed() => {}
-        () = time::sleep(CONNECTION) => {}
+        () = time::sleep(CONNECTION_LIFETIME) => {}
     }
     connection.as_mut().graceful_shutdown();
-    let _ = time::timeout(GRACE, connection).await;
+    let _ = time::timeout(SHUTDOWN_GRACE, connection).await;
 }

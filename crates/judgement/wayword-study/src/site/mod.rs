@@ -10,4 +10,4 @@ mod routes;
 mod tls;
 mod ways;
 
-pub use listen::{Listen, Security, Started, serve};
+pub use listen::{ListenOptions, SiteAddress, SiteSecurity, serve_study};

@@ -1,14 +1,17 @@
 //! Renders the pages from templates. No value that a template receives reveals the condition of a text or the goal of a path.
 
-use super::{forms::Fields, ways::ways};
+use super::{forms::FormFields, ways::ways_from_place};
 use crate::{
-    store::{Book, Done, Entry, Held, MOST_MOVES, Outcome, Stage},
-    study::{Mode, Route, Scene, Status, Study, StudyError, Told},
-    token::hash,
-    wording::{AGREEMENT, QUESTIONS, STATEMENTS},
+    store::{
+        AnswerProgress, ArrivalOutcome, MOST_MOVES, ParticipantStage, ParticipationOutcome, StoredSlot,
+        StudyTransaction,
+    },
+    study::{ParticipantStatus, Study, StudyError, StudyRoute, StudyScene, StudyTask, StudyText},
+    token::hash_parts,
+    wording::{AGREEMENT_LEVELS, FOLLOW_STATEMENTS, RATE_QUESTIONS},
 };
 use minijinja::{Environment, Value, context};
-use wayword_core::{Heading, ViewpointId, doubt::parts};
+use wayword_core::{Heading, ViewpointId, doubt::split_at_doubts};
 
 const TEMPLATES: [(&str, &str); 13] = [
     ("base.html", include_str!("pages/base.html")),
@@ -27,40 +30,40 @@ const TEMPLATES: [(&str, &str); 13] = [
 ];
 
 /// The templates of all pages.
-pub(super) struct Pages {
+pub(super) struct PageTemplates {
     templates: Environment<'static>,
 }
 
 /// The name of a template with the values to fill in.
 #[derive(Debug)]
-pub(super) struct Page {
+pub(super) struct StudyPage {
     name: &'static str,
     values: Value,
 }
 
 /// Values that all pages of a participant have.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Around {
-    /// A public mark of the person, see [`mark`].
+pub(super) struct PageContext {
+    /// A public mark of the person, see [`person_mark`].
     pub(super) who: Option<String>,
     /// A message about a missing or wrong field.
     pub(super) error: Option<&'static str>,
     /// The fields as they were filled in, if one of them was missing or wrong.
-    pub(super) given: Option<Fields>,
+    pub(super) given: Option<FormFields>,
 }
 
 /// A public mark of a person for the pages. It is the same in each session, so an answer that was kept in the browser can still be
 /// sent after the participant has come in again.
-pub(super) fn mark(name: &str) -> String {
-    hash(&["mark", name])[..8].iter().map(|byte| format!("{byte:02x}")).collect()
+pub(super) fn person_mark(name: &str) -> String {
+    hash_parts(&["mark", name])[..8].iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// A short hash of the consent text. A changed text has another version.
 pub(super) fn consent_version(study: &Study) -> String {
-    hash(&study.settings.consent_words())[..6].iter().map(|byte| format!("{byte:02x}")).collect()
+    hash_parts(&study.settings.consent_words())[..6].iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-impl Pages {
+impl PageTemplates {
     /// Reads the templates.
     ///
     /// # Errors
@@ -68,7 +71,7 @@ impl Pages {
     pub(super) fn new() -> Result<Self, StudyError> {
         let mut templates = Environment::new();
         for (name, source) in TEMPLATES {
-            templates.add_template(name, source).map_err(|error| unfit(&error))?;
+            templates.add_template(name, source).map_err(|error| template_error(&error))?;
         }
         Ok(Self { templates })
     }
@@ -77,18 +80,22 @@ impl Pages {
     ///
     /// # Errors
     /// When a value is missing, which tests rule out.
-    pub(super) fn html(&self, page: &Page) -> Result<String, StudyError> {
-        let template = self.templates.get_template(&format!("{}.html", page.name)).map_err(|error| unfit(&error))?;
-        template.render(&page.values).map_err(|error| unfit(&error))
+    pub(super) fn render_html(&self, page: &StudyPage) -> Result<String, StudyError> {
+        let template =
+            self.templates.get_template(&format!("{}.html", page.name)).map_err(|error| template_error(&error))?;
+        template.render(&page.values).map_err(|error| template_error(&error))
     }
 }
 
-fn unfit(error: &minijinja::Error) -> StudyError {
-    StudyError::refused(format!("a page cannot be made: {error:#}"), "this is a fault of the program; please report it")
+fn template_error(error: &minijinja::Error) -> StudyError {
+    StudyError::refused_request(
+        format!("a page cannot be made: {error:#}"),
+        "this is a fault of the program; please report it",
+    )
 }
 
-impl Page {
-    fn new(study: &Study, name: &'static str, around: &Around, can_withdraw: bool, own: Value) -> Self {
+impl StudyPage {
+    fn new(study: &Study, name: &'static str, around: &PageContext, can_withdraw: bool, own: Value) -> Self {
         let settings = &study.settings;
         let shared = context! {
             page => name,
@@ -105,7 +112,7 @@ impl Page {
     }
 
     /// The page on which people consent.
-    pub(super) fn consent(study: &Study, around: &Around) -> Self {
+    pub(super) fn consent_page(study: &Study, around: &PageContext) -> Self {
         let own = context! {
             paragraphs => study.settings.about, agreement => study.settings.agreement, version => consent_version(study),
         };
@@ -113,23 +120,23 @@ impl Page {
     }
 
     /// A page with a message only.
-    pub(super) fn message(study: &Study, heading: &str, text: &str, retry: bool) -> Self {
-        Self::new(study, "message", &Around::default(), false, context! { heading, text, retry })
+    pub(super) fn message_page(study: &Study, heading: &str, text: &str, retry: bool) -> Self {
+        Self::new(study, "message", &PageContext::default(), false, context! { heading, text, retry })
     }
 
     /// The page that asks a participant who wants to stop what shall happen to the answers.
-    pub(super) fn withdraw(study: &Study, around: &Around) -> Self {
+    pub(super) fn withdraw_page(study: &Study, around: &PageContext) -> Self {
         Self::new(study, "withdraw", around, false, Value::UNDEFINED)
     }
 
     /// The last page for visitors who did not consent, and for participants after their answers were deleted.
-    pub(super) fn gone(study: &Study, has_consented: bool) -> Self {
+    pub(super) fn gone_page(study: &Study, has_consented: bool) -> Self {
         let outcome = if has_consented { "withdrawn" } else { "no_consent" };
         let code = if has_consented { "" } else { study.settings.codes.no_consent.as_str() };
-        Self::end(study, &Around::default(), outcome, code, 0, false)
+        Self::end_page(study, &PageContext::default(), outcome, code, 0, false)
     }
 
-    fn end(study: &Study, around: &Around, outcome: &str, code: &str, answers: u32, kept: bool) -> Self {
+    fn end_page(study: &Study, around: &PageContext, outcome: &str, code: &str, answers: u32, kept: bool) -> Self {
         let code = Some(code).filter(|code| !code.is_empty());
         let url = Some(&study.settings.codes.return_url).filter(|url| !url.is_empty());
         let encoded =
@@ -138,41 +145,43 @@ impl Page {
         Self::new(study, "done", around, around.who.is_some(), context! { outcome, code, return_url, answers, kept })
     }
 
-    fn over(study: &Study, around: &Around, outcome: Outcome) -> Self {
+    fn outcome_page(study: &Study, around: &PageContext, outcome: ParticipationOutcome) -> Self {
         let codes = &study.settings.codes;
         let (name, code) = match outcome.status {
-            Status::ScreenedOut => ("screened_out", &codes.screened_out),
-            Status::AttentionFailed => ("attention_failed", &codes.attention_failed),
-            Status::Withdrawn => return Self::end(study, around, "withdrawn", "", outcome.answers, true),
-            Status::Started | Status::Complete => ("done", &codes.done),
+            ParticipantStatus::ScreenedOut => ("screened_out", &codes.screened_out),
+            ParticipantStatus::AttentionFailed => ("attention_failed", &codes.attention_failed),
+            ParticipantStatus::Withdrawn => {
+                return Self::end_page(study, around, "withdrawn", "", outcome.answers, true);
+            }
+            ParticipantStatus::Started | ParticipantStatus::Complete => ("done", &codes.done),
         };
-        Self::end(study, around, name, code, outcome.answers, true)
+        Self::end_page(study, around, name, code, outcome.answers, true)
     }
 
     /// The page for the stage that a participant has reached.
-    pub(super) fn of_stage(book: &Book<'_>, person: i64, around: &Around) -> Result<Self, StudyError> {
+    pub(super) fn of_stage(book: &StudyTransaction<'_>, person: i64, around: &PageContext) -> Result<Self, StudyError> {
         let study = book.study();
-        let stage = book.stage(person)?;
-        let done = book.done(person)?;
+        let stage = book.current_stage(person)?;
+        let done = book.answer_progress(person)?;
         let under = |name, own| Self::new(study, name, around, true, own);
         Ok(match stage {
-            Stage::Over(outcome) => Self::over(study, around, outcome),
-            Stage::Understood { attempt } => under(
+            ParticipantStage::Over(outcome) => Self::outcome_page(study, around, outcome),
+            ParticipantStage::Understood { attempt } => under(
                 "understood",
                 context! {
-                    try => attempt, wrong => attempt > 0, intro => steps(study),
+                    try => attempt, wrong => attempt > 0, intro => task_steps(study),
                     questions => study.settings.questions.iter()
                         .map(|question| context! { text => question.text, answers => question.answers }).collect::<Vec<_>>(),
                 },
             ),
-            Stage::Attention { number, level } => {
-                let asked = AGREEMENT[usize::from(level.clamp(1, 5)) - 1];
+            ParticipantStage::Attention { number, level } => {
+                let asked = AGREEMENT_LEVELS[usize::from(level.clamp(1, 5)) - 1];
                 let text = format!("This is an attention check. Please choose \u{201c}{asked}\u{201d}.");
-                under("attention", context! { number, text, levels => AGREEMENT, ..progress(done) })
+                under("attention", context! { number, text, levels => AGREEMENT_LEVELS, ..progress_context(done) })
             }
-            Stage::Item(held) => match Self::of_item(book, &held, around, done) {
+            ParticipantStage::Item(held) => match Self::of_item(book, &held, around, done) {
                 Some(page) => page,
-                None => Self::message(
+                None => Self::message_page(
                     study,
                     "This item cannot be shown",
                     "Please tell the people who do this study.",
@@ -182,53 +191,60 @@ impl Page {
         })
     }
 
-    fn of_item(book: &Book<'_>, held: &Held, around: &Around, done: Done) -> Option<Self> {
+    fn of_item(
+        book: &StudyTransaction<'_>,
+        held: &StoredSlot,
+        around: &PageContext,
+        done: AnswerProgress,
+    ) -> Option<Self> {
         let study = book.study();
-        let (item, route, scene) = book.of(held)?;
+        let (item, route, scene) = book.slot_contents(held)?;
         let film = || {
             let alt: Vec<&str> = route.film.iter().map(|picture| picture.alt.as_str()).collect();
             context! { frames => alt.len(), alt }
         };
         let text = item.texts.first().map(|told| &told.text);
         let (name, own) = match study.plan.mode {
-            Mode::Rate if study.settings.write_first && held.own_text.is_none() => {
+            StudyTask::Rate if study.settings.write_first && held.own_text.is_none() => {
                 ("watch", context! { film => film(), examples => study.settings.examples })
             }
-            Mode::Rate => (
+            StudyTask::Rate => (
                 "rate",
                 context! {
-                    film => film(), examples => study.settings.examples, own_text => held.own_text, text, questions => QUESTIONS,
+                    film => film(), examples => study.settings.examples, own_text => held.own_text, text, questions => RATE_QUESTIONS,
                 },
             ),
-            Mode::Pair => {
+            StudyTask::Pair => {
                 let other = item.texts.get(1).map(|told| &told.text);
                 let (a, b) = if held.is_turned { (other, text) } else { (text, other) };
                 ("pair", context! { film => film(), a, b })
             }
-            Mode::Follow if held.stopped_ms.is_some() => ("follow_after", context! { text, statements => STATEMENTS }),
-            Mode::Follow => {
+            StudyTask::Follow if held.stopped_ms.is_some() => {
+                ("follow_after", context! { text, statements => FOLLOW_STATEMENTS })
+            }
+            StudyTask::Follow => {
                 let told = item.texts.first()?;
-                ("follow", context! { ..marked(told), ..standing(held, route, scene?)? })
+                ("follow", context! { ..marked_runs(told), ..walker_context(held, route, scene?)? })
             }
         };
         let own = context! { slot => held.slot, is_practice => held.is_practice, ..own };
         let shown = if held.is_practice {
             own
         } else {
-            context! { ..own, ..progress(done) }
+            context! { ..own, ..progress_context(done) }
         };
         Some(Self::new(study, name, around, true, shown))
     }
 }
 
 /// Splits a text into runs of words. A marked run has its number, grade and alternatives.
-fn marked(told: &Told) -> Value {
+fn marked_runs(told: &StudyText) -> Value {
     let mut number = 0;
-    let runs = parts(&told.text, &told.marks, |mark| mark.span).into_iter();
-    let run = |(words, mark): (&str, Option<&crate::study::Mark>)| {
+    let runs = split_at_doubts(&told.text, &told.marks, |mark| mark.span).into_iter();
+    let run = |(words, mark): (&str, Option<&crate::study::TextMark>)| {
         number += usize::from(mark.is_some());
         let mark = mark.map(|mark| {
-            let (grade, says) = (mark.grade.name(), mark.grade.told());
+            let (grade, says) = (mark.grade.name(), mark.grade.reader_label());
             context! { number, grade, says, alternatives => mark.alternatives }
         });
         context! { words, mark }
@@ -238,38 +254,42 @@ fn marked(told: &Told) -> Value {
 }
 
 /// The values for a walker's page: the place, the viewing direction and the ways on.
-fn standing(held: &Held, route: &Route, scene: &Scene) -> Option<Value> {
-    let (here, facing) = stand(held, route, scene)?;
+fn walker_context(held: &StoredSlot, route: &StudyRoute, scene: &StudyScene) -> Option<Value> {
+    let (here, facing) = walker_place(held, route, scene)?;
     let place = scene.places.get(here)?;
     let seq = held.moves.len();
     Some(context! {
         seq,
         panorama => format!("/look/{}/{seq}.jpg", held.slot),
         facing_deg => (facing.deg() * 10.0).round() / 10.0,
-        ways => if seq < MOST_MOVES { ways(scene, place, facing) } else { Vec::new() },
+        ways => if seq < MOST_MOVES { ways_from_place(scene, place, facing) } else { Vec::new() },
         moves_left => MOST_MOVES - seq.min(MOST_MOVES),
     })
 }
 
 /// The viewpoint of the walker and the direction of the last step; at the start, the start heading of the path.
-fn stand<'a>(held: &'a Held, route: &'a Route, scene: &Scene) -> Option<(&'a ViewpointId, Heading)> {
+fn walker_place<'a>(
+    held: &'a StoredSlot,
+    route: &'a StudyRoute,
+    scene: &StudyScene,
+) -> Option<(&'a ViewpointId, Heading)> {
     let start = route.viewpoints.first()?;
     let Some(here) = held.moves.last() else { return Some((start, route.start_heading)) };
     let before = held.moves.len().checked_sub(2).and_then(|at| held.moves.get(at)).unwrap_or(start);
     let (from, to) = (scene.places.get(before)?, scene.places.get(here)?);
-    Some((here, Heading::towards(from.at(), to.at()).unwrap_or(route.start_heading)))
+    Some((here, Heading::towards(from.eye_position(), to.eye_position()).unwrap_or(route.start_heading)))
 }
 
-fn progress(done: Done) -> Value {
+fn progress_context(done: AnswerProgress) -> Value {
     let is_half = done.expected >= 4 && done.answered == done.expected / 2;
     context! { where => context! { done => done.answered, of => done.expected }, break_offered => is_half }
 }
 
 /// The steps of the task, for the page before the first item.
-fn steps(study: &Study) -> Vec<&'static str> {
+fn task_steps(study: &Study) -> Vec<&'static str> {
     let practice = "The first one is for practice. It does not count.";
     match study.plan.mode {
-        Mode::Follow => {
+        StudyTask::Follow => {
             let marks = "Some words may be marked: a program doubts them. They may be wrong, or right. Under the text you read what may stand there instead.";
             let has_marks = study.plan.conditions.iter().any(|condition| condition.shows_doubts);
             let first = ["You read a text. It tells the way through a building."];
@@ -281,19 +301,19 @@ fn steps(study: &Study) -> Vec<&'static str> {
             ];
             first.into_iter().chain(has_marks.then_some(marks)).chain(then).collect()
         }
-        Mode::Rate if study.settings.write_first => vec![
+        StudyTask::Rate if study.settings.write_first => vec![
             "You watch a walk through a building.",
             "You write a text that would lead somebody along the walk.",
             "Then you read another text about the same walk, and answer four questions about it.",
             practice,
         ],
-        Mode::Rate => vec![
+        StudyTask::Rate => vec![
             "You watch a walk through a building.",
             "You read a text about the walk.",
             "You answer four questions about the text.",
             practice,
         ],
-        Mode::Pair => vec![
+        StudyTask::Pair => vec![
             "You watch a walk through a building.",
             "You read two texts about it, A and B.",
             "You say which one describes the walk better.",
@@ -303,25 +323,27 @@ fn steps(study: &Study) -> Vec<&'static str> {
 }
 
 /// The message page for an arrival that may not take part.
-pub(super) fn refused(study: &Study, entry: &Entry) -> Page {
+pub(super) fn refusal_page(study: &Study, entry: &ArrivalOutcome) -> StudyPage {
     let (heading, text, retry) = match entry {
-        Entry::Twice => (
+        ArrivalOutcome::Twice => (
             "You have taken part already",
             "Please open the link with which you started. If that does not help, ask us.",
             false,
         ),
-        Entry::Gone => {
+        ArrivalOutcome::Gone => {
             ("You stopped taking part", "Your answers were deleted. One cannot take part again after that.", false)
         }
-        Entry::Full => {
+        ArrivalOutcome::Full => {
             ("All places are taken at the moment", "A place may become free. Please try again in some minutes.", true)
         }
-        Entry::Closed => ("This study is over", "It takes no more answers. Thank you for your interest.", false),
-        Entry::Unknown | Entry::New | Entry::Back(_) => {
+        ArrivalOutcome::Closed => {
+            ("This study is over", "It takes no more answers. Thank you for your interest.", false)
+        }
+        ArrivalOutcome::Unknown | ArrivalOutcome::New | ArrivalOutcome::Back(_) => {
             ("This link leads to no study", "Please open the link that you were given, as a whole.", false)
         }
     };
-    Page::message(study, heading, text, retry)
+    StudyPage::message_page(study, heading, text, retry)
 }
 
 #[cfg(test)]
@@ -330,6 +352,6 @@ mod tests {
 
     #[test]
     fn all_templates_are_well_formed() {
-        Pages::new().unwrap();
+        PageTemplates::new().unwrap();
     }
 }

@@ -11,8 +11,8 @@ use tokio_rustls::{
 };
 
 /// The files of the self-signed certificate.
-const CERTIFICATE: &str = "self-signed.pem";
-const KEY: &str = "self-signed.key";
+const SELF_SIGNED_CERTIFICATE_FILE: &str = "self-signed.pem";
+const SELF_SIGNED_KEY_FILE: &str = "self-signed.key";
 
 /// TLS with a certificate and a key, both in PEM.
 ///
@@ -42,14 +42,14 @@ pub(super) fn of_files(certificate: &Path, key: &Path) -> Result<TlsAcceptor, St
 /// # Errors
 /// When it cannot be made or written.
 pub(super) fn self_signed(folder: &Path, address: IpAddr) -> Result<TlsAcceptor, StudyError> {
-    let (certificate, key) = (folder.join(CERTIFICATE), folder.join(KEY));
+    let (certificate, key) = (folder.join(SELF_SIGNED_CERTIFICATE_FILE), folder.join(SELF_SIGNED_KEY_FILE));
     if !(certificate.is_file() && key.is_file()) {
         let names = vec!["localhost".to_owned(), "127.0.0.1".to_owned(), address.to_string()];
         let made = rcgen::generate_simple_self_signed(names).map_err(|error| {
-            StudyError::refused(format!("no certificate can be made: {error}"), "give --tls CERT KEY")
+            StudyError::refused_request(format!("no certificate can be made: {error}"), "give --tls CERT KEY")
         })?;
-        fs::write(&certificate, made.cert.pem()).map_err(StudyError::io(&certificate, "write"))?;
-        write_secret(&key, &made.signing_key.serialize_pem()).map_err(StudyError::io(&key, "write"))?;
+        fs::write(&certificate, made.cert.pem()).map_err(StudyError::io_error(&certificate, "write"))?;
+        write_secret(&key, &made.signing_key.serialize_pem()).map_err(StudyError::io_error(&key, "write"))?;
     }
     of_files(&certificate, &key)
 }

@@ -1,8 +1,8 @@
 //! Stores the input of participants. Each input is stored once; if a browser sends it again, nothing changes and it is acknowledged
 //! again.
 
-use super::{Book, stage::Held};
-use crate::study::{Answer, Choice, Mode, Status, StudyError};
+use super::{StudyTransaction, stage::StoredSlot};
+use crate::study::{PairChoice, ParticipantAnswer, ParticipantStatus, StudyError, StudyTask};
 use rusqlite::params;
 
 /// Most steps of a walk. Paths of the known datasets have fewer than 20.
@@ -14,7 +14,7 @@ const MOST_LOOKS: u32 = 100_000;
 
 /// One input of a participant.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) enum Given {
+pub(crate) enum ParticipantInput {
     /// The answers to the questions about the task.
     Understood { attempt: u32, answers: Vec<usize> },
     /// A text that the participant wrote.
@@ -28,14 +28,14 @@ pub(crate) enum Given {
     /// The levels of a text.
     Rated { slot: String, ratings: [u8; 4] },
     /// Which text is better.
-    Chosen { slot: String, choice: Choice },
+    Chosen { slot: String, choice: PairChoice },
     /// An attention check.
     Attention { number: u32, choice: u8 },
 }
 
 /// Why an input is not stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Refusal {
+pub(crate) enum InputRefusal {
     /// It does not belong to this person, or does not exist.
     Unknown,
     /// It comes before a step that must be done first, or after the end.
@@ -46,56 +46,62 @@ pub(crate) enum Refusal {
     Closed,
 }
 
-type Kept = Result<Result<(), Refusal>, StudyError>;
+type InputResult = Result<Result<(), InputRefusal>, StudyError>;
 
-impl Book<'_> {
+impl StudyTransaction<'_> {
     /// Stores an input of a person, once.
-    pub(crate) fn give(&self, person: i64, given: Given) -> Kept {
+    pub(crate) fn store_input(&self, person: i64, given: ParticipantInput) -> InputResult {
         if self.is_closed()? {
-            return Ok(Err(Refusal::Closed));
+            return Ok(Err(InputRefusal::Closed));
         }
         match given {
-            Given::Understood { attempt, answers } => self.understood(person, attempt, &answers),
-            Given::Attention { number, choice } => self.attention(person, number, choice),
-            Given::OwnText { slot, text } => self.with(person, &slot, |held| self.own_text(held, &text)),
-            Given::Move { slot, seq, to } => self.with(person, &slot, |held| self.step(held, seq, to)),
-            Given::Stop { slot, seq, looks } => self.with(person, &slot, |held| self.stop(held, seq, looks)),
-            Given::Rated { slot, ratings } => self.with(person, &slot, |held| {
-                let is_early = self.study.settings.write_first && held.own_text.is_none();
-                self.answer(person, held, Mode::Rate, is_early, &Answer::Rate { ratings })
-            }),
-            Given::Chosen { slot, choice } => {
-                self.with(person, &slot, |held| self.answer(person, held, Mode::Pair, false, &Answer::Pair { choice }))
+            ParticipantInput::Understood { attempt, answers } => self.store_comprehension(person, attempt, &answers),
+            ParticipantInput::Attention { number, choice } => self.store_attention(person, number, choice),
+            ParticipantInput::OwnText { slot, text } => {
+                self.with_slot(person, &slot, |held| self.own_text(held, &text))
             }
-            Given::Followed { slot, statements } => self.with(person, &slot, |held| {
-                let answer = Answer::Follow {
+            ParticipantInput::Move { slot, seq, to } => {
+                self.with_slot(person, &slot, |held| self.store_move(held, seq, to))
+            }
+            ParticipantInput::Stop { slot, seq, looks } => {
+                self.with_slot(person, &slot, |held| self.store_stop(held, seq, looks))
+            }
+            ParticipantInput::Rated { slot, ratings } => self.with_slot(person, &slot, |held| {
+                let is_early = self.study.settings.write_first && held.own_text.is_none();
+                self.store_answer(person, held, StudyTask::Rate, is_early, &ParticipantAnswer::Rate { ratings })
+            }),
+            ParticipantInput::Chosen { slot, choice } => self.with_slot(person, &slot, |held| {
+                self.store_answer(person, held, StudyTask::Pair, false, &ParticipantAnswer::Pair { choice })
+            }),
+            ParticipantInput::Followed { slot, statements } => self.with_slot(person, &slot, |held| {
+                let answer = ParticipantAnswer::Follow {
                     statements,
                     looks: held.looks,
                     stopped_ms: held.stopped_ms.unwrap_or(self.now_ms),
                 };
-                self.answer(person, held, Mode::Follow, held.stopped_ms.is_none(), &answer)
+                self.store_answer(person, held, StudyTask::Follow, held.stopped_ms.is_none(), &answer)
             }),
         }
     }
 
     /// Runs `work` on an item that the person has. If the item is already answered, it only acknowledges that.
-    fn with(&self, person: i64, slot: &str, work: impl FnOnce(&Held) -> Kept) -> Kept {
-        let Some(held) = self.named(person, slot)? else { return Ok(Err(Refusal::Unknown)) };
+    fn with_slot(&self, person: i64, slot: &str, work: impl FnOnce(&StoredSlot) -> InputResult) -> InputResult {
+        let Some(held) = self.slot_by_name(person, slot)? else { return Ok(Err(InputRefusal::Unknown)) };
         match held.state.as_str() {
             "answered" => Ok(Ok(())),
             "live" => work(&held),
-            _ => Ok(Err(Refusal::Returned)),
+            _ => Ok(Err(InputRefusal::Returned)),
         }
     }
 
-    fn understood(&self, person: i64, attempt: u32, answers: &[usize]) -> Kept {
+    fn store_comprehension(&self, person: i64, attempt: u32, answers: &[usize]) -> InputResult {
         let find = "SELECT status = 'started' AND NOT understood, misunderstood FROM person WHERE id = ?1";
         let (is_open, now): (bool, u32) = self.db.query_row(find, [person], |row| Ok((row.get(0)?, row.get(1)?)))?;
         if !is_open || attempt < now {
             return Ok(Ok(()));
         }
         if attempt > now {
-            return Ok(Err(Refusal::OutOfTurn));
+            return Ok(Err(InputRefusal::OutOfTurn));
         }
         let right = self.study.settings.questions.iter().map(|question| question.right);
         if right.eq(answers.iter().copied()) {
@@ -104,20 +110,20 @@ impl Book<'_> {
         }
         self.db.execute("UPDATE person SET misunderstood = misunderstood + 1 WHERE id = ?1", [person])?;
         if now + 1 >= 2 {
-            self.end(person, Status::ScreenedOut)?;
+            self.end_participation(person, ParticipantStatus::ScreenedOut)?;
         }
         Ok(Ok(()))
     }
 
-    fn attention(&self, person: i64, number: u32, choice: u8) -> Kept {
+    fn store_attention(&self, person: i64, number: u32, choice: u8) -> InputResult {
         let answered: u32 =
             self.db.query_row("SELECT count(*) FROM attention WHERE person = ?1", [person], |row| row.get(0))?;
         if number < answered {
             return Ok(Ok(()));
         }
-        let is_due = self.check_due(person, self.done(person)?)? == Some(number);
-        if !is_due || self.outcome(person)?.is_some() {
-            return Ok(Err(Refusal::OutOfTurn));
+        let is_due = self.check_due(person, self.answer_progress(person)?)? == Some(number);
+        if !is_due || self.find_outcome(person)?.is_some() {
+            return Ok(Err(InputRefusal::OutOfTurn));
         }
         let passed = choice == self.asked_level(person, number)?;
         let kept = "INSERT INTO attention (person, number, passed, at_ms) VALUES (?1, ?2, ?3, ?4)";
@@ -126,7 +132,7 @@ impl Book<'_> {
         Ok(Ok(()))
     }
 
-    fn own_text(&self, held: &Held, text: &str) -> Kept {
+    fn own_text(&self, held: &StoredSlot, text: &str) -> InputResult {
         if held.own_text.is_none() {
             let text: String = text.chars().take(LONGEST_TEXT).collect();
             self.db.execute("UPDATE slot SET own_text = ?2 WHERE id = ?1", params![held.id, text])?;
@@ -134,30 +140,32 @@ impl Book<'_> {
         Ok(Ok(()))
     }
 
-    fn step(&self, held: &Held, seq: usize, to: usize) -> Kept {
+    fn store_move(&self, held: &StoredSlot, seq: usize, to: usize) -> InputResult {
         if seq < held.moves.len() {
             return Ok(Ok(()));
         }
         if seq > held.moves.len() || seq >= MOST_MOVES || held.stopped_ms.is_some() {
-            return Ok(Err(Refusal::OutOfTurn));
+            return Ok(Err(InputRefusal::OutOfTurn));
         }
-        let Some((_, route, Some(scene))) = self.of(held) else { return Ok(Err(Refusal::Unknown)) };
+        let Some((_, route, Some(scene))) = self.slot_contents(held) else { return Ok(Err(InputRefusal::Unknown)) };
         let here = held.moves.last().or_else(|| route.viewpoints.first());
         let place = here.and_then(|here| scene.places.get(here));
-        let Some(there) = place.and_then(|place| place.neighbours.get(to)) else { return Ok(Err(Refusal::Unknown)) };
+        let Some(there) = place.and_then(|place| place.neighbours.get(to)) else {
+            return Ok(Err(InputRefusal::Unknown));
+        };
         let kept = "INSERT INTO move (slot, seq, viewpoint, at_ms) VALUES (?1, ?2, ?3, ?4)";
         self.db.execute(kept, params![held.id, i64::try_from(seq).unwrap_or(i64::MAX), there.as_str(), self.now_ms])?;
         Ok(Ok(()))
     }
 
-    fn stop(&self, held: &Held, seq: usize, looks: u32) -> Kept {
-        if self.study.plan.mode != Mode::Follow {
-            return Ok(Err(Refusal::OutOfTurn));
+    fn store_stop(&self, held: &StoredSlot, seq: usize, looks: u32) -> InputResult {
+        if self.study.plan.mode != StudyTask::Follow {
+            return Ok(Err(InputRefusal::OutOfTurn));
         }
         if held.stopped_ms.is_none() {
             // An old page, of a place that the walker has left, must not end the walk.
             if seq != held.moves.len() {
-                return Ok(Err(Refusal::OutOfTurn));
+                return Ok(Err(InputRefusal::OutOfTurn));
             }
             let stopped = "UPDATE slot SET stopped_ms = ?2, looks = ?3 WHERE id = ?1";
             self.db.execute(stopped, params![held.id, self.now_ms, looks.min(MOST_LOOKS)])?;
@@ -165,11 +173,18 @@ impl Book<'_> {
         Ok(Ok(()))
     }
 
-    fn answer(&self, person: i64, held: &Held, of: Mode, is_early: bool, answer: &Answer) -> Kept {
+    fn store_answer(
+        &self,
+        person: i64,
+        held: &StoredSlot,
+        of: StudyTask,
+        is_early: bool,
+        answer: &ParticipantAnswer,
+    ) -> InputResult {
         if self.study.plan.mode != of || is_early {
-            return Ok(Err(Refusal::OutOfTurn));
+            return Ok(Err(InputRefusal::OutOfTurn));
         }
-        let Ok(answer) = serde_json::to_string(answer) else { return Ok(Err(Refusal::Unknown)) };
+        let Ok(answer) = serde_json::to_string(answer) else { return Ok(Err(InputRefusal::Unknown)) };
         let kept = "UPDATE slot SET state = 'answered', answer = ?2, answered_ms = ?3 WHERE id = ?1";
         self.db.execute(kept, params![held.id, answer, self.now_ms])?;
         self.end_if_done(person)?;

@@ -3,48 +3,48 @@
 //! Items with the fewest answers come first, and no participant gets a route twice. An item is lent for the time of a lease, which each
 //! sign of life renews. When the lease has run out, the item may go to another participant.
 
-use super::{Book, people::fresh};
-use crate::study::{Item, StudyError};
+use super::{StudyTransaction, people::new_token};
+use crate::study::{StudyError, StudyItem};
 use rusqlite::params;
 use std::collections::{BTreeMap, BTreeSet};
-use wayword_core::seed::derive;
+use wayword_core::seed::derive_seed;
 
 /// How full an item is.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Filled {
+pub(super) struct ItemFillCount {
     pub(super) answered: u32,
     /// Lent to people under a lease that has not run out.
     pub(super) live: u32,
 }
 
 /// How many answers an item has, plus those that its current holders may still give.
-fn taken(filled: &BTreeMap<u32, Filled>, item: u32) -> u32 {
+fn filled_places(filled: &BTreeMap<u32, ItemFillCount>, item: u32) -> u32 {
     filled.get(&item).map_or(0, |filled| filled.answered + filled.live)
 }
 
-impl Book<'_> {
+impl StudyTransaction<'_> {
     pub(super) fn lease_ms(&self) -> i64 {
         i64::try_from(self.study.settings.lease_s).unwrap_or(i64::MAX / 2000).saturating_mul(1000)
     }
 
     /// How full each item is. A lease that ends later than one that begins now was written before the clock was set back; it counts as
     /// run out.
-    pub(super) fn filled(&self) -> Result<BTreeMap<u32, Filled>, StudyError> {
+    pub(super) fn fill_counts(&self) -> Result<BTreeMap<u32, ItemFillCount>, StudyError> {
         let mut count = self.db.prepare_cached(
             "SELECT item, sum(state = 'answered'), sum(state = 'live' AND lease_ms BETWEEN ?1 + 1 AND ?2) FROM slot \
              WHERE position IS NOT NULL GROUP BY item",
         )?;
         let counts = count.query_map([self.now_ms, self.now_ms + self.lease_ms()], |row| {
-            Ok((row.get(0)?, Filled { answered: row.get(1)?, live: row.get(2)? }))
+            Ok((row.get(0)?, ItemFillCount { answered: row.get(1)?, live: row.get(2)? }))
         })?;
         Ok(counts.collect::<Result<_, _>>()?)
     }
 
     /// How many items, each on another route, would be left for one more person if all current participants finish.
-    pub(super) fn room(&self) -> Result<u32, StudyError> {
-        let filled = self.filled()?;
+    pub(super) fn count_free_items(&self) -> Result<u32, StudyError> {
+        let filled = self.fill_counts()?;
         let per_item = self.study.plan.per_item;
-        let free = |item: &Item| u64::from(per_item.saturating_sub(taken(&filled, item.id)));
+        let free = |item: &StudyItem| u64::from(per_item.saturating_sub(filled_places(&filled, item.id)));
         let open: u64 = self.study.items.iter().filter(|item| !item.is_practice).map(free).sum();
         let routes: BTreeSet<u32> =
             self.study.items.iter().filter(|item| !item.is_practice && free(item) > 0).map(|item| item.route).collect();
@@ -70,21 +70,23 @@ impl Book<'_> {
     /// Gives a person the next item: among the least filled ones, one of the condition that the person has had least often, and among
     /// these one by the seed. Returns false if no item is left for this person.
     pub(super) fn hand_out_next(&self, person: i64) -> Result<bool, StudyError> {
-        let filled = self.filled()?;
-        let (had, name) = self.had(person)?;
+        let filled = self.fill_counts()?;
+        let (had, name) = self.items_handed_out(person)?;
         let routes: BTreeSet<u32> = had.iter().map(|item| item.route).collect();
         let mut conditions: BTreeMap<&str, u32> = BTreeMap::new();
         for told in had.iter().filter(|item| !item.is_practice).flat_map(|item| &item.texts) {
             *conditions.entry(&told.condition).or_default() += 1;
         }
         let seed = self.study.plan.seed;
-        let key = |item: &&Item| {
+        let key = |item: &&StudyItem| {
             let known: u32 =
                 item.texts.iter().map(|told| conditions.get(told.condition.as_str()).copied().unwrap_or(0)).sum();
-            (taken(&filled, item.id), known, derive(seed, &["item", &name, &item.id.to_string()]))
+            (filled_places(&filled, item.id), known, derive_seed(seed, &["item", &name, &item.id.to_string()]))
         };
-        let open = |item: &&Item| {
-            !item.is_practice && taken(&filled, item.id) < self.study.plan.per_item && !routes.contains(&item.route)
+        let open = |item: &&StudyItem| {
+            !item.is_practice
+                && filled_places(&filled, item.id) < self.study.plan.per_item
+                && !routes.contains(&item.route)
         };
         let Some(item) = self.study.items.iter().filter(open).min_by_key(key) else { return Ok(false) };
         let position = had.iter().filter(|item| !item.is_practice).count();
@@ -93,16 +95,16 @@ impl Book<'_> {
     }
 
     /// The items that a person has got so far, and the person's id in the results.
-    fn had(&self, person: i64) -> Result<(Vec<&Item>, String), StudyError> {
+    fn items_handed_out(&self, person: i64) -> Result<(Vec<&StudyItem>, String), StudyError> {
         let name: String = self.db.query_row("SELECT name FROM person WHERE id = ?1", [person], |row| row.get(0))?;
         let mut slots = self.db.prepare_cached("SELECT item FROM slot WHERE person = ?1")?;
         let ids: Vec<u32> = slots.query_map([person], |row| row.get(0))?.collect::<Result<_, _>>()?;
         Ok((ids.into_iter().filter_map(|id| self.study.items.get(id as usize)).collect(), name))
     }
 
-    fn hand_out(&self, person: i64, item: &Item, position: Option<u32>) -> Result<(), StudyError> {
-        let name = fresh()?;
-        let is_turned = derive(self.study.plan.seed, &["sides", &name]) % 2 == 1;
+    fn hand_out(&self, person: i64, item: &StudyItem, position: Option<u32>) -> Result<(), StudyError> {
+        let name = new_token()?;
+        let is_turned = derive_seed(self.study.plan.seed, &["sides", &name]) % 2 == 1;
         self.db.execute(
             "INSERT INTO slot (name, person, item, route, position, state, lease_ms, given_ms, is_turned) \
              VALUES (?1, ?2, ?3, ?4, ?5, 'live', ?6, ?7, ?8)",
@@ -113,10 +115,16 @@ impl Book<'_> {
 
     /// Renews the lease of an item. If the lease has run out and others have filled the item meanwhile, the item is returned instead,
     /// and the result is false.
-    pub(super) fn hold(&self, slot: i64, item: u32, lease_ms: i64, is_practice: bool) -> Result<bool, StudyError> {
+    pub(super) fn renew_lease(
+        &self,
+        slot: i64,
+        item: u32,
+        lease_ms: i64,
+        is_practice: bool,
+    ) -> Result<bool, StudyError> {
         let until_ms = self.now_ms + self.lease_ms();
         let is_over = lease_ms <= self.now_ms;
-        if is_over && !is_practice && taken(&self.filled()?, item) >= self.study.plan.per_item {
+        if is_over && !is_practice && filled_places(&self.fill_counts()?, item) >= self.study.plan.per_item {
             self.db.execute("UPDATE slot SET state = 'returned' WHERE id = ?1 AND state = 'live'", [slot])?;
             return Ok(false);
         }

@@ -1,20 +1,20 @@
 //! Counts how far a study is, for `study status`.
 
-use super::{Book, people};
-use crate::study::{Status, StudyError};
+use super::{StudyTransaction, people};
+use crate::study::{ParticipantStatus, StudyError};
 use rusqlite::params;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
 /// How far a study is.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct Progress {
+pub struct StudyProgress {
     /// Whether it is closed and accepts no more answers.
     pub is_closed: bool,
     /// One row for each condition; where texts are compared, for each pair of conditions.
-    pub rows: Vec<Row>,
+    pub rows: Vec<ConditionProgress>,
     /// How many participants there are of each status.
-    pub participants: BTreeMap<Status, u32>,
+    pub participants: BTreeMap<ParticipantStatus, u32>,
     /// How many of the started ones gave a sign of life within the lease.
     pub live: u32,
     /// How many were forgotten.
@@ -25,7 +25,7 @@ pub struct Progress {
 
 /// How far the items of a condition are.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct Row {
+pub struct ConditionProgress {
     /// The condition, or two with ` | ` between them.
     pub condition: String,
     /// How many items.
@@ -40,11 +40,11 @@ pub struct Row {
     pub answered_per_item: (u32, u32),
 }
 
-impl Book<'_> {
+impl StudyTransaction<'_> {
     /// How far the study is.
-    pub(crate) fn progress(&self) -> Result<Progress, StudyError> {
-        let filled = self.filled()?;
-        let mut rows: Vec<Row> = Vec::new();
+    pub(crate) fn read_progress(&self) -> Result<StudyProgress, StudyError> {
+        let filled = self.fill_counts()?;
+        let mut rows: Vec<ConditionProgress> = Vec::new();
         for item in self.study.items.iter().filter(|item| !item.is_practice) {
             let names: Vec<&str> = item.texts.iter().map(|told| told.condition.as_str()).collect();
             let condition = names.join(" | ");
@@ -54,7 +54,14 @@ impl Book<'_> {
                 Some(found) => &mut rows[found],
                 None => {
                     let answered_per_item = (u32::MAX, 0);
-                    rows.push(Row { condition, items: 0, wanted: 0, answered: 0, live: 0, answered_per_item });
+                    rows.push(ConditionProgress {
+                        condition,
+                        items: 0,
+                        wanted: 0,
+                        answered: 0,
+                        live: 0,
+                        answered_per_item,
+                    });
                     let last = rows.len() - 1;
                     &mut rows[last]
                 }
@@ -70,12 +77,12 @@ impl Book<'_> {
         let participants =
             counts.query_map([], |row| Ok((people::status_of(row, 0)?, row.get(1)?)))?.collect::<Result<_, _>>()?;
         let unused = "SELECT count(*) FROM link WHERE hash NOT IN (SELECT link FROM person)";
-        Ok(Progress {
+        Ok(StudyProgress {
             is_closed: self.is_closed()?,
             rows,
             participants,
-            live: self.live()?,
-            forgotten: people::forgotten(self)?,
+            live: self.count_live()?,
+            forgotten: people::count_forgotten(self)?,
             unused_links: self.db.query_row(unused, params![], |row| row.get(0))?,
         })
     }

@@ -9,12 +9,12 @@ mod read;
 mod recruits;
 mod stage;
 
-pub(crate) use answers::{Given, LONGEST_TEXT, MOST_MOVES, Refusal};
-pub use counts::{Progress, Row};
-pub(crate) use people::{Arrival, Entry, Outcome, Withdrawal};
-pub use people::{Forgotten, Invited};
-pub use recruits::{Reconciled, Reconciliation};
-pub(crate) use stage::{Done, Held, Stage};
+pub(crate) use answers::{InputRefusal, LONGEST_TEXT, MOST_MOVES, ParticipantInput};
+pub use counts::{ConditionProgress, StudyProgress};
+pub(crate) use people::{ArrivalOutcome, ParticipantArrival, ParticipationOutcome, WithdrawalChoice};
+pub use people::{ErasureReport, InviteTokens};
+pub use recruits::{Reconciliation, ReconciliationRow};
+pub(crate) use stage::{AnswerProgress, ParticipantStage, StoredSlot};
 
 #[cfg(test)]
 mod tests;
@@ -26,26 +26,26 @@ use std::{
     time::{Duration, SystemTime, UNIX_EPOCH},
 };
 
-const SCHEMA: &str = include_str!("schema.sql");
+const DATABASE_SCHEMA: &str = include_str!("schema.sql");
 /// Version of the schema.
-const VERSION: i64 = 1;
+const SCHEMA_VERSION: i64 = 1;
 /// How long a command waits for another process that is writing.
-const BUSY: Duration = Duration::from_secs(10);
+const BUSY_TIMEOUT: Duration = Duration::from_secs(10);
 
 /// The database of a study.
 #[derive(Debug)]
-pub(crate) struct Store {
+pub(crate) struct StudyStore {
     db: Connection,
 }
 
-impl Store {
+impl StudyStore {
     /// Opens the database, and makes it where there is none.
     ///
     /// # Errors
     /// When it cannot be opened, or is of a later version.
     pub(crate) fn open(file: &Path) -> Result<Self, StudyError> {
         let db = Connection::open(file)?;
-        db.busy_timeout(BUSY)?;
+        db.busy_timeout(BUSY_TIMEOUT)?;
         db.pragma_update(None, "journal_mode", "WAL")?;
         // An answer that was acknowledged survives a loss of power.
         db.pragma_update(None, "synchronous", "FULL")?;
@@ -53,15 +53,15 @@ impl Store {
         // Deleted data are overwritten, and not only unlinked.
         db.pragma_update(None, "secure_delete", true)?;
         let version: i64 = db.pragma_query_value(None, "user_version", |row| row.get(0))?;
-        if version > VERSION {
+        if version > SCHEMA_VERSION {
             let problem = format!(
-                "{}: a later version of this program made it (tables of version {version}, and this program reads {VERSION})",
+                "{}: a later version of this program made it (tables of version {version}, and this program reads {SCHEMA_VERSION})",
                 file.display()
             );
-            return Err(StudyError::refused(problem, "use that version"));
+            return Err(StudyError::refused_request(problem, "use that version"));
         }
-        db.execute_batch(SCHEMA)?;
-        db.pragma_update(None, "user_version", VERSION)?;
+        db.execute_batch(DATABASE_SCHEMA)?;
+        db.pragma_update(None, "user_version", SCHEMA_VERSION)?;
         Ok(Self { db })
     }
 
@@ -69,14 +69,14 @@ impl Store {
     ///
     /// # Errors
     /// The error of `work`, or of SQLite.
-    pub(crate) fn write<T>(
+    pub(crate) fn write_transaction<T>(
         &mut self,
         study: &Study,
         now_ms: i64,
-        work: impl FnOnce(&Book<'_>) -> Result<T, StudyError>,
+        work: impl FnOnce(&StudyTransaction<'_>) -> Result<T, StudyError>,
     ) -> Result<T, StudyError> {
         let transaction = self.db.transaction_with_behavior(TransactionBehavior::Immediate)?;
-        let done = work(&Book { db: &transaction, study, now_ms })?;
+        let done = work(&StudyTransaction { db: &transaction, study, now_ms })?;
         transaction.commit()?;
         Ok(done)
     }
@@ -85,19 +85,19 @@ impl Store {
     ///
     /// # Errors
     /// The error of `work`, or of SQLite.
-    pub(crate) fn read<T>(
+    pub(crate) fn read_transaction<T>(
         &mut self,
         study: &Study,
         now_ms: i64,
-        work: impl FnOnce(&Book<'_>) -> Result<T, StudyError>,
+        work: impl FnOnce(&StudyTransaction<'_>) -> Result<T, StudyError>,
     ) -> Result<T, StudyError> {
         let transaction = self.db.transaction_with_behavior(TransactionBehavior::Deferred)?;
-        work(&Book { db: &transaction, study, now_ms })
+        work(&StudyTransaction { db: &transaction, study, now_ms })
     }
 
     /// Empties the write-ahead log, so that deleted data remain nowhere on the disk. A concurrent reader can prevent this; then the next
     /// sweep does it.
-    pub(crate) fn sweep(&self) {
+    pub(crate) fn empty_log(&self) {
         let _ = self.db.query_row("PRAGMA wal_checkpoint(TRUNCATE)", [], |_| Ok(()));
     }
 
@@ -106,16 +106,16 @@ impl Store {
     ///
     /// # Errors
     /// The error of SQLite; then no change at all is kept.
-    pub(crate) fn together<T>(
+    pub(crate) fn write_batch<T>(
         &mut self,
         study: &Study,
         all: impl Iterator<Item = T>,
-        mut work: impl FnMut(T, &Book<'_>) -> bool,
+        mut work: impl FnMut(T, &StudyTransaction<'_>) -> bool,
     ) -> Result<(), StudyError> {
         let mut transaction = self.db.transaction_with_behavior(TransactionBehavior::Immediate)?;
         for one in all {
             let savepoint = transaction.savepoint()?;
-            if work(one, &Book { db: &savepoint, study, now_ms: now_ms() }) {
+            if work(one, &StudyTransaction { db: &savepoint, study, now_ms: now_ms() }) {
                 savepoint.commit()?;
             } else {
                 savepoint.finish()?;
@@ -133,19 +133,19 @@ pub fn now_ms() -> i64 {
 }
 
 /// The database inside a transaction, with the time of the request. All reading and writing goes through its methods.
-pub(crate) struct Book<'a> {
+pub(crate) struct StudyTransaction<'a> {
     db: &'a Connection,
     study: &'a Study,
     now_ms: i64,
 }
 
-impl Book<'_> {
+impl StudyTransaction<'_> {
     /// The study to which the database belongs.
     pub(crate) fn study(&self) -> &Study {
         self.study
     }
 
-    fn meta(&self, key: &str) -> Result<Option<String>, StudyError> {
+    fn read_meta(&self, key: &str) -> Result<Option<String>, StudyError> {
         use rusqlite::OptionalExtension as _;
         Ok(self.db.query_row("SELECT value FROM meta WHERE key = ?1", [key], |row| row.get(0)).optional()?)
     }
@@ -159,13 +159,13 @@ impl Book<'_> {
     }
 
     /// The folders to which results were written.
-    pub(crate) fn exports(&self) -> Result<Vec<PathBuf>, StudyError> {
-        Ok(self.meta("exports")?.and_then(|folders| serde_json::from_str(&folders).ok()).unwrap_or_default())
+    pub(crate) fn list_exports(&self) -> Result<Vec<PathBuf>, StudyError> {
+        Ok(self.read_meta("exports")?.and_then(|folders| serde_json::from_str(&folders).ok()).unwrap_or_default())
     }
 
     /// Remembers a folder to which results were written.
     pub(crate) fn note_export(&self, folder: &Path) -> Result<(), StudyError> {
-        let mut folders = self.exports()?;
+        let mut folders = self.list_exports()?;
         if !folders.iter().any(|known| known == folder) {
             folders.push(folder.to_owned());
         }
@@ -175,6 +175,6 @@ impl Book<'_> {
 
     /// Whether the study is closed and accepts no more answers.
     pub(crate) fn is_closed(&self) -> Result<bool, StudyError> {
-        Ok(self.meta("closed_ms")?.is_some())
+        Ok(self.read_meta("closed_ms")?.is_some())
     }
 }

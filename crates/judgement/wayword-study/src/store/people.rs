@@ -1,9 +1,9 @@
 //! The participants: how they arrive, consent, come back, stop, and are forgotten.
 
-use super::{Book, stage::Stage};
+use super::{StudyTransaction, stage::ParticipantStage};
 use crate::{
-    study::{Recruiter, Status, StudyError},
-    token::{hash, is_token, token},
+    study::{ParticipantStatus, RecruiterSettings, StudyError},
+    token::{hash_parts, is_token, random_token},
 };
 use rusqlite::{OptionalExtension as _, Row, params};
 use serde::{Deserialize, Serialize};
@@ -11,21 +11,21 @@ use serde::{Deserialize, Serialize};
 /// How long a session lasts, milliseconds. After that, the participant's link opens a new one.
 const SESSION_MS: i64 = 7 * 24 * 3600 * 1000;
 /// Most sessions of one person. A further one ends the oldest.
-const SESSIONS: i64 = 8;
+const MAX_SESSIONS_PER_PERSON: i64 = 8;
 /// Longest id from a recruiter, bytes.
 const LONGEST_ID: usize = 128;
 
 /// The link by which a visitor came.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub(crate) enum Arrival {
+pub(crate) enum ParticipantArrival {
     /// A personal link.
     Link(String),
     /// A recruiter's link.
     Recruit { person: String, study: String, session: String },
 }
 
-impl Arrival {
+impl ParticipantArrival {
     /// Whether its parts have the form of tokens and ids, which the site accepts.
     pub(crate) fn is_plain(&self) -> bool {
         let is_id = |id: &str| {
@@ -40,17 +40,17 @@ impl Arrival {
         }
     }
 
-    fn hash(&self) -> [u8; 32] {
+    fn arrival_hash(&self) -> [u8; 32] {
         match self {
-            Self::Link(token) => hash(&["link", token]),
-            Self::Recruit { person, study, session } => hash(&["recruit", person, study, session]),
+            Self::Link(token) => hash_parts(&["link", token]),
+            Self::Recruit { person, study, session } => hash_parts(&["recruit", person, study, session]),
         }
     }
 }
 
 /// Where an arrival leads.
 #[derive(Debug, PartialEq, Eq)]
-pub(crate) enum Entry {
+pub(crate) enum ArrivalOutcome {
     /// To the stage that the person had reached, in a new session with this token.
     Back(String),
     /// To the consent page.
@@ -69,28 +69,28 @@ pub(crate) enum Entry {
 
 /// How a participation ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Outcome {
-    pub(crate) status: Status,
+pub(crate) struct ParticipationOutcome {
+    pub(crate) status: ParticipantStatus,
     pub(crate) answers: u32,
 }
 
 /// What happens to the answers of a participant who stops.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Withdrawal {
+pub(crate) enum WithdrawalChoice {
     Keep,
     Delete,
 }
 
 /// Personal links that were made.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct Invited {
+pub struct InviteTokens {
     /// One token for each link. A link is the site's address, `/t/` and a token. The database has only hashes of the tokens.
     pub tokens: Vec<String>,
 }
 
 /// What `forget` removes, or would remove.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct Forgotten {
+pub struct ErasureReport {
     /// The participant.
     pub participant: String,
     /// How many answers.
@@ -101,61 +101,70 @@ pub struct Forgotten {
     pub is_done: bool,
 }
 
-impl Book<'_> {
+impl StudyTransaction<'_> {
     /// Makes personal links.
-    pub(crate) fn invite(&self, count: u32) -> Result<Invited, StudyError> {
+    pub(crate) fn invite_participants(&self, count: u32) -> Result<InviteTokens, StudyError> {
         let mut tokens = Vec::new();
         for _ in 0..count {
-            let token = fresh()?;
-            let link = Arrival::Link(token.clone()).hash();
+            let token = new_token()?;
+            let link = ParticipantArrival::Link(token.clone()).arrival_hash();
             self.db.execute("INSERT INTO link (hash, made_ms) VALUES (?1, ?2)", params![link, self.now_ms])?;
             tokens.push(token);
         }
-        Ok(Invited { tokens })
+        Ok(InviteTokens { tokens })
     }
 
     /// Decides where an arrival leads. This writes only the new session of a known participant.
-    pub(crate) fn enter(&self, arrival: &Arrival) -> Result<Entry, StudyError> {
+    pub(crate) fn enter_study(&self, arrival: &ParticipantArrival) -> Result<ArrivalOutcome, StudyError> {
         if !arrival.is_plain() {
-            return Ok(Entry::Unknown);
+            return Ok(ArrivalOutcome::Unknown);
         }
         if let Some(person) = self.by_link(arrival)? {
-            return Ok(Entry::Back(self.session_for(person)?));
+            return Ok(ArrivalOutcome::Back(self.session_for(person)?));
         }
         if self.is_barred(arrival)? {
-            return Ok(Entry::Gone);
+            return Ok(ArrivalOutcome::Gone);
         }
         match arrival {
-            Arrival::Link(_) => {
-                let made = self.db.query_row("SELECT 1 FROM link WHERE hash = ?1", [arrival.hash()], |_| Ok(()));
-                if self.study.settings.recruiter != Recruiter::Links || made.optional()?.is_none() {
-                    return Ok(Entry::Unknown);
+            ParticipantArrival::Link(_) => {
+                let made =
+                    self.db.query_row("SELECT 1 FROM link WHERE hash = ?1", [arrival.arrival_hash()], |_| Ok(()));
+                if self.study.settings.recruiter != RecruiterSettings::Links || made.optional()?.is_none() {
+                    return Ok(ArrivalOutcome::Unknown);
                 }
             }
-            Arrival::Recruit { person, study, .. } => {
-                let Recruiter::Parameters { only_study, .. } = &self.study.settings.recruiter else {
-                    return Ok(Entry::Unknown);
+            ParticipantArrival::Recruit { person, study, .. } => {
+                let RecruiterSettings::Parameters { only_study, .. } = &self.study.settings.recruiter else {
+                    return Ok(ArrivalOutcome::Unknown);
                 };
                 if !only_study.is_empty() && only_study != study {
-                    return Ok(Entry::Unknown);
+                    return Ok(ArrivalOutcome::Unknown);
                 }
                 let known = self.db.query_row("SELECT 1 FROM recruit WHERE id = ?1", [person], |_| Ok(()));
                 if known.optional()?.is_some() {
-                    return Ok(Entry::Twice);
+                    return Ok(ArrivalOutcome::Twice);
                 }
             }
         }
         if self.is_closed()? {
-            return Ok(Entry::Closed);
+            return Ok(ArrivalOutcome::Closed);
         }
         let least = self.study.settings.least_items.max(1);
-        Ok(if self.room()? >= least.min(self.study.plan.per_participant) { Entry::New } else { Entry::Full })
+        Ok(if self.count_free_items()? >= least.min(self.study.plan.per_participant) {
+            ArrivalOutcome::New
+        } else {
+            ArrivalOutcome::Full
+        })
     }
 
     /// Admits a person who consented to the text with this hash. If the arrival is known already, it leads to the same person.
-    pub(crate) fn consent(&self, arrival: &Arrival, consent: &str) -> Result<Entry, StudyError> {
-        let entry = self.enter(arrival)?;
-        if entry != Entry::New {
+    pub(crate) fn record_consent(
+        &self,
+        arrival: &ParticipantArrival,
+        consent: &str,
+    ) -> Result<ArrivalOutcome, StudyError> {
+        let entry = self.enter_study(arrival)?;
+        if entry != ArrivalOutcome::New {
             return Ok(entry);
         }
         let words = serde_json::json!(self.study.settings.consent_words()).to_string();
@@ -164,29 +173,29 @@ impl Book<'_> {
             "INSERT INTO person (name, link, status, consent, consented_ms, seen_ms, understood, expected) \
              VALUES (?1, ?2, 'started', ?3, ?4, ?4, ?5, ?6)",
             params![
-                fresh()?,
-                arrival.hash(),
+                new_token()?,
+                arrival.arrival_hash(),
                 consent,
                 self.now_ms,
                 self.study.settings.questions.is_empty(),
                 // Near the end of a study, a participant is promised only as many items as are left.
-                self.room()?.min(self.study.plan.per_participant)
+                self.count_free_items()?.min(self.study.plan.per_participant)
             ],
         )?;
         let person = self.db.last_insert_rowid();
-        if let Arrival::Recruit { person: id, study, session } = arrival {
+        if let ParticipantArrival::Recruit { person: id, study, session } = arrival {
             let row = params![person, id, study, session];
             self.db.execute("INSERT INTO recruit (person, id, study, session) VALUES (?1, ?2, ?3, ?4)", row)?;
         }
-        Ok(Entry::Back(self.session_for(person)?))
+        Ok(ArrivalOutcome::Back(self.session_for(person)?))
     }
 
     /// The person of a session, with the person's id in the results. Also records a sign of life.
-    pub(crate) fn whose(&self, session: &str) -> Result<Option<(i64, String)>, StudyError> {
+    pub(crate) fn person_by_session(&self, session: &str) -> Result<Option<(i64, String)>, StudyError> {
         if !is_token(session) {
             return Ok(None);
         }
-        let row = params![hash(&["session", session]), self.now_ms - SESSION_MS];
+        let row = params![hash_parts(&["session", session]), self.now_ms - SESSION_MS];
         let find =
             "SELECT person, name FROM session JOIN person ON person.id = person WHERE hash = ?1 AND made_ms > ?2";
         let found: Option<(i64, String)> =
@@ -200,13 +209,13 @@ impl Book<'_> {
     }
 
     /// Ends a participation at the participant's own wish.
-    pub(crate) fn withdraw(&self, person: i64, what: Withdrawal) -> Result<(), StudyError> {
+    pub(crate) fn withdraw_person(&self, person: i64, what: WithdrawalChoice) -> Result<(), StudyError> {
         match what {
-            Withdrawal::Delete => {
-                self.bar(person)?;
-                self.erase(person)
+            WithdrawalChoice::Delete => {
+                self.bar_person(person)?;
+                self.erase_person(person)
             }
-            Withdrawal::Keep => {
+            WithdrawalChoice::Keep => {
                 self.give_back(person)?;
                 let ended =
                     "UPDATE person SET status = 'withdrawn', finished_ms = ?2 WHERE id = ?1 AND status = 'started'";
@@ -218,16 +227,16 @@ impl Book<'_> {
 
     /// Deletes all data of a participant, or counts them for a dry run. `participant` is our id, the recruiter's id, or a personal
     /// link.
-    pub(crate) fn forget(&self, participant: &str, is_dry: bool) -> Result<Forgotten, StudyError> {
+    pub(crate) fn forget_participant(&self, participant: &str, is_dry: bool) -> Result<ErasureReport, StudyError> {
         let token = participant.rsplit_once("/t/").map_or(participant, |(_, token)| token);
-        let link = Arrival::Link(token.to_owned()).hash();
+        let link = ParticipantArrival::Link(token.to_owned()).arrival_hash();
         let find = "SELECT id, name FROM person \
                     WHERE name = ?1 OR link = ?2 OR id IN (SELECT person FROM recruit WHERE recruit.id = ?1)";
         let found =
             self.db.query_row(find, params![participant, link], |row| Ok((row.get(0)?, row.get(1)?))).optional()?;
         let Some((person, name)): Option<(i64, String)> = found else {
             let problem = format!("there is no participant {participant}");
-            return Err(StudyError::refused(
+            return Err(StudyError::refused_request(
                 problem,
                 "`wayword study status STUDY --participants` lists them; forgotten ones are gone",
             ));
@@ -235,46 +244,49 @@ impl Book<'_> {
         let count = "SELECT count(*), count(answer) FROM slot WHERE person = ?1";
         let (items, answers) = self.db.query_row(count, [person], |row| Ok((row.get(0)?, row.get(1)?)))?;
         if !is_dry {
-            self.erase(person)?;
+            self.erase_person(person)?;
         }
-        Ok(Forgotten { participant: name, answers, items, is_done: !is_dry })
+        Ok(ErasureReport { participant: name, answers, items, is_done: !is_dry })
     }
 
     /// Keeps a person who had all data deleted from taking part again as a stranger, until the study is closed.
-    fn bar(&self, person: i64) -> Result<(), StudyError> {
+    fn bar_person(&self, person: i64) -> Result<(), StudyError> {
         let barred = "INSERT OR IGNORE INTO gone (hash) SELECT link FROM person WHERE id = ?1";
         self.db.execute(barred, [person])?;
         let find = "SELECT id FROM recruit WHERE person = ?1";
         let recruit: Option<String> = self.db.query_row(find, [person], |row| row.get(0)).optional()?;
         if let Some(recruit) = recruit {
-            self.db.execute("INSERT OR IGNORE INTO gone (hash) VALUES (?1)", [hash(&["recruiter's id", &recruit])])?;
+            self.db.execute(
+                "INSERT OR IGNORE INTO gone (hash) VALUES (?1)",
+                [hash_parts(&["recruiter's id", &recruit])],
+            )?;
         }
         Ok(())
     }
 
-    fn is_barred(&self, arrival: &Arrival) -> Result<bool, StudyError> {
+    fn is_barred(&self, arrival: &ParticipantArrival) -> Result<bool, StudyError> {
         let recruit = match arrival {
-            Arrival::Link(_) => None,
-            Arrival::Recruit { person, .. } => Some(hash(&["recruiter's id", person])),
+            ParticipantArrival::Link(_) => None,
+            ParticipantArrival::Recruit { person, .. } => Some(hash_parts(&["recruiter's id", person])),
         };
         let find = "SELECT EXISTS (SELECT 1 FROM gone WHERE hash IN (?1, ?2))";
-        Ok(self.db.query_row(find, params![arrival.hash(), recruit], |row| row.get(0))?)
+        Ok(self.db.query_row(find, params![arrival.arrival_hash(), recruit], |row| row.get(0))?)
     }
 
-    fn erase(&self, person: i64) -> Result<(), StudyError> {
+    fn erase_person(&self, person: i64) -> Result<(), StudyError> {
         let link: Option<[u8; 32]> =
             self.db.query_row("SELECT link FROM person WHERE id = ?1", [person], |row| row.get(0)).optional()?;
         self.db.execute("DELETE FROM link WHERE hash = ?1", [link])?;
         if self.db.execute("DELETE FROM person WHERE id = ?1", [person])? > 0 {
-            self.set_meta("forgotten", &(forgotten(self)? + 1).to_string())?;
+            self.set_meta("forgotten", &(count_forgotten(self)? + 1).to_string())?;
         }
         Ok(())
     }
 
     /// Closes the study and deletes the participants' ids at the recruiter, unless people are still answering. Returns how many are.
-    pub(crate) fn close(&self, even_if_live: bool) -> Result<u32, StudyError> {
+    pub(crate) fn close_study(&self, even_if_live: bool) -> Result<u32, StudyError> {
         self.end_all_done()?;
-        let live = self.live()?;
+        let live = self.count_live()?;
         if live == 0 || even_if_live {
             if !self.is_closed()? {
                 self.set_meta("closed_ms", &self.now_ms.to_string())?;
@@ -288,62 +300,67 @@ impl Book<'_> {
     }
 
     /// How many participants are still answering: not finished, and seen within the lease.
-    pub(crate) fn live(&self) -> Result<u32, StudyError> {
+    pub(crate) fn count_live(&self) -> Result<u32, StudyError> {
         let since_ms = self.now_ms - self.lease_ms();
         let count = "SELECT count(*) FROM person WHERE status = 'started' AND seen_ms > ?1";
         Ok(self.db.query_row(count, [since_ms], |row| row.get(0))?)
     }
 
     /// How a participation ended; `None` while it goes on.
-    pub(super) fn outcome(&self, person: i64) -> Result<Option<Outcome>, StudyError> {
+    pub(super) fn find_outcome(&self, person: i64) -> Result<Option<ParticipationOutcome>, StudyError> {
         let find = "SELECT status FROM person WHERE id = ?1";
         match self.db.query_row(find, [person], |row| status_of(row, 0))? {
-            Status::Started => Ok(None),
-            status => Ok(Some(Outcome { status, answers: self.done(person)?.answered })),
+            ParticipantStatus::Started => Ok(None),
+            status => Ok(Some(ParticipationOutcome { status, answers: self.answer_progress(person)?.answered })),
         }
     }
 
     /// Ends a participation with a status, and returns the stage at its end.
-    pub(super) fn end(&self, person: i64, status: Status) -> Result<Stage, StudyError> {
+    pub(super) fn end_participation(
+        &self,
+        person: i64,
+        status: ParticipantStatus,
+    ) -> Result<ParticipantStage, StudyError> {
         let ended = "UPDATE person SET status = ?2, finished_ms = ?3 WHERE id = ?1";
         self.db.execute(ended, params![person, status.name(), self.now_ms])?;
-        Ok(Stage::Over(Outcome { status, answers: self.done(person)?.answered }))
+        Ok(ParticipantStage::Over(ParticipationOutcome { status, answers: self.answer_progress(person)?.answered }))
     }
 
-    fn by_link(&self, arrival: &Arrival) -> Result<Option<i64>, StudyError> {
+    fn by_link(&self, arrival: &ParticipantArrival) -> Result<Option<i64>, StudyError> {
         let find = "SELECT id FROM person WHERE link = ?1";
-        Ok(self.db.query_row(find, [arrival.hash()], |row| row.get(0)).optional()?)
+        Ok(self.db.query_row(find, [arrival.arrival_hash()], |row| row.get(0)).optional()?)
     }
 
     fn session_for(&self, person: i64) -> Result<String, StudyError> {
-        let session = fresh()?;
+        let session = new_token()?;
         let made = "INSERT INTO session (hash, person, made_ms) VALUES (?1, ?2, ?3)";
-        self.db.execute(made, params![hash(&["session", &session]), person, self.now_ms])?;
+        self.db.execute(made, params![hash_parts(&["session", &session]), person, self.now_ms])?;
         let old = "DELETE FROM session WHERE person = ?1 AND rowid NOT IN \
                    (SELECT rowid FROM session WHERE person = ?1 ORDER BY made_ms DESC, rowid DESC LIMIT ?2)";
-        self.db.execute(old, params![person, SESSIONS])?;
+        self.db.execute(old, params![person, MAX_SESSIONS_PER_PERSON])?;
         Ok(session)
     }
 }
 
 /// A new token.
-pub(super) fn fresh() -> Result<String, StudyError> {
-    token().map_err(|error| StudyError::refused(format!("the system has no randomness: {error}"), "try again"))
+pub(super) fn new_token() -> Result<String, StudyError> {
+    random_token()
+        .map_err(|error| StudyError::refused_request(format!("the system has no randomness: {error}"), "try again"))
 }
 
 /// How many participants were forgotten.
-pub(super) fn forgotten(book: &Book<'_>) -> Result<u64, StudyError> {
-    Ok(book.meta("forgotten")?.and_then(|count| count.parse().ok()).unwrap_or(0))
+pub(super) fn count_forgotten(book: &StudyTransaction<'_>) -> Result<u64, StudyError> {
+    Ok(book.read_meta("forgotten")?.and_then(|count| count.parse().ok()).unwrap_or(0))
 }
 
-pub(super) fn status_of(row: &Row<'_>, column: usize) -> Result<Status, rusqlite::Error> {
+pub(super) fn status_of(row: &Row<'_>, column: usize) -> Result<ParticipantStatus, rusqlite::Error> {
     let name: String = row.get(column)?;
-    let found = Status::ALL.into_iter().find(|status| status.name() == name);
-    found.ok_or_else(|| unreadable(column, format!("unknown status {name}")))
+    let found = ParticipantStatus::ALL.into_iter().find(|status| status.name() == name);
+    found.ok_or_else(|| unreadable_value(column, format!("unknown status {name}")))
 }
 
 /// An error for a value that this program did not write.
-pub(super) fn unreadable(
+pub(super) fn unreadable_value(
     column: usize,
     error: impl Into<Box<dyn std::error::Error + Send + Sync + 'static>>,
 ) -> rusqlite::Error {

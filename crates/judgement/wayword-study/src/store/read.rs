@@ -1,33 +1,33 @@
-//! Reads the whole database into [`Data`], from which the results are computed.
+//! Reads the whole database into [`StudyData`], from which the results are computed.
 
-use super::{Book, Store, people};
-use crate::study::{Data, Move, Participant, Passed, Slot, SlotState, Study, StudyError};
+use super::{StudyStore, StudyTransaction, people};
+use crate::study::{AttentionCheck, ItemSlot, Participant, ParticipantMove, SlotState, Study, StudyData, StudyError};
 use rusqlite::{Connection, Row};
 use std::collections::BTreeMap;
 use wayword_core::ViewpointId;
 
-impl Store {
+impl StudyStore {
     /// Reads the study with all answers, from one snapshot.
     ///
     /// # Errors
     /// When a row cannot be read.
-    pub(crate) fn data(mut self, study: Study, now_ms: i64) -> Result<Data, StudyError> {
-        let read = |book: &Book<'_>| {
-            let forgotten = people::forgotten(book)?;
-            Ok((participants(book.db)?, slots(book.db, book.now_ms)?, forgotten, book.is_closed()?))
+    pub(crate) fn into_data(mut self, study: Study, now_ms: i64) -> Result<StudyData, StudyError> {
+        let read = |book: &StudyTransaction<'_>| {
+            let forgotten = people::count_forgotten(book)?;
+            Ok((read_participants(book.db)?, read_slots(book.db, book.now_ms)?, forgotten, book.is_closed()?))
         };
-        let (participants, slots, forgotten, is_closed) = self.read(&study, now_ms, read)?;
+        let (participants, slots, forgotten, is_closed) = self.read_transaction(&study, now_ms, read)?;
         let Study { plan, settings, items, routes, scenes, .. } = study;
-        Ok(Data { plan, settings, items, routes, scenes, participants, slots, forgotten, is_closed })
+        Ok(StudyData { plan, settings, items, routes, scenes, participants, slots, forgotten, is_closed })
     }
 }
 
-fn participants(db: &Connection) -> Result<Vec<Participant>, StudyError> {
-    let mut attention: BTreeMap<i64, Vec<Passed>> = BTreeMap::new();
+fn read_participants(db: &Connection) -> Result<Vec<Participant>, StudyError> {
+    let mut attention: BTreeMap<i64, Vec<AttentionCheck>> = BTreeMap::new();
     let mut checks = db.prepare("SELECT person, number, passed, at_ms FROM attention ORDER BY person, number")?;
     let mut rows = checks.query([])?;
     while let Some(row) = rows.next()? {
-        let passed = Passed { number: row.get(1)?, passed: row.get(2)?, at_ms: row.get(3)? };
+        let passed = AttentionCheck { number: row.get(1)?, passed: row.get(2)?, at_ms: row.get(3)? };
         attention.entry(row.get(0)?).or_default().push(passed);
     }
     let mut all = db.prepare(
@@ -53,8 +53,8 @@ fn participants(db: &Connection) -> Result<Vec<Participant>, StudyError> {
     Ok(all.query_map([], participant)?.collect::<Result<_, _>>()?)
 }
 
-fn slots(db: &Connection, now_ms: i64) -> Result<Vec<Slot>, StudyError> {
-    let mut moves = moves(db)?;
+fn read_slots(db: &Connection, now_ms: i64) -> Result<Vec<ItemSlot>, StudyError> {
+    let mut moves = read_moves(db)?;
     let mut all = db.prepare(
         "SELECT slot.id, person.name, item, position, state, lease_ms, given_ms, answered_ms, is_turned, answer, own_text \
          FROM slot JOIN person ON person.id = slot.person ORDER BY given_ms, slot.id",
@@ -69,7 +69,7 @@ fn slots(db: &Connection, now_ms: i64) -> Result<Vec<Slot>, StudyError> {
         };
         let answer: Option<String> = row.get(9)?;
         let answer = answer.map(|answer| serde_json::from_str(&answer)).transpose();
-        Ok(Slot {
+        Ok(ItemSlot {
             participant: row.get(1)?,
             item: row.get(2)?,
             position: row.get(3)?,
@@ -77,7 +77,7 @@ fn slots(db: &Connection, now_ms: i64) -> Result<Vec<Slot>, StudyError> {
             given_ms: row.get(6)?,
             answered_ms: row.get(7)?,
             is_turned: row.get(8)?,
-            answer: answer.map_err(|error| people::unreadable(9, error))?,
+            answer: answer.map_err(|error| people::unreadable_value(9, error))?,
             own_text: row.get(10)?,
             moves: moves.remove(&id).unwrap_or_default(),
         })
@@ -85,14 +85,14 @@ fn slots(db: &Connection, now_ms: i64) -> Result<Vec<Slot>, StudyError> {
     Ok(all.query_map([], slot)?.collect::<Result<_, _>>()?)
 }
 
-fn moves(db: &Connection) -> Result<BTreeMap<i64, Vec<Move>>, StudyError> {
-    let mut moves: BTreeMap<i64, Vec<Move>> = BTreeMap::new();
+fn read_moves(db: &Connection) -> Result<BTreeMap<i64, Vec<ParticipantMove>>, StudyError> {
+    let mut moves: BTreeMap<i64, Vec<ParticipantMove>> = BTreeMap::new();
     let mut all = db.prepare("SELECT slot, viewpoint, at_ms FROM move ORDER BY slot, seq")?;
     let mut rows = all.query([])?;
     while let Some(row) = rows.next()? {
         let name: String = row.get(1)?;
-        let viewpoint = ViewpointId::new(name).map_err(|error| people::unreadable(1, error))?;
-        moves.entry(row.get(0)?).or_default().push(Move { viewpoint, at_ms: row.get(2)? });
+        let viewpoint = ViewpointId::new(name).map_err(|error| people::unreadable_value(1, error))?;
+        moves.entry(row.get(0)?).or_default().push(ParticipantMove { viewpoint, at_ms: row.get(2)? });
     }
     Ok(moves)
 }

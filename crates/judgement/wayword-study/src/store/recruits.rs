@@ -1,8 +1,8 @@
 //! Compares a recruiter's list of participants with ours, so that the researcher can see whom to pay. The recruiter's status is stored
 //! next to ours and never changes it.
 
-use super::{Book, people};
-use crate::study::{Status, StudyError};
+use super::{StudyTransaction, people};
+use crate::study::{ParticipantStatus, StudyError};
 use serde::Serialize;
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -10,19 +10,19 @@ use std::{
 };
 
 /// Names of the column with the participant's id, as Prolific, MTurk and others call it.
-const PERSON: [&str; 5] = ["participant id", "participant_id", "prolific_pid", "workerid", "participant"];
+const PERSON_COLUMN_NAMES: [&str; 5] = ["participant id", "participant_id", "prolific_pid", "workerid", "participant"];
 /// Names of the column with the status.
-const STATUS: [&str; 3] = ["status", "assignmentstatus", "submission status"];
+const STATUS_COLUMN_NAMES: [&str; 3] = ["status", "assignmentstatus", "submission status"];
 
 /// A participant in both lists.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct Reconciled {
+pub struct ReconciliationRow {
     /// The recruiter's id.
     pub recruiter_id: String,
     /// Our id, if we know the participant.
     pub participant: Option<String>,
     /// Our status.
-    pub ours: Option<Status>,
+    pub ours: Option<ParticipantStatus>,
     /// The recruiter's status, as its file has it.
     pub theirs: Option<String>,
     /// How the two disagree; `None` if they agree.
@@ -33,24 +33,24 @@ pub struct Reconciled {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Reconciliation {
     /// All participants of either list, those with a problem first.
-    pub rows: Vec<Reconciled>,
+    pub rows: Vec<ReconciliationRow>,
     /// How many have a problem.
     pub problems: usize,
 }
 
-impl Book<'_> {
+impl StudyTransaction<'_> {
     /// Compares the recruiter's list with ours.
-    pub(crate) fn reconcile(&self, file: &Path) -> Result<Reconciliation, StudyError> {
-        let theirs = read(file)?;
+    pub(crate) fn reconcile_recruiter_list(&self, file: &Path) -> Result<Reconciliation, StudyError> {
+        let theirs = read_recruiter_list(file)?;
         let mut find = self.db.prepare(
             "SELECT recruit.id, person.name, person.status FROM recruit JOIN person ON person.id = recruit.person",
         )?;
-        let ours: BTreeMap<String, (String, Status)> = find
+        let ours: BTreeMap<String, (String, ParticipantStatus)> = find
             .query_map([], |row| Ok((row.get(0)?, (row.get(1)?, people::status_of(row, 2)?))))?
             .collect::<Result<_, _>>()?;
         if ours.is_empty() {
             let problem = "no participant has a recruiter's id";
-            return Err(StudyError::refused(
+            return Err(StudyError::refused_request(
                 problem,
                 "ids are dropped when a study is closed: reconcile first, then close",
             ));
@@ -64,15 +64,15 @@ impl Book<'_> {
         let ids: BTreeSet<&String> = theirs.keys().chain(ours.keys()).collect();
         let row = |id: &String| {
             let (our, their) = (ours.get(id), theirs.get(id));
-            Reconciled {
+            ReconciliationRow {
                 recruiter_id: id.clone(),
                 participant: our.map(|(name, _)| name.clone()),
                 ours: our.map(|(_, status)| *status),
                 theirs: their.cloned(),
-                problem: problem(our.map(|(_, status)| *status), their.map(String::as_str)),
+                problem: status_conflict(our.map(|(_, status)| *status), their.map(String::as_str)),
             }
         };
-        let mut rows: Vec<Reconciled> = ids.into_iter().map(row).collect();
+        let mut rows: Vec<ReconciliationRow> = ids.into_iter().map(row).collect();
         rows.sort_by_key(|row| row.problem.is_none());
         let problems = rows.iter().filter(|row| row.problem.is_some()).count();
         Ok(Reconciliation { rows, problems })
@@ -80,7 +80,7 @@ impl Book<'_> {
 }
 
 /// How our status and theirs disagree. The names of their statuses are those of Prolific and MTurk.
-fn problem(ours: Option<Status>, theirs: Option<&str>) -> Option<&'static str> {
+fn status_conflict(ours: Option<ParticipantStatus>, theirs: Option<&str>) -> Option<&'static str> {
     let theirs = theirs.map(|status| status.trim().to_ascii_uppercase().replace(['-', '_'], " "));
     let is_paid = matches!(theirs.as_deref(), Some("APPROVED" | "AWAITING REVIEW" | "SUBMITTED"));
     let is_out = matches!(theirs.as_deref(), Some("RETURNED" | "TIMED OUT" | "REJECTED" | "ABANDONED"));
@@ -89,18 +89,29 @@ fn problem(ours: Option<Status>, theirs: Option<&str>) -> Option<&'static str> {
         (None, Some(_)) if is_paid => Some("they list it as done, and we know nobody of this id"),
         (None, Some(_)) => None,
         (Some(_), None) => Some("we know this participant, and their list does not"),
-        (Some(Status::Complete), _) if is_out => Some("all our answers are there, and they list it as not done"),
-        (Some(Status::Started | Status::Withdrawn | Status::ScreenedOut), _) if is_paid => {
+        (Some(ParticipantStatus::Complete), _) if is_out => {
+            Some("all our answers are there, and they list it as not done")
+        }
+        (Some(ParticipantStatus::Started | ParticipantStatus::Withdrawn | ParticipantStatus::ScreenedOut), _)
+            if is_paid =>
+        {
             Some("they list it as done, and our answers are not complete")
         }
-        (Some(Status::AttentionFailed), Some("APPROVED")) => Some("approved, and the attention checks failed"),
-        (Some(Status::Complete | Status::AttentionFailed), _) if is_paid => None,
-        (Some(Status::Started | Status::Withdrawn | Status::ScreenedOut | Status::AttentionFailed), _) if is_out => {
-            None
+        (Some(ParticipantStatus::AttentionFailed), Some("APPROVED")) => {
+            Some("approved, and the attention checks failed")
         }
-        (Some(Status::Started), Some("ACTIVE" | "RESERVED")) | (Some(Status::ScreenedOut), Some("SCREENED OUT")) => {
-            None
-        }
+        (Some(ParticipantStatus::Complete | ParticipantStatus::AttentionFailed), _) if is_paid => None,
+        (
+            Some(
+                ParticipantStatus::Started
+                | ParticipantStatus::Withdrawn
+                | ParticipantStatus::ScreenedOut
+                | ParticipantStatus::AttentionFailed,
+            ),
+            _,
+        ) if is_out => None,
+        (Some(ParticipantStatus::Started), Some("ACTIVE" | "RESERVED"))
+        | (Some(ParticipantStatus::ScreenedOut), Some("SCREENED OUT")) => None,
         _ => Some("the two do not fit together, as far as we know: look at this one"),
     }
 }
@@ -112,7 +123,7 @@ fn known_word(status: &str) -> String {
 }
 
 /// Reads ids and statuses from a recruiter's file.
-fn read(file: &Path) -> Result<BTreeMap<String, String>, StudyError> {
+fn read_recruiter_list(file: &Path) -> Result<BTreeMap<String, String>, StudyError> {
     let wrong = |problem: String| StudyError::File {
         path: file.to_owned(),
         problem,
@@ -126,7 +137,7 @@ fn read(file: &Path) -> Result<BTreeMap<String, String>, StudyError> {
             names.contains(&header.trim_start_matches('\u{feff}').trim().to_ascii_lowercase().as_str())
         })
     };
-    let (Some(person), Some(status)) = (column(&PERSON), column(&STATUS)) else {
+    let (Some(person), Some(status)) = (column(&PERSON_COLUMN_NAMES), column(&STATUS_COLUMN_NAMES)) else {
         return Err(wrong("it has no column of participants, or none of their status".to_owned()));
     };
     let mut all = BTreeMap::new();
@@ -145,13 +156,13 @@ mod tests {
 
     #[test]
     fn status_conflict_names_statuses_that_disagree() {
-        assert_eq!(problem(Some(Status::Complete), Some("AWAITING REVIEW")), None);
-        assert!(problem(Some(Status::Complete), Some("TIMED-OUT")).unwrap().contains("not done"));
-        assert!(problem(Some(Status::Started), Some("APPROVED")).unwrap().contains("not complete"));
-        assert!(problem(None, Some("Approved")).unwrap().contains("nobody"));
-        assert_eq!(problem(None, Some("RETURNED")), None);
-        assert!(problem(Some(Status::Started), None).is_some());
-        assert!(problem(Some(Status::Complete), Some("SCREENED OUT")).is_some());
-        assert_eq!(problem(Some(Status::Started), Some("RETURNED")), None);
+        assert_eq!(status_conflict(Some(ParticipantStatus::Complete), Some("AWAITING REVIEW")), None);
+        assert!(status_conflict(Some(ParticipantStatus::Complete), Some("TIMED-OUT")).unwrap().contains("not done"));
+        assert!(status_conflict(Some(ParticipantStatus::Started), Some("APPROVED")).unwrap().contains("not complete"));
+        assert!(status_conflict(None, Some("Approved")).unwrap().contains("nobody"));
+        assert_eq!(status_conflict(None, Some("RETURNED")), None);
+        assert!(status_conflict(Some(ParticipantStatus::Started), None).is_some());
+        assert!(status_conflict(Some(ParticipantStatus::Complete), Some("SCREENED OUT")).is_some());
+        assert_eq!(status_conflict(Some(ParticipantStatus::Started), Some("RETURNED")), None);
     }
 }

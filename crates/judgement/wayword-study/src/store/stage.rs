@@ -1,30 +1,30 @@
 //! Finds out which stage a participant has reached and what comes next. The stage is stored only in the database, so that a reload, a
 //! second tab and another device all show the same.
 
-use super::{Book, people::Outcome};
-use crate::study::{Item, Mode, Route, Scene, Status, StudyError};
+use super::{StudyTransaction, people::ParticipationOutcome};
+use crate::study::{ParticipantStatus, StudyError, StudyItem, StudyRoute, StudyScene, StudyTask};
 use rusqlite::{OptionalExtension as _, params};
-use wayword_core::{ViewpointId, seed::derive};
+use wayword_core::{ViewpointId, seed::derive_seed};
 
 /// Levels that an attention check may ask for. The middle one is left out, because people choose it without reading.
-const ASKED: [u8; 4] = [1, 2, 4, 5];
+const ATTENTION_LEVELS: [u8; 4] = [1, 2, 4, 5];
 
 /// The stage that a participant has reached.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) enum Stage {
+pub(crate) enum ParticipantStage {
     /// At the questions about the task.
     Understood { attempt: u32 },
     /// At an item.
-    Item(Held),
+    Item(StoredSlot),
     /// At an attention check that asks for a level.
     Attention { number: u32, level: u8 },
     /// At the end.
-    Over(Outcome),
+    Over(ParticipationOutcome),
 }
 
 /// A slot of the database: an item that was handed out to a person.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Held {
+pub(crate) struct StoredSlot {
     pub(super) id: i64,
     pub(super) lease_ms: i64,
     /// `live`, `answered` or `returned`.
@@ -45,53 +45,60 @@ pub(crate) struct Held {
 
 /// How many of a person's items are answered.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Done {
+pub(crate) struct AnswerProgress {
     pub(crate) answered: u32,
     pub(crate) expected: u32,
 }
 
-impl Book<'_> {
+impl StudyTransaction<'_> {
     /// The stage of a person. Hands out the next item if one is due, and ends the participation if all items are answered.
-    pub(crate) fn stage(&self, person: i64) -> Result<Stage, StudyError> {
-        if let Some(outcome) = self.outcome(person)? {
-            return Ok(Stage::Over(outcome));
+    pub(crate) fn current_stage(&self, person: i64) -> Result<ParticipantStage, StudyError> {
+        if let Some(outcome) = self.find_outcome(person)? {
+            return Ok(ParticipantStage::Over(outcome));
         }
         let find = "SELECT understood, misunderstood FROM person WHERE id = ?1";
         let (understood, attempt) =
             self.db.query_row(find, [person], |row| Ok((row.get::<_, bool>(0)?, row.get(1)?)))?;
         if !understood {
-            return Ok(Stage::Understood { attempt });
+            return Ok(ParticipantStage::Understood { attempt });
         }
-        if let Some(held) = self.held(person)?
-            && self.hold(held.id, held.item, held.lease_ms, held.is_practice)?
+        if let Some(held) = self.live_slot(person)?
+            && self.renew_lease(held.id, held.item, held.lease_ms, held.is_practice)?
         {
-            return Ok(Stage::Item(held));
+            return Ok(ParticipantStage::Item(held));
         }
         let had: bool =
             self.db.query_row("SELECT EXISTS (SELECT 1 FROM slot WHERE person = ?1)", [person], |row| row.get(0))?;
         let is_given = if had { false } else { self.hand_out_practice(person)? };
-        let done = self.done(person)?;
+        let done = self.answer_progress(person)?;
         if !is_given && let Some(number) = self.check_due(person, done)? {
-            return Ok(Stage::Attention { number, level: self.asked_level(person, number)? });
+            return Ok(ParticipantStage::Attention { number, level: self.asked_level(person, number)? });
         }
         let is_given = is_given || (done.answered < done.expected && self.hand_out_next(person)?);
-        match self.held(person)?.filter(|_| is_given) {
-            Some(held) => Ok(Stage::Item(held)),
-            None => self.finish(person),
+        match self.live_slot(person)?.filter(|_| is_given) {
+            Some(held) => Ok(ParticipantStage::Item(held)),
+            None => self.finish_person(person),
         }
     }
 
     /// Ends the participation of a person who has answered everything.
-    fn finish(&self, person: i64) -> Result<Stage, StudyError> {
-        self.end(person, if self.has_failed_checks(person)? { Status::AttentionFailed } else { Status::Complete })
+    fn finish_person(&self, person: i64) -> Result<ParticipantStage, StudyError> {
+        self.end_participation(
+            person,
+            if self.has_failed_checks(person)? {
+                ParticipantStatus::AttentionFailed
+            } else {
+                ParticipantStatus::Complete
+            },
+        )
     }
 
     /// Ends the participation if everything is answered. It is called after each answer, because many people close the page after the
     /// last one.
     pub(super) fn end_if_done(&self, person: i64) -> Result<(), StudyError> {
-        let done = self.done(person)?;
+        let done = self.answer_progress(person)?;
         if done.answered >= done.expected && done.answered > 0 && self.check_due(person, done)?.is_none() {
-            self.finish(person)?;
+            self.finish_person(person)?;
         }
         Ok(())
     }
@@ -104,29 +111,31 @@ impl Book<'_> {
     }
 
     /// How many items are answered, and how many there will be.
-    pub(crate) fn done(&self, person: i64) -> Result<Done, StudyError> {
+    pub(crate) fn answer_progress(&self, person: i64) -> Result<AnswerProgress, StudyError> {
         let find = "SELECT expected, (SELECT count(*) FROM slot WHERE person = person.id AND state = 'answered' AND position IS NOT NULL) \
                     FROM person WHERE id = ?1";
-        Ok(self.db.query_row(find, [person], |row| Ok(Done { expected: row.get(0)?, answered: row.get(1)? }))?)
+        Ok(self
+            .db
+            .query_row(find, [person], |row| Ok(AnswerProgress { expected: row.get(0)?, answered: row.get(1)? }))?)
     }
 
     /// The unanswered item that a person has.
-    fn held(&self, person: i64) -> Result<Option<Held>, StudyError> {
+    fn live_slot(&self, person: i64) -> Result<Option<StoredSlot>, StudyError> {
         self.held_where("person = ?1 AND state = 'live' ORDER BY id DESC LIMIT 1", person, "")
     }
 
     /// A slot of a person by its name on pages, in any state.
-    pub(super) fn named(&self, person: i64, slot: &str) -> Result<Option<Held>, StudyError> {
+    pub(super) fn slot_by_name(&self, person: i64, slot: &str) -> Result<Option<StoredSlot>, StudyError> {
         self.held_where("person = ?1 AND name = ?2", person, slot)
     }
 
-    fn held_where(&self, condition: &str, person: i64, slot: &str) -> Result<Option<Held>, StudyError> {
+    fn held_where(&self, condition: &str, person: i64, slot: &str) -> Result<Option<StoredSlot>, StudyError> {
         let mut find = self.db.prepare_cached(&format!(
             "SELECT id, lease_ms, name, item, position IS NULL, is_turned, own_text, stopped_ms, looks, state FROM slot \
              WHERE ?2 = ?2 AND {condition}"
         ))?;
         let held = find.query_row(params![person, slot], |row| {
-            Ok(Held {
+            Ok(StoredSlot {
                 id: row.get(0)?,
                 lease_ms: row.get(1)?,
                 slot: row.get(2)?,
@@ -148,7 +157,7 @@ impl Book<'_> {
     }
 
     /// The attention check that is due at this point. Checks are spread evenly over the items.
-    pub(super) fn check_due(&self, person: i64, done: Done) -> Result<Option<u32>, StudyError> {
+    pub(super) fn check_due(&self, person: i64, done: AnswerProgress) -> Result<Option<u32>, StudyError> {
         let checks = self.study.settings.attention_checks;
         let answered: u32 =
             self.db.query_row("SELECT count(*) FROM attention WHERE person = ?1", [person], |row| row.get(0))?;
@@ -159,8 +168,8 @@ impl Book<'_> {
     /// The level that an attention check asks this person for.
     pub(super) fn asked_level(&self, person: i64, number: u32) -> Result<u8, StudyError> {
         let name: String = self.db.query_row("SELECT name FROM person WHERE id = ?1", [person], |row| row.get(0))?;
-        let drawn = derive(self.study.plan.seed, &["attention", &name, &number.to_string()]);
-        Ok(ASKED[(drawn % ASKED.len() as u64) as usize])
+        let drawn = derive_seed(self.study.plan.seed, &["attention", &name, &number.to_string()]);
+        Ok(ATTENTION_LEVELS[(drawn % ATTENTION_LEVELS.len() as u64) as usize])
     }
 
     fn has_failed_checks(&self, person: i64) -> Result<bool, StudyError> {
@@ -171,29 +180,29 @@ impl Book<'_> {
 
     /// Whether a participation has ended.
     pub(crate) fn is_over(&self, person: i64) -> Result<bool, StudyError> {
-        Ok(self.outcome(person)?.is_some())
+        Ok(self.find_outcome(person)?.is_some())
     }
 
     /// The file of the panorama at the place that a walker reached after `steps` steps. Other places of the scene are not available.
-    pub(crate) fn panorama(&self, person: i64, slot: &str, steps: usize) -> Result<Option<String>, StudyError> {
-        let Some(held) = self.named(person, slot)? else { return Ok(None) };
-        let Some((_, route, Some(scene))) = self.of(&held) else { return Ok(None) };
+    pub(crate) fn panorama_file(&self, person: i64, slot: &str, steps: usize) -> Result<Option<String>, StudyError> {
+        let Some(held) = self.slot_by_name(person, slot)? else { return Ok(None) };
+        let Some((_, route, Some(scene))) = self.slot_contents(&held) else { return Ok(None) };
         let here = if steps == 0 { route.viewpoints.first() } else { held.moves.get(steps - 1) };
         Ok(here.and_then(|here| scene.places.get(here)).map(|place| place.panorama.clone()))
     }
 
     /// The file of a picture in the film of a person's item.
     pub(crate) fn film_picture(&self, person: i64, slot: &str, number: usize) -> Result<Option<String>, StudyError> {
-        let Some(held) = self.named(person, slot)? else { return Ok(None) };
-        let film = self.of(&held).map(|(_, route, _)| &route.film);
+        let Some(held) = self.slot_by_name(person, slot)? else { return Ok(None) };
+        let film = self.slot_contents(&held).map(|(_, route, _)| &route.film);
         Ok(film.and_then(|film| film.get(number)).map(|picture| picture.file.clone()))
     }
 
     /// The item, route and scene of a slot; a scene only where people walk.
-    pub(crate) fn of(&self, held: &Held) -> Option<(&Item, &Route, Option<&Scene>)> {
+    pub(crate) fn slot_contents(&self, held: &StoredSlot) -> Option<(&StudyItem, &StudyRoute, Option<&StudyScene>)> {
         let item = self.study.items.get(held.item as usize)?;
         let route = self.study.routes.get(item.route as usize)?;
-        let scene = if self.study.plan.mode == Mode::Follow { self.study.scene_of(route) } else { None };
+        let scene = if self.study.plan.mode == StudyTask::Follow { self.study.scene_of(route) } else { None };
         Some((item, route, scene))
     }
 }

@@ -1,26 +1,26 @@
-//! The answers of a study as data, the input of [`crate::results()`].
+//! The answers of a study as data, the input of [`crate::compute_results()`].
 
-use super::{Item, Plan, Route, Scene, Settings};
+use super::{StudyDesign, StudyItem, StudyRoute, StudyScene, StudySettings};
 use serde::{Deserialize, Serialize};
 use wayword_core::ViewpointId;
 
 /// A study with all answers of its participants. It does not contain ids from recruiters.
 #[derive(Debug, Clone)]
-pub struct Data {
+pub struct StudyData {
     /// The plan, which was fixed when the study was made.
-    pub plan: Plan,
+    pub plan: StudyDesign,
     /// Wording and other settings.
-    pub settings: Settings,
+    pub settings: StudySettings,
     /// All items, by id.
-    pub items: Vec<Item>,
+    pub items: Vec<StudyItem>,
     /// All routes, by id.
-    pub routes: Vec<Route>,
+    pub routes: Vec<StudyRoute>,
     /// The scenes that people walked; empty unless the mode is following.
-    pub scenes: Vec<Scene>,
+    pub scenes: Vec<StudyScene>,
     /// All participants who consented and were not forgotten, in order of consent.
     pub participants: Vec<Participant>,
     /// Items that were handed out, in order, including practice items.
-    pub slots: Vec<Slot>,
+    pub slots: Vec<ItemSlot>,
     /// How many participants were forgotten.
     pub forgotten: u64,
     /// Whether the study is closed.
@@ -30,7 +30,7 @@ pub struct Data {
 /// How far a participant has come.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Status {
+pub enum ParticipantStatus {
     /// Has consented and not finished. The participant may still come back.
     Started,
     /// Has answered everything.
@@ -43,7 +43,7 @@ pub enum Status {
     AttentionFailed,
 }
 
-impl Status {
+impl ParticipantStatus {
     /// All of them.
     pub(crate) const ALL: [Self; 5] =
         [Self::Started, Self::Complete, Self::Withdrawn, Self::ScreenedOut, Self::AttentionFailed];
@@ -66,7 +66,7 @@ pub struct Participant {
     /// A random id, made for the results.
     pub id: String,
     /// How far the participant has come.
-    pub status: Status,
+    pub status: ParticipantStatus,
     /// Unix time of consent, milliseconds.
     pub consented_ms: i64,
     /// Hash of what was consented to.
@@ -82,14 +82,14 @@ pub struct Participant {
     /// The recruiter's status of the submission when its list was last imported.
     pub recruiter_status: Option<String>,
     /// The attention checks that were answered, in order.
-    pub attention: Vec<Passed>,
+    pub attention: Vec<AttentionCheck>,
     /// How many items were to be answered.
     pub expected: u32,
 }
 
 /// The result of an attention check.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Passed {
+pub struct AttentionCheck {
     /// Its number, from 0.
     pub number: u32,
     /// Whether the participant chose the answer that the check asked for.
@@ -100,7 +100,7 @@ pub struct Passed {
 
 /// An item that was given to a participant.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Slot {
+pub struct ItemSlot {
     /// The participant's id.
     pub participant: String,
     /// The item's number.
@@ -116,11 +116,11 @@ pub struct Slot {
     /// In a pair: whether the item's second text was shown as A.
     pub is_turned: bool,
     /// The answer, if there is one.
-    pub answer: Option<Answer>,
+    pub answer: Option<ParticipantAnswer>,
     /// The text that the participant wrote first, if the study asked for one.
     pub own_text: Option<String>,
     /// The steps of the participant's walk; the start is not in it.
-    pub moves: Vec<Move>,
+    pub moves: Vec<ParticipantMove>,
 }
 
 /// What became of an item that was handed out.
@@ -137,7 +137,7 @@ pub enum SlotState {
 
 /// A step of a walk.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Move {
+pub struct ParticipantMove {
     /// The viewpoint to which it leads.
     pub viewpoint: ViewpointId,
     /// Unix time, milliseconds.
@@ -147,7 +147,7 @@ pub struct Move {
 /// An answer to an item.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", tag = "mode")]
-pub enum Answer {
+pub enum ParticipantAnswer {
     /// The answer after a walk.
     Follow {
         /// Agreement with the three statements, 1 to 5.
@@ -165,14 +165,14 @@ pub enum Answer {
     /// The choice between two texts.
     Pair {
         /// The chosen side of the page.
-        choice: Choice,
+        choice: PairChoice,
     },
 }
 
 /// Which of two texts was chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Choice {
+pub enum PairChoice {
     /// The text shown as A.
     A,
     /// The text shown as B.

@@ -43,12 +43,12 @@ pub enum StudyError {
 }
 
 impl StudyError {
-    pub(crate) fn io(path: impl Into<PathBuf>, doing: &'static str) -> impl FnOnce(io::Error) -> Self {
+    pub(crate) fn io_error(path: impl Into<PathBuf>, doing: &'static str) -> impl FnOnce(io::Error) -> Self {
         let path = path.into();
         move |source| Self::Io { path, doing, source }
     }
 
-    pub(crate) fn refused(problem: impl Into<String>, hint: impl Into<String>) -> Self {
+    pub(crate) fn refused_request(problem: impl Into<String>, hint: impl Into<String>) -> Self {
         Self::Refused { problem: problem.into(), hint: hint.into() }
     }
 }

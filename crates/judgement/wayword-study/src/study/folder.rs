@@ -1,7 +1,7 @@
 //! Creates and reads the folder of a study.
 
-use super::{Item, Plan, Route, Scene, Settings, StudyError};
-use crate::store::Store;
+use super::{StudyDesign, StudyError, StudyItem, StudyRoute, StudyScene, StudySettings};
+use crate::store::StudyStore;
 use serde::{Serialize, de::DeserializeOwned};
 use std::{
     fs,
@@ -10,15 +10,15 @@ use std::{
 };
 
 /// The plan, which is fixed when the study is made.
-const PLAN: &str = "plan.json";
+const PLAN_FILE: &str = "plan.json";
 /// The wording, which the researcher may change.
-const SETTINGS: &str = "study.toml";
-const ITEMS: &str = "items.jsonl";
-const ROUTES: &str = "routes.jsonl";
-const SCENES: &str = "scenes.jsonl";
+const SETTINGS_FILE: &str = "study.toml";
+const ITEMS_FILE: &str = "items.jsonl";
+const ROUTES_FILE: &str = "routes.jsonl";
+const SCENES_FILE: &str = "scenes.jsonl";
 /// The answers.
-const DATABASE: &str = "study.db";
-const PICTURES: &str = "pictures";
+const DATABASE_FILE: &str = "study.db";
+const PICTURES_FOLDER: &str = "pictures";
 /// Largest file that is read, bytes.
 const MOST_BYTES: u64 = 1 << 30;
 
@@ -28,15 +28,15 @@ pub struct Study {
     /// Its folder.
     pub folder: PathBuf,
     /// The plan, which is fixed when the study is made.
-    pub plan: Plan,
+    pub plan: StudyDesign,
     /// Wording and other settings.
-    pub settings: Settings,
+    pub settings: StudySettings,
     /// All items, by id.
-    pub items: Vec<Item>,
+    pub items: Vec<StudyItem>,
     /// All routes, by id.
-    pub routes: Vec<Route>,
+    pub routes: Vec<StudyRoute>,
     /// The scenes that people walk.
-    pub scenes: Vec<Scene>,
+    pub scenes: Vec<StudyScene>,
 }
 
 impl Study {
@@ -46,26 +46,31 @@ impl Study {
     /// # Errors
     /// When there is one already, or a file cannot be written.
     pub fn create(&self) -> Result<(), StudyError> {
-        if self.folder.join(PLAN).exists() {
+        if self.folder.join(PLAN_FILE).exists() {
             let problem = format!("{}: there is a study already", self.folder.display());
-            return Err(StudyError::refused(problem, "give another --out; a study that people see is not changed"));
+            return Err(StudyError::refused_request(
+                problem,
+                "give another --out; a study that people see is not changed",
+            ));
         }
-        fs::create_dir_all(self.folder.join(PICTURES)).map_err(StudyError::io(&self.folder, "make the folder"))?;
+        fs::create_dir_all(self.folder.join(PICTURES_FOLDER))
+            .map_err(StudyError::io_error(&self.folder, "make the folder"))?;
         keep_private(&self.folder)?;
-        self.write_lines(ITEMS, &self.items)?;
-        self.write_lines(ROUTES, &self.routes)?;
-        self.write_lines(SCENES, &self.scenes)?;
-        let settings = toml::to_string_pretty(&self.settings).map_err(|error| self.wrong(SETTINGS, &error))?;
-        self.write(SETTINGS, settings.as_bytes())?;
-        Store::open(&self.database())?;
-        let plan = self.plan.to_file().map_err(|error| self.wrong(PLAN, &error))?;
-        self.write(PLAN, &plan)
+        self.write_lines(ITEMS_FILE, &self.items)?;
+        self.write_lines(ROUTES_FILE, &self.routes)?;
+        self.write_lines(SCENES_FILE, &self.scenes)?;
+        let settings =
+            toml::to_string_pretty(&self.settings).map_err(|error| self.wrong_file(SETTINGS_FILE, &error))?;
+        self.write_file(SETTINGS_FILE, settings.as_bytes())?;
+        StudyStore::open(&self.database_file())?;
+        let plan = self.plan.to_file().map_err(|error| self.wrong_file(PLAN_FILE, &error))?;
+        self.write_file(PLAN_FILE, &plan)
     }
 
     /// Whether a folder holds a study.
     #[must_use]
     pub fn is_in(folder: &Path) -> bool {
-        folder.join(PLAN).is_file()
+        folder.join(PLAN_FILE).is_file()
     }
 
     /// Reads a study.
@@ -73,57 +78,63 @@ impl Study {
     /// # Errors
     /// When the folder holds none, or a file of it cannot be used.
     pub fn open(folder: &Path) -> Result<Self, StudyError> {
-        let read = |name: &str| read(&folder.join(name));
-        if !folder.join(PLAN).is_file() {
-            let problem = format!("{}: there is no study (no {PLAN})", folder.display());
-            return Err(StudyError::refused(problem, "`wayword study new` makes one"));
+        let read = |name: &str| read_limited_file(&folder.join(name));
+        if !folder.join(PLAN_FILE).is_file() {
+            let problem = format!("{}: there is no study (no {PLAN_FILE})", folder.display());
+            return Err(StudyError::refused_request(problem, "`wayword study new` makes one"));
         }
-        let plan = Plan::from_file(&read(PLAN)?).map_err(|problem| wrong(folder, PLAN, &problem))?;
-        let settings: Settings = toml::from_str(&read(SETTINGS)?).map_err(|error| wrong(folder, SETTINGS, &error))?;
-        settings.check().map_err(|problem| wrong(folder, SETTINGS, &problem))?;
+        let plan = StudyDesign::from_file(&read(PLAN_FILE)?)
+            .map_err(|problem| wrong_file_error(folder, PLAN_FILE, &problem))?;
+        let settings: StudySettings =
+            toml::from_str(&read(SETTINGS_FILE)?).map_err(|error| wrong_file_error(folder, SETTINGS_FILE, &error))?;
+        settings.check().map_err(|problem| wrong_file_error(folder, SETTINGS_FILE, &problem))?;
         let study = Self {
             plan,
             settings,
-            items: lines(folder, ITEMS)?,
-            routes: lines(folder, ROUTES)?,
-            scenes: lines(folder, SCENES)?,
+            items: read_json_lines(folder, ITEMS_FILE)?,
+            routes: read_json_lines(folder, ROUTES_FILE)?,
+            scenes: read_json_lines(folder, SCENES_FILE)?,
             folder: folder.to_owned(),
         };
-        study.check()?;
+        study.check_numbering()?;
         Ok(study)
     }
 
     /// Where its pictures are.
     #[must_use]
-    pub fn pictures(&self) -> PathBuf {
-        self.folder.join(PICTURES)
+    pub fn pictures_folder(&self) -> PathBuf {
+        self.folder.join(PICTURES_FOLDER)
     }
 
     /// Its database.
-    pub(crate) fn database(&self) -> PathBuf {
-        self.folder.join(DATABASE)
+    pub(crate) fn database_file(&self) -> PathBuf {
+        self.folder.join(DATABASE_FILE)
     }
 
     /// The scene of a route.
     #[must_use]
-    pub fn scene_of(&self, route: &Route) -> Option<&Scene> {
+    pub fn scene_of(&self, route: &StudyRoute) -> Option<&StudyScene> {
         self.scenes.iter().find(|scene| scene.scene == route.scene)
     }
 
     /// Checks that ids equal line numbers, because items and routes are found by index.
-    fn check(&self) -> Result<(), StudyError> {
+    fn check_numbering(&self) -> Result<(), StudyError> {
         let numbered = |name: &str, ids: Vec<u32>| match (0..).zip(&ids).find(|(number, id)| number != *id) {
             Some((number, _)) => {
-                Err(wrong(&self.folder, name, &format!("line {}: its id must be {number}", number + 1)))
+                Err(wrong_file_error(&self.folder, name, &format!("line {}: its id must be {number}", number + 1)))
             }
             None => Ok(()),
         };
-        numbered(ITEMS, self.items.iter().map(|item| item.id).collect())?;
-        numbered(ROUTES, self.routes.iter().map(|route| route.id).collect())?;
+        numbered(ITEMS_FILE, self.items.iter().map(|item| item.id).collect())?;
+        numbered(ROUTES_FILE, self.routes.iter().map(|route| route.id).collect())?;
         if let Some(item) =
             self.items.iter().find(|item| item.route as usize >= self.routes.len() || item.texts.is_empty())
         {
-            return Err(wrong(&self.folder, ITEMS, &format!("item {}: it has no route or no text", item.id)));
+            return Err(wrong_file_error(
+                &self.folder,
+                ITEMS_FILE,
+                &format!("item {}: it has no route or no text", item.id),
+            ));
         }
         Ok(())
     }
@@ -131,14 +142,14 @@ impl Study {
     fn write_lines<T: Serialize>(&self, name: &str, all: &[T]) -> Result<(), StudyError> {
         let mut text = Vec::new();
         for one in all {
-            serde_json::to_writer(&mut text, one).map_err(|error| self.wrong(name, &error))?;
+            serde_json::to_writer(&mut text, one).map_err(|error| self.wrong_file(name, &error))?;
             text.push(b'\n');
         }
-        self.write(name, &text)
+        self.write_file(name, &text)
     }
 
     /// Writes a file under a temporary name and renames it, so that it is complete or does not exist.
-    fn write(&self, name: &str, bytes: &[u8]) -> Result<(), StudyError> {
+    fn write_file(&self, name: &str, bytes: &[u8]) -> Result<(), StudyError> {
         let place = self.folder.join(name);
         let beside = self.folder.join(format!(".{name}.part"));
         let written = fs::File::create(&beside).and_then(|mut file| {
@@ -146,11 +157,11 @@ impl Study {
             file.sync_all()?;
             fs::rename(&beside, &place)
         });
-        written.map_err(StudyError::io(place, "write"))
+        written.map_err(StudyError::io_error(place, "write"))
     }
 
-    fn wrong(&self, name: &str, problem: &dyn std::fmt::Display) -> StudyError {
-        wrong(&self.folder, name, problem)
+    fn wrong_file(&self, name: &str, problem: &dyn std::fmt::Display) -> StudyError {
+        wrong_file_error(&self.folder, name, problem)
     }
 }
 
@@ -159,15 +170,15 @@ fn keep_private(folder: &Path) -> Result<(), StudyError> {
     #[cfg(unix)]
     {
         let mode = std::os::unix::fs::PermissionsExt::from_mode(0o700);
-        fs::set_permissions(folder, mode).map_err(StudyError::io(folder, "restrict access to"))?;
+        fs::set_permissions(folder, mode).map_err(StudyError::io_error(folder, "restrict access to"))?;
     }
     #[cfg(not(unix))]
     let _ = folder;
     Ok(())
 }
 
-fn wrong(folder: &Path, name: &str, problem: &dyn std::fmt::Display) -> StudyError {
-    let hint = if name == SETTINGS {
+fn wrong_file_error(folder: &Path, name: &str, problem: &dyn std::fmt::Display) -> StudyError {
+    let hint = if name == SETTINGS_FILE {
         "correct it; docs/STUDY.md lists its keys"
     } else {
         "put back the file as `study new` wrote it, or use the version of this program that made the study"
@@ -175,19 +186,20 @@ fn wrong(folder: &Path, name: &str, problem: &dyn std::fmt::Display) -> StudyErr
     StudyError::File { path: folder.join(name), problem: problem.to_string(), hint }
 }
 
-fn read(path: &Path) -> Result<String, StudyError> {
-    let size = fs::metadata(path).map_err(StudyError::io(path, "read"))?.len();
+fn read_limited_file(path: &Path) -> Result<String, StudyError> {
+    let size = fs::metadata(path).map_err(StudyError::io_error(path, "read"))?.len();
     if size > MOST_BYTES {
         let problem = format!("it has {size} bytes, and at most {MOST_BYTES} are read");
         return Err(StudyError::File { path: path.to_owned(), problem, hint: "make a smaller study" });
     }
-    fs::read_to_string(path).map_err(StudyError::io(path, "read"))
+    fs::read_to_string(path).map_err(StudyError::io_error(path, "read"))
 }
 
-fn lines<T: DeserializeOwned>(folder: &Path, name: &str) -> Result<Vec<T>, StudyError> {
-    let text = read(&folder.join(name))?;
+fn read_json_lines<T: DeserializeOwned>(folder: &Path, name: &str) -> Result<Vec<T>, StudyError> {
+    let text = read_limited_file(&folder.join(name))?;
     let parse = |(number, line): (usize, &str)| {
-        serde_json::from_str(line).map_err(|error| wrong(folder, name, &format!("line {}: {error}", number + 1)))
+        serde_json::from_str(line)
+            .map_err(|error| wrong_file_error(folder, name, &format!("line {}: {error}", number + 1)))
     };
     text.lines().enumerate().map(parse).collect()
 }

@@ -2,12 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use wayword_core::{DVec3, Doubt, Grade, Heading, SceneId, ViewpointGraph, ViewpointId, graph::GraphError};
+use wayword_core::{DVec3, DoubtGrade, Heading, SceneId, TextDoubt, ViewpointGraph, ViewpointId, graph::GraphError};
 
 /// The unit of the participants' work: a route with one text, or with two where texts are compared.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Item {
+pub struct StudyItem {
     /// Its number in the study, from 0.
     pub id: u32,
     /// The number of its route.
@@ -16,36 +16,36 @@ pub struct Item {
     #[serde(default)]
     pub is_practice: bool,
     /// One text; two where texts are compared.
-    pub texts: Vec<Told>,
+    pub texts: Vec<StudyText>,
 }
 
 /// A text and the condition to which it belongs.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Told {
+pub struct StudyText {
     /// Name of the condition.
     pub condition: String,
     /// The instruction.
     pub text: String,
     /// The words that are marked as doubtful for those who walk by the text, in the order of the text.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub marks: Vec<Mark>,
+    pub marks: Vec<TextMark>,
 }
 
 /// Words that are marked for the participants because a reader should doubt them.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Mark {
+pub struct TextMark {
     /// Their byte range in the text.
     pub span: [usize; 2],
     /// How much they are doubted.
-    pub grade: Grade,
+    pub grade: DoubtGrade,
     /// Replacements, the best first; `None` means that the words are better left out.
     pub alternatives: Vec<Option<String>>,
 }
 
-impl From<Doubt> for Mark {
-    fn from(doubt: Doubt) -> Self {
+impl From<TextDoubt> for TextMark {
+    fn from(doubt: TextDoubt) -> Self {
         let alternatives = doubt.alternatives.into_iter().map(|one| one.words).collect();
         Self { span: doubt.span, grade: doubt.grade, alternatives }
     }
@@ -54,7 +54,7 @@ impl From<Doubt> for Mark {
 /// A path that texts describe.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Route {
+pub struct StudyRoute {
     /// Its number in the study, from 0.
     pub id: u32,
     /// Its name in the dataset or run, unique over all scenes.
@@ -67,13 +67,13 @@ pub struct Route {
     pub start_heading: Heading,
     /// The pictures along it, in order; empty where people walk by themselves.
     #[serde(default)]
-    pub film: Vec<Picture>,
+    pub film: Vec<FilmPicture>,
 }
 
 /// A picture of a film.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Picture {
+pub struct FilmPicture {
     /// Its file in the folder `pictures`.
     pub file: String,
     /// The alternative text for those who cannot see it. It does not name things that only the picture shows.
@@ -83,17 +83,17 @@ pub struct Picture {
 /// A scene that people walk.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Scene {
+pub struct StudyScene {
     /// The scene.
     pub scene: SceneId,
     /// Its viewpoints.
-    pub places: BTreeMap<ViewpointId, Place>,
+    pub places: BTreeMap<ViewpointId, StudyViewpoint>,
 }
 
 /// A viewpoint with its panorama and its neighbours.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Place {
+pub struct StudyViewpoint {
     /// Metres, in the world frame, at the height of the eye.
     pub position: [f64; 3],
     /// Its storey, if it is known. The lowest is 1.
@@ -104,27 +104,27 @@ pub struct Place {
     pub panorama: String,
 }
 
-impl Place {
+impl StudyViewpoint {
     /// Its position, metres.
     #[must_use]
-    pub fn at(&self) -> DVec3 {
+    pub fn eye_position(&self) -> DVec3 {
         DVec3::from_array(self.position)
     }
 }
 
-impl Scene {
+impl StudyScene {
     /// The graph of its places.
     ///
     /// # Errors
     /// When a place names a neighbour that the scene does not have.
-    pub fn graph(&self) -> Result<ViewpointGraph, GraphError> {
+    pub fn to_graph(&self) -> Result<ViewpointGraph, GraphError> {
         let mut graph = ViewpointGraph::default();
         for (id, place) in &self.places {
-            graph.add(id.clone(), place.at(), place.level)?;
+            graph.add_viewpoint(id.clone(), place.eye_position(), place.level)?;
         }
         for (id, place) in &self.places {
             for neighbour in &place.neighbours {
-                graph.join(id, neighbour)?;
+                graph.join_viewpoints(id, neighbour)?;
             }
         }
         Ok(graph)

@@ -7,9 +7,12 @@ mod item;
 mod plan;
 mod settings;
 
-pub use data::{Answer, Choice, Data, Move, Participant, Passed, Slot, SlotState, Status};
+pub use data::{
+    AttentionCheck, ItemSlot, PairChoice, Participant, ParticipantAnswer, ParticipantMove, ParticipantStatus,
+    SlotState, StudyData,
+};
 pub use error::StudyError;
 pub use folder::Study;
-pub use item::{Item, Mark, Picture, Place, Route, Scene, Told};
-pub use plan::{Condition, Kind, Mode, Plan};
-pub use settings::{Codes, Question, Recruiter, Settings};
+pub use item::{FilmPicture, StudyItem, StudyRoute, StudyScene, StudyText, StudyViewpoint, TextMark};
+pub use plan::{ConditionKind, StudyCondition, StudyDesign, StudyTask};
+pub use settings::{CompletionCodes, ComprehensionQuestion, RecruiterSettings, StudySettings};

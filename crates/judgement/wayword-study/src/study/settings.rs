@@ -1,12 +1,12 @@
 //! The settings of a study in `study.toml`, which the researcher may edit: wording, limits, questions and recruiter.
 
-use super::Mode;
+use super::StudyTask;
 use serde::{Deserialize, Serialize};
 
 /// The contents of `study.toml`. A change takes effect at the next start of the site.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Settings {
+pub struct StudySettings {
     /// The title of the study on its pages.
     pub title: String,
     /// Whom participants can ask: name, institution, address. Without it, the site can be reached from this machine only.
@@ -38,18 +38,18 @@ pub struct Settings {
     pub lease_s: u64,
     /// Questions that test whether a participant has understood the task.
     #[serde(default)]
-    pub questions: Vec<Question>,
+    pub questions: Vec<ComprehensionQuestion>,
     /// Where participants come from.
-    pub recruiter: Recruiter,
+    pub recruiter: RecruiterSettings,
     /// Codes that participants take back to the recruiter.
     #[serde(default)]
-    pub codes: Codes,
+    pub codes: CompletionCodes,
 }
 
 /// A question with one right answer.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Question {
+pub struct ComprehensionQuestion {
     /// The question.
     pub text: String,
     /// The answers to choose from.
@@ -61,7 +61,7 @@ pub struct Question {
 /// How participants come to the site.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case", tag = "kind")]
-pub enum Recruiter {
+pub enum RecruiterSettings {
     /// Each has a personal link.
     Links,
     /// The recruiter adds parameters to one link: Prolific, MTurk and their like.
@@ -82,7 +82,7 @@ pub enum Recruiter {
 /// Codes that inform the recruiter about the outcome, and the address to which they are sent.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub struct Codes {
+pub struct CompletionCodes {
     /// The address to which participants return, with `{code}` in the place of the code; empty shows only the code.
     pub return_url: String,
     /// All items were answered.
@@ -100,7 +100,7 @@ const LONG_MINUTES: u32 = 5;
 /// Most answers of a question.
 const MOST_ANSWERS: usize = 10;
 
-impl Settings {
+impl StudySettings {
     /// How many failed attention checks are tolerated by Prolific's rule.
     pub(crate) fn most_failed(&self) -> usize {
         usize::from(self.minutes >= LONG_MINUTES)
@@ -115,13 +115,17 @@ impl Settings {
 
     /// The settings that a new study begins with.
     #[must_use]
-    pub fn of_mode(mode: Mode, per_participant: u32) -> Self {
+    pub fn for_mode(mode: StudyTask, per_participant: u32) -> Self {
         let (task, minutes_each) = match mode {
-            Mode::Follow => {
+            StudyTask::Follow => {
                 ("You walk through pictures of a building by following a text, and stop where the text ends.", 2)
             }
-            Mode::Rate => ("You watch a walk through a building, read a text about it, and answer four questions.", 2),
-            Mode::Pair => ("You watch a walk through a building and say which of two texts describes it better.", 1),
+            StudyTask::Rate => {
+                ("You watch a walk through a building, read a text about it, and answer four questions.", 2)
+            }
+            StudyTask::Pair => {
+                ("You watch a walk through a building and say which of two texts describes it better.", 1)
+            }
         };
         let minutes = 4 + minutes_each * per_participant;
         Self {
@@ -140,14 +144,14 @@ impl Settings {
             .to_vec(),
             agreement: "I am at least 18 years old. I have read this, and I want to take part.".to_owned(),
             examples: Vec::new(),
-            write_first: mode == Mode::Rate,
+            write_first: mode == StudyTask::Rate,
             attention_checks: if per_participant > 2 { 2 } else { 0 },
             least_items: 1,
             text_language: String::new(),
             lease_s: 20 * 60,
-            questions: Question::of_mode(mode),
-            recruiter: Recruiter::Links,
-            codes: Codes::default(),
+            questions: ComprehensionQuestion::for_mode(mode),
+            recruiter: RecruiterSettings::Links,
+            codes: CompletionCodes::default(),
         }
     }
 
@@ -186,7 +190,7 @@ impl Settings {
         if !url.is_empty() && !is_usable {
             return Err("codes.return_url: begin it with https:// and put {code} where the code goes".to_owned());
         }
-        if let Recruiter::Parameters { person, session, .. } = &self.recruiter
+        if let RecruiterSettings::Parameters { person, session, .. } = &self.recruiter
             && (person.is_empty() || session.is_empty())
         {
             return Err("recruiter: name the parameters `person` and `session`".to_owned());
@@ -195,15 +199,15 @@ impl Settings {
     }
 }
 
-impl Question {
-    fn of_mode(mode: Mode) -> Vec<Self> {
+impl ComprehensionQuestion {
+    fn for_mode(mode: StudyTask) -> Vec<Self> {
         let question = |text: &str, answers: [&str; 3], right| Self {
             text: text.to_owned(),
             answers: answers.map(str::to_owned).to_vec(),
             right,
         };
         match mode {
-            Mode::Follow => vec![
+            StudyTask::Follow => vec![
                 question(
                     "How do you find the way?",
                     ["I go where I like.", "I do what the text says.", "I visit every room."],
@@ -215,7 +219,7 @@ impl Question {
                     0,
                 ),
             ],
-            Mode::Rate => vec![
+            StudyTask::Rate => vec![
                 question("What do you do first?", ["I guess.", "I rate the text.", "I watch the walk."], 2),
                 question(
                     "What do the questions ask about?",
@@ -223,7 +227,7 @@ impl Question {
                     0,
                 ),
             ],
-            Mode::Pair => vec![
+            StudyTask::Pair => vec![
                 question("What do you compare?", ["Two walks.", "Two texts about one walk.", "Two buildings."], 1),
                 question(
                     "What if both are equally good?",
@@ -241,9 +245,9 @@ mod tests {
 
     #[test]
     fn check_accepts_the_settings_of_a_new_study() {
-        for mode in [Mode::Follow, Mode::Rate, Mode::Pair] {
+        for mode in [StudyTask::Follow, StudyTask::Rate, StudyTask::Pair] {
             for items in [1, 2, 3, 10] {
-                Settings::of_mode(mode, items).check().unwrap();
+                StudySettings::for_mode(mode, items).check().unwrap();
             }
         }
     }
@@ -251,8 +255,8 @@ mod tests {
     #[test]
     fn the_recruiters_address_is_https() {
         let with = |url: &str| {
-            let codes = Codes { return_url: url.to_owned(), ..Codes::default() };
-            Settings { codes, ..Settings::of_mode(Mode::Pair, 3) }.check()
+            let codes = CompletionCodes { return_url: url.to_owned(), ..CompletionCodes::default() };
+            StudySettings { codes, ..StudySettings::for_mode(StudyTask::Pair, 3) }.check()
         };
         with("https://app.prolific.com/submissions/complete?cc={code}").unwrap();
         for wrong in ["http://a.example/{code}", "javascript:alert('{code}')", "https://a.example/"] {
@@ -262,7 +266,7 @@ mod tests {
 
     #[test]
     fn check_refuses_a_single_attention_check_that_could_never_count() {
-        let settings = Settings { attention_checks: 1, minutes: 5, ..Settings::of_mode(Mode::Pair, 3) };
+        let settings = StudySettings { attention_checks: 1, minutes: 5, ..StudySettings::for_mode(StudyTask::Pair, 3) };
         assert!(settings.check().unwrap_err().contains("attention_checks"));
     }
 }

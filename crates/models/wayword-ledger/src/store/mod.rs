@@ -8,52 +8,52 @@ mod postgres;
 mod sqlite;
 
 use crate::{
-    Answer, By, CostLine, Filter, Key, LedgerError, Limits, Place, Rates, Refused, Row, Spending, budget::Spent,
-    run::Sent,
+    CallAnswer, CallKey, CostGrouping, CostLine, LedgerEntry, LedgerError, LedgerFilter, LedgerLocation, ProviderRates,
+    RequestRefusedError, RunLimits, RunSpending, budget::SpentBudget, run::SentRequest,
 };
 use serde::{Deserialize, Serialize};
 use std::{fmt, path::Path, time::Instant};
 
-pub(crate) use chunks::{Chunks, Entry, spent_in};
+pub(crate) use chunks::{ChunkEntry, ChunkStore, spent_in};
 #[cfg(feature = "postgres")]
-pub use postgres::TABLES;
+pub use postgres::LEDGER_TABLES;
 #[cfg(feature = "postgres")]
-pub(crate) use postgres::{Postgres, Pulse};
-pub(crate) use sqlite::{Sqlite, may_hold};
+pub(crate) use postgres::{LeaseTiming, PostgresStore};
+pub(crate) use sqlite::{SqliteStore, may_hold};
 
 /// Stores calls and requests, and enforces limits. Every function may be called by many threads at once.
-pub(crate) trait Store: Queries + fmt::Debug + Send + Sync {
+pub(crate) trait CallStore: CallQueries + fmt::Debug + Send + Sync {
     /// The location of the store, for messages.
-    fn place(&self) -> Place;
+    fn ledger_location(&self) -> LedgerLocation;
 
     /// Goes on with the file of another chunk.
     fn turn_to(&self, _path: &Path) -> Result<(), LedgerError> {
-        Err(LedgerError::Misuse { place: self.place(), reason: "this ledger has no chunks" })
+        Err(LedgerError::Misuse { place: self.ledger_location(), reason: "this ledger has no chunks" })
     }
 
     /// The answer of a call, if it has one. Notes that the run has used it.
-    fn answer(&self, key: &Key, run: &str) -> Result<Option<Answer>, LedgerError>;
+    fn find_answer(&self, key: &CallKey, run: &str) -> Result<Option<CallAnswer>, LedgerError>;
 
     /// Asks for the right to make a call. If the program `from` has it, takes it over, because that program is no longer waited for. A
     /// store with a single program always grants it.
-    fn claim(&self, key: &Key, from: Option<&str>) -> Result<Claimed, LedgerError>;
+    fn claim_call(&self, key: &CallKey, from: Option<&str>) -> Result<ClaimState, LedgerError>;
 
     /// Gives back the right to make a call. If this cannot be written now, it is written later.
-    fn release(&self, key: &Key);
+    fn release_call(&self, key: &CallKey);
 
     /// The program that is making a call at the moment.
-    fn holder(&self, key: &Key) -> Result<Option<Holder>, LedgerError>;
+    fn claim_holder(&self, key: &CallKey) -> Result<Option<ClaimHolder>, LedgerError>;
 
     /// Writes a request down that is about to be sent, and returns its number. A store that keeps the budget also
     /// reserves its money, and refuses where a limit would be exceeded.
-    fn sent(&self, request: &Request<'_>) -> Result<i64, Refused>;
+    fn write_request(&self, request: &PendingRequest<'_>) -> Result<i64, RequestRefusedError>;
 
     /// Writes down that a request brought no answer. If this cannot be written now, it is written later.
-    fn ended(&self, sent: &Sent, end: End, reason: &str);
+    fn write_end(&self, sent: &SentRequest, end: RequestEnd, reason: &str);
 
     /// Writes an answer, and returns whether it is the call's first one. Gives back the right to make the call. The
     /// program need not have had it.
-    fn answered(&self, sent: Option<&Sent>, row: Row) -> Result<bool, LedgerError>;
+    fn write_answer(&self, sent: Option<&SentRequest>, row: LedgerEntry) -> Result<bool, LedgerError>;
 
     /// Returns once everything that was to be written later is written.
     fn flush(&self) -> Result<(), LedgerError>;
@@ -69,60 +69,60 @@ pub(crate) trait Store: Queries + fmt::Debug + Send + Sync {
     }
 
     /// Takes the next turn to send a request to a provider; `None` if there is no rate to keep.
-    fn turn(&self, _provider: &str, _rates: Rates, _tokens: u64) -> Result<Option<Slot>, LedgerError> {
+    fn next_slot(&self, _provider: &str, _rates: ProviderRates, _tokens: u64) -> Result<Option<SendSlot>, LedgerError> {
         Ok(None)
     }
 }
 
 /// Queries over the stored calls, and their removal.
-pub(crate) trait Queries {
+pub(crate) trait CallQueries {
     /// The spending of a run that counts against its limits: the paid amounts, plus the upper bounds of requests that may have been
     /// paid.
-    fn spent(&self, run: &str) -> Result<Spent, LedgerError>;
+    fn spent_budget(&self, run: &str) -> Result<SpentBudget, LedgerError>;
 
     /// The spending of a run so far, itemised.
-    fn spending(&self, run: &str) -> Result<Spending, LedgerError>;
+    fn run_spending(&self, run: &str) -> Result<RunSpending, LedgerError>;
 
     /// Passes the calls of a filter to `take`.
-    fn each(
+    fn for_each_call(
         &self,
-        filter: &Filter,
-        order: Order,
-        take: &mut dyn FnMut(Row) -> Result<(), LedgerError>,
+        filter: &LedgerFilter,
+        order: CallOrder,
+        take: &mut dyn FnMut(LedgerEntry) -> Result<(), LedgerError>,
     ) -> Result<(), LedgerError>;
 
     /// Drops the calls of a filter, and returns how many.
-    fn prune(&self, filter: &Filter) -> Result<usize, LedgerError>;
+    fn prune_calls(&self, filter: &LedgerFilter) -> Result<usize, LedgerError>;
 
     /// Drops the answers that were changed, and returns how many.
     fn prune_changed(&self) -> Result<usize, LedgerError>;
 
     /// Whether there is an answer of a model at an address.
-    fn has_answers_of(&self, model: &str, base_url: &str) -> Result<bool, LedgerError>;
+    fn has_answers_from(&self, model: &str, base_url: &str) -> Result<bool, LedgerError>;
 
     /// Sums up the costs of calls.
-    fn costs(&self, by: By) -> Result<Vec<CostLine>, LedgerError>;
+    fn sum_costs(&self, by: CostGrouping) -> Result<Vec<CostLine>, LedgerError>;
 
     /// How many requests have no known answer.
-    fn lost(&self) -> Result<u64, LedgerError>;
+    fn count_lost_requests(&self) -> Result<u64, LedgerError>;
 }
 
 /// A request that is about to be sent.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Request<'a> {
+pub(crate) struct PendingRequest<'a> {
     pub(crate) run: &'a str,
-    pub(crate) key: &'a Key,
+    pub(crate) key: &'a CallKey,
     /// The most that it may cost, US dollars.
     pub(crate) most_usd: Option<f64>,
     pub(crate) at_unix_s: i64,
     /// The limits of the run, for a store that keeps the budget.
-    pub(crate) limits: Limits,
+    pub(crate) limits: RunLimits,
 }
 
 /// How a request without an answer ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub(crate) enum End {
+pub(crate) enum RequestEnd {
     /// It was not sent after all.
     Cancelled,
     /// It failed and costs nothing.
@@ -131,7 +131,7 @@ pub(crate) enum End {
     Lost,
 }
 
-impl End {
+impl RequestEnd {
     /// Its name in the store.
     pub(crate) fn name(self) -> &'static str {
         match self {
@@ -144,7 +144,7 @@ impl End {
 
 /// The program that is making a call.
 #[derive(Debug, PartialEq, Eq)]
-pub(crate) struct Holder {
+pub(crate) struct ClaimHolder {
     /// The name of the program.
     pub(crate) name: String,
     /// How many requests it has sent for the call.
@@ -155,7 +155,7 @@ pub(crate) struct Holder {
 
 /// The time window in which a request may leave.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Slot {
+pub(crate) struct SendSlot {
     pub(crate) from: Instant,
     /// If it leaves later, it could leave together with too many others.
     pub(crate) until: Instant,
@@ -163,7 +163,7 @@ pub(crate) struct Slot {
 
 /// The result of a claim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Claimed {
+pub(crate) enum ClaimState {
     /// This program has it.
     Ours,
     /// Another program has it.
@@ -174,7 +174,7 @@ pub(crate) enum Claimed {
 
 /// An order of calls.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Order {
+pub(crate) enum CallOrder {
     /// By their keys.
     Key,
     /// The latest first, at most as many as the filter's limit.

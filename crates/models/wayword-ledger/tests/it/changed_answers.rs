@@ -5,16 +5,23 @@
 use crate::common::{Store, shared_stores};
 use rusqlite::Connection;
 use serde_json::json;
-use wayword_ledger::{Answer, Call, Filter, Ledger, LedgerError, Limits, OnceError, Refused, Run};
+use wayword_ledger::{
+    CallAnswer, Ledger, LedgerError, LedgerFilter, LedgerRun, ModelCall, OnceError, RequestRefusedError, RunLimits,
+};
 
-fn call(number: usize) -> Call {
-    Call { model: "t/m".into(), base_url: String::new(), request: json!({ "text": number.to_string() }), replicate: 0 }
+fn call(number: usize) -> ModelCall {
+    ModelCall {
+        model: "t/m".into(),
+        base_url: String::new(),
+        request: json!({ "text": number.to_string() }),
+        replicate: 0,
+    }
 }
 
-fn ask(run: &Run, number: usize) -> Result<Answer, OnceError<Refused>> {
-    run.once(&call(number), |attempts| {
-        attempts.begin(None)?;
-        Ok(Answer {
+fn ask(run: &LedgerRun, number: usize) -> Result<CallAnswer, OnceError<RequestRefusedError>> {
+    run.answer_once(&call(number), |attempts| {
+        attempts.begin_request(None)?;
+        Ok(CallAnswer {
             text: "There is a lamp.".into(),
             finish: "stop".into(),
             tokens_in: 3,
@@ -26,8 +33,8 @@ fn ask(run: &Run, number: usize) -> Result<Answer, OnceError<Refused>> {
     })
 }
 
-fn run(store: &Store) -> Run {
-    store.open().run("a", Limits::default()).unwrap()
+fn run(store: &Store) -> LedgerRun {
+    store.open().start_run("a", RunLimits::default()).unwrap()
 }
 
 #[test]
@@ -51,8 +58,11 @@ fn a_changed_answer_is_reported_and_never_used() {
             let place = if kind == "sqlite" { "ledger.db" } else { "postgres@" };
             assert!([place, key.as_str(), "t/m", "prune --changed"].iter().all(|part| told.contains(part)), "{told}");
             let ledger = store.open();
-            assert!(matches!(ledger.list(&Filter::default()), Err(LedgerError::Changed { .. })), "{change}");
-            let exported = ledger.export(&Filter::default(), Vec::new());
+            assert!(
+                matches!(ledger.list_calls(&LedgerFilter::default()), Err(LedgerError::Changed { .. })),
+                "{change}"
+            );
+            let exported = ledger.export_calls(&LedgerFilter::default(), Vec::new());
             assert!(matches!(exported, Err(LedgerError::Changed { .. })), "{change}");
             assert!(ask(&run(&store), 2).is_ok(), "the others are as they were");
 
@@ -106,17 +116,17 @@ fn a_ledger_of_the_first_format_is_opened_and_its_answers_stay() {
         .unwrap();
     drop(old);
 
-    let opened = Ledger::open(&path).unwrap().run("a", Limits::default()).unwrap();
+    let opened = Ledger::open(&path).unwrap().start_run("a", RunLimits::default()).unwrap();
     assert_eq!(ask(&opened, 1).unwrap().text, "An old answer.");
     ask(&opened, 2).unwrap();
     drop(opened);
     let ledger = Ledger::open(&path).unwrap();
-    assert_eq!((ledger.list(&Filter::default()).unwrap().len(), ledger.prune_changed().unwrap()), (2, 0));
-    let bounded = ledger.run("a", Limits { max_usd: Some(0.55), max_calls: None }).unwrap();
-    let refused = bounded.once(&call(3), |attempts| -> Result<Answer, Refused> {
-        attempts.begin(Some(0.1)).map(|()| panic!("what was spent is forgotten"))
+    assert_eq!((ledger.list_calls(&LedgerFilter::default()).unwrap().len(), ledger.prune_changed().unwrap()), (2, 0));
+    let bounded = ledger.start_run("a", RunLimits { max_usd: Some(0.55), max_calls: None }).unwrap();
+    let refused = bounded.answer_once(&call(3), |attempts| -> Result<CallAnswer, RequestRefusedError> {
+        attempts.begin_request(Some(0.1)).map(|()| panic!("what was spent is forgotten"))
     });
-    assert!(matches!(refused, Err(OnceError::Call(Refused::MaxUsd { .. }))));
+    assert!(matches!(refused, Err(OnceError::Call(RequestRefusedError::MaxUsd { .. }))));
     let checksums = "SELECT COUNT(checksum) FROM calls";
     let count = Connection::open(&path).unwrap().query_row(checksums, [], |row| row.get::<_, i64>(0)).unwrap();
     assert_eq!(count, 1, "new answers carry one, old ones have none");

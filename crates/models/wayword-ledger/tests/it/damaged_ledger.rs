@@ -6,14 +6,17 @@ use proptest::prelude::*;
 use rusqlite::Connection;
 use serde_json::json;
 use std::{fs, path::Path};
-use wayword_ledger::{Answer, By, Call, Filter, Ledger, LedgerError, Limits, OnceError, Refused, Run};
+use wayword_ledger::{
+    CallAnswer, CostGrouping, Ledger, LedgerError, LedgerFilter, LedgerRun, ModelCall, OnceError, RequestRefusedError,
+    RunLimits,
+};
 
-fn ask(run: &Run, number: usize) -> Result<Answer, OnceError<Refused>> {
+fn ask(run: &LedgerRun, number: usize) -> Result<CallAnswer, OnceError<RequestRefusedError>> {
     let request = json!({ "text": format!("{number} {}", "word ".repeat(50)) });
-    let call = Call { model: "t/m".into(), base_url: String::new(), request, replicate: 0 };
-    run.once(&call, |attempts| {
-        attempts.begin(None)?;
-        Ok(Answer {
+    let call = ModelCall { model: "t/m".into(), base_url: String::new(), request, replicate: 0 };
+    run.answer_once(&call, |attempts| {
+        attempts.begin_request(None)?;
+        Ok(CallAnswer {
             text: "yes".into(),
             finish: "stop".into(),
             tokens_in: 1,
@@ -26,7 +29,7 @@ fn ask(run: &Run, number: usize) -> Result<Answer, OnceError<Refused>> {
 }
 
 fn ledger_of(path: &Path, calls: usize) {
-    let run = Ledger::open(path).unwrap().run("a", Limits::default()).unwrap();
+    let run = Ledger::open(path).unwrap().start_run("a", RunLimits::default()).unwrap();
     (0..calls).for_each(|number| drop(ask(&run, number).unwrap()));
 }
 
@@ -34,10 +37,10 @@ fn ledger_of(path: &Path, calls: usize) {
 /// answers only.
 fn use_all(path: &Path) -> Result<(), Box<dyn std::error::Error>> {
     let ledger = Ledger::open(path)?;
-    ledger.list(&Filter::default())?;
-    ledger.costs(By::Model)?;
-    ledger.lost()?;
-    let run = ledger.run("a", Limits::default())?;
+    ledger.list_calls(&LedgerFilter::default())?;
+    ledger.sum_costs(CostGrouping::Model)?;
+    ledger.count_lost_requests()?;
+    let run = ledger.start_run("a", RunLimits::default())?;
     for number in 0..25 {
         assert_eq!(ask(&run, number)?.text, "yes", "a changed answer is used");
     }
@@ -88,13 +91,13 @@ fn failed_writes_are_made_later() {
     let other = Connection::open(&path).unwrap();
     other.execute_batch("CREATE TRIGGER full BEFORE INSERT ON uses BEGIN SELECT RAISE(ABORT, 'full'); END").unwrap();
     let ledger = Ledger::open(&path).unwrap();
-    let run = ledger.run("b", Limits::default()).unwrap();
+    let run = ledger.start_run("b", RunLimits::default()).unwrap();
     (0..3).for_each(|number| drop(ask(&run, number).unwrap()));
     let recording = folder.path().join("recording.jsonl");
-    assert!(matches!(run.record(&recording), Err(LedgerError::Store { .. })));
+    assert!(matches!(run.record_calls(&recording), Err(LedgerError::Store { .. })));
     assert!(!recording.exists());
     other.execute_batch("DROP TRIGGER full").unwrap();
-    assert_eq!(run.record(&recording).unwrap(), 3);
+    assert_eq!(run.record_calls(&recording).unwrap(), 3);
 }
 
 #[test]
@@ -104,7 +107,7 @@ fn odd_names_are_files_like_any_other() {
     std::env::set_current_dir(folder.path()).unwrap();
     for name in [":memory:", "file:l.db?mode=memory", "a b%20c.db"] {
         ledger_of(Path::new(name), 2);
-        assert_eq!(Ledger::open(Path::new(name)).unwrap().list(&Filter::default()).unwrap().len(), 2);
+        assert_eq!(Ledger::open(Path::new(name)).unwrap().list_calls(&LedgerFilter::default()).unwrap().len(), 2);
         assert!(fs::metadata(folder.path().join(name)).unwrap().len() > 0, "{name}");
     }
 }

@@ -13,11 +13,11 @@ use std::{
     thread,
     time::Duration,
 };
-use wayword_ledger::{Answer, Call, Filter, Limits, Refused};
+use wayword_ledger::{CallAnswer, LedgerFilter, ModelCall, RequestRefusedError, RunLimits};
 
 const LEDGER: &str = "WAYWORD_TEST_LEDGER";
 
-fn answer(call: &Call) -> Answer {
+fn answer(call: &ModelCall) -> CallAnswer {
     crate::common::answer(call.key().as_str(), Some(0.1))
 }
 
@@ -31,16 +31,16 @@ fn say(line: &str) {
 #[test]
 fn child() {
     let Ok(spec) = env::var(LEDGER) else { return };
-    let run = open(&spec).run("run", Limits::default()).unwrap();
+    let run = open(&spec).start_run("run", RunLimits::default()).unwrap();
     thread::scope(|scope| {
         for thread in 0..8 {
             let run = &run;
             scope.spawn(move || {
                 for number in 0.. {
                     let request = json!({ "text": format!("{thread} {number}") });
-                    let call = Call { model: "t/m".into(), base_url: String::new(), request, replicate: 0 };
-                    let answered = run.once(&call, |attempts| -> Result<Answer, Refused> {
-                        attempts.begin(Some(0.1))?;
+                    let call = ModelCall { model: "t/m".into(), base_url: String::new(), request, replicate: 0 };
+                    let answered = run.answer_once(&call, |attempts| -> Result<CallAnswer, RequestRefusedError> {
+                        attempts.begin_request(Some(0.1))?;
                         say(&format!("sent {}", call.key()));
                         thread::sleep(Duration::from_millis(1));
                         Ok(answer(&call))
@@ -89,10 +89,10 @@ fn a_killed_process_keeps_returned_answers_and_counts_lost_requests() {
             let said = killed_after(store.spec(), kept.len() + 20 * round);
             store.settle();
             let ledger = store.open();
-            let rows = ledger.list(&Filter::default()).unwrap();
+            let rows = ledger.list_calls(&LedgerFilter::default()).unwrap();
             let (before, lost_before) = (kept, lost);
             kept = rows.iter().map(|row| row.key.to_string()).collect();
-            lost = ledger.lost().unwrap();
+            lost = ledger.count_lost_requests().unwrap();
             for (word, key) in &said {
                 assert!(word == "sent" || kept.contains(key), "{key} was heard and is gone");
                 assert!(word == "heard" || !before.contains(key), "{key} was answered and is asked again");
@@ -106,10 +106,10 @@ fn a_killed_process_keeps_returned_answers_and_counts_lost_requests() {
         // Lost requests may have been paid for.
         let spent_usd = 0.1 * (kept.len() as u64 + lost) as f64;
         for (max_usd, fits) in [(spent_usd + 0.15, true), (spent_usd + 0.15, false)] {
-            let run = store.open().run("run", Limits { max_usd: Some(max_usd), max_calls: None }).unwrap();
-            let call = Call { model: "t/m".into(), base_url: String::new(), request: json!(fits), replicate: 0 };
-            let left = run.once(&call, |attempts| -> Result<Answer, Refused> {
-                attempts.begin(Some(0.1))?;
+            let run = store.open().start_run("run", RunLimits { max_usd: Some(max_usd), max_calls: None }).unwrap();
+            let call = ModelCall { model: "t/m".into(), base_url: String::new(), request: json!(fits), replicate: 0 };
+            let left = run.answer_once(&call, |attempts| -> Result<CallAnswer, RequestRefusedError> {
+                attempts.begin_request(Some(0.1))?;
                 Ok(answer(&call))
             });
             assert_eq!(left.is_ok(), fits);

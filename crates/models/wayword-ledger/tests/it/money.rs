@@ -6,7 +6,7 @@ use crate::common::{Store, stores};
 use proptest::{prelude::*, test_runner::TestRunner};
 use serde_json::json;
 use std::{cell::Cell, sync::Mutex, thread};
-use wayword_ledger::{Answer, Call, Limits, OnceError, Refused, Run};
+use wayword_ledger::{CallAnswer, LedgerRun, ModelCall, OnceError, RequestRefusedError, RunLimits};
 
 /// How a request ends.
 #[derive(Debug, Clone, Copy)]
@@ -15,21 +15,27 @@ enum End {
     Failed { maybe_paid: bool },
 }
 
-fn ask(run: &Run, number: usize, most_usd: Option<f64>, end: End) -> Result<Answer, OnceError<Refused>> {
+fn ask(
+    run: &LedgerRun,
+    number: usize,
+    most_usd: Option<f64>,
+    end: End,
+) -> Result<CallAnswer, OnceError<RequestRefusedError>> {
     ask_watched(run, number, most_usd, end, |_| ())
 }
 
 /// `watch` gets what the request may cost when it is sent, and the difference when it ends.
 fn ask_watched(
-    run: &Run,
+    run: &LedgerRun,
     number: usize,
     most_usd: Option<f64>,
     end: End,
     watch: impl Fn(f64),
-) -> Result<Answer, OnceError<Refused>> {
-    let call = Call { model: "t/m".into(), base_url: String::new(), request: json!({ "text": number }), replicate: 0 };
-    run.once(&call, |attempts| {
-        attempts.begin(most_usd)?;
+) -> Result<CallAnswer, OnceError<RequestRefusedError>> {
+    let call =
+        ModelCall { model: "t/m".into(), base_url: String::new(), request: json!({ "text": number }), replicate: 0 };
+    run.answer_once(&call, |attempts| {
+        attempts.begin_request(most_usd)?;
         watch(most_usd.unwrap_or(0.0));
         thread::yield_now();
         match end {
@@ -41,8 +47,8 @@ fn ask_watched(
                 if !maybe_paid {
                     watch(-most_usd.unwrap_or(0.0));
                 }
-                attempts.failed("503", maybe_paid);
-                Err(Refused::Stopped)
+                attempts.mark_failed("503", maybe_paid);
+                Err(RequestRefusedError::Stopped)
             }
         }
     })
@@ -78,9 +84,9 @@ fn limits_hold_at_every_moment_with_many_threads() {
 /// The test above for one run.
 fn holds(store: &Store, case: usize, max_usd: f64, max_calls: u64, asked: &[(f64, End)]) -> Result<(), TestCaseError> {
     let ledger = store.open();
-    let limits = Limits { max_usd: Some(max_usd), max_calls: Some(max_calls) };
+    let limits = RunLimits { max_usd: Some(max_usd), max_calls: Some(max_calls) };
     let name = format!("run {case}");
-    let run = ledger.run(&name, limits).unwrap();
+    let run = ledger.start_run(&name, limits).unwrap();
     let (exposed, most_exposed) = (Mutex::new(0.0), Mutex::new(0.0f64));
     let watch = |usd: f64| {
         let mut exposed = exposed.lock().unwrap();
@@ -102,16 +108,19 @@ fn holds(store: &Store, case: usize, max_usd: f64, max_calls: u64, asked: &[(f64
     prop_assert!(*most_exposed.lock().unwrap() <= max_usd + 1e-6);
     let totals = run.totals();
     prop_assert!(totals.calls <= max_calls);
-    let spending = ledger.spending(&name).unwrap();
+    let spending = ledger.run_spending(&name).unwrap();
     prop_assert_eq!(
         (spending.requests, spending.answered, spending.lost),
         (totals.calls, totals.answered, totals.lost)
     );
     prop_assert!((spending.usd + spending.maybe_usd - totals.usd - totals.maybe_usd).abs() < 1e-6);
     let left = max_usd - totals.usd - totals.maybe_usd;
-    let again = ledger.run(&name, limits).unwrap();
+    let again = ledger.start_run(&name, limits).unwrap();
     let too_much = ask(&again, first + 1000, Some(left + 0.001), End::Answered(Some(0.0)));
-    let refused = matches!(too_much, Err(OnceError::Call(Refused::MaxUsd { .. } | Refused::MaxCalls { .. })));
+    let refused = matches!(
+        too_much,
+        Err(OnceError::Call(RequestRefusedError::MaxUsd { .. } | RequestRefusedError::MaxCalls { .. }))
+    );
     prop_assert!(refused, "{too_much:?}");
     if totals.calls < max_calls {
         let fits = ask(&again, first + 1001, Some((left - 0.001).max(0.0)), End::Answered(Some(0.0)));
@@ -123,17 +132,17 @@ fn holds(store: &Store, case: usize, max_usd: f64, max_calls: u64, asked: &[(f64
 #[test]
 fn an_invalid_price_counts_as_no_price() {
     for store in stores("a_price_that_is_no_amount_is_no_price") {
-        let run = store.open().run("a", Limits { max_usd: Some(1.0), max_calls: None }).unwrap();
+        let run = store.open().start_run("a", RunLimits { max_usd: Some(1.0), max_calls: None }).unwrap();
         for most_usd in [f64::NAN, f64::INFINITY, -1.0] {
             let refused = ask(&run, 0, Some(most_usd), End::Answered(Some(0.0)));
-            assert!(matches!(refused, Err(OnceError::Call(Refused::NoPrice))), "{most_usd}: {refused:?}");
+            assert!(matches!(refused, Err(OnceError::Call(RequestRefusedError::NoPrice))), "{most_usd}: {refused:?}");
         }
         // The same goes for an answer's price: its upper bound counts instead.
         for (number, usd) in [None, Some(f64::NAN), Some(-5.0)].into_iter().enumerate() {
             ask(&run, number, Some(0.3), End::Answered(usd)).unwrap();
         }
         let refused = ask(&run, 9, Some(0.2), End::Answered(Some(0.0)));
-        assert!(matches!(refused, Err(OnceError::Call(Refused::MaxUsd { .. }))), "{refused:?}");
+        assert!(matches!(refused, Err(OnceError::Call(RequestRefusedError::MaxUsd { .. }))), "{refused:?}");
         assert!(run.totals().usd.abs() < 1e-9);
     }
 }
@@ -141,17 +150,20 @@ fn an_invalid_price_counts_as_no_price() {
 #[test]
 fn an_invalid_limit_refuses_every_request() {
     for store in stores("a_limit_that_is_no_amount_lets_nothing_out") {
-        let run = store.open().run("a", Limits { max_usd: Some(f64::NAN), max_calls: None }).unwrap();
-        assert!(matches!(ask(&run, 0, Some(0.1), End::Answered(None)), Err(OnceError::Call(Refused::MaxUsd { .. }))));
+        let run = store.open().start_run("a", RunLimits { max_usd: Some(f64::NAN), max_calls: None }).unwrap();
+        assert!(matches!(
+            ask(&run, 0, Some(0.1), End::Answered(None)),
+            Err(OnceError::Call(RequestRefusedError::MaxUsd { .. }))
+        ));
     }
 }
 
 #[test]
 fn an_answer_without_a_price_counts_at_its_upper_bound_later_too() {
     for store in stores("an_answer_without_a_price_counts_at_its_upper_bound_later_too") {
-        let limits = Limits { max_usd: Some(1.0), max_calls: None };
-        ask(&store.open().run("a", limits).unwrap(), 0, Some(0.8), End::Answered(None)).unwrap();
-        let again = store.open().run("a", limits).unwrap();
+        let limits = RunLimits { max_usd: Some(1.0), max_calls: None };
+        ask(&store.open().start_run("a", limits).unwrap(), 0, Some(0.8), End::Answered(None)).unwrap();
+        let again = store.open().start_run("a", limits).unwrap();
         assert!(ask(&again, 1, Some(0.3), End::Answered(Some(0.1))).is_err());
         assert!(ask(&again, 1, Some(0.1), End::Answered(Some(0.1))).is_ok());
     }

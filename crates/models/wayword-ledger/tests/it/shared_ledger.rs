@@ -16,23 +16,28 @@ use std::{
     thread,
     time::Duration,
 };
-use wayword_ledger::{Answer, Call, Filter, Limits, OnceError, Refused, Run};
+use wayword_ledger::{CallAnswer, LedgerFilter, LedgerRun, ModelCall, OnceError, RequestRefusedError, RunLimits};
 
 const LEDGER: &str = "WAYWORD_TEST_SHARED_LEDGER";
 const HANGS: &str = "WAYWORD_TEST_HANGING_LEDGER";
 const NUMBERS: usize = 100;
 
-fn call(number: usize) -> Call {
-    Call { model: "t/m".into(), base_url: String::new(), request: json!({ "text": number.to_string() }), replicate: 0 }
+fn call(number: usize) -> ModelCall {
+    ModelCall {
+        model: "t/m".into(),
+        base_url: String::new(),
+        request: json!({ "text": number.to_string() }),
+        replicate: 0,
+    }
 }
 
-fn answer(text: &str) -> Answer {
+fn answer(text: &str) -> CallAnswer {
     crate::common::answer(text, None)
 }
 
-fn ask(run: &Run, number: usize, text: &str) -> Answer {
-    let made = run.once(&call(number), |attempts| -> Result<Answer, Refused> {
-        attempts.begin(None)?;
+fn ask(run: &LedgerRun, number: usize, text: &str) -> CallAnswer {
+    let made = run.answer_once(&call(number), |attempts| -> Result<CallAnswer, RequestRefusedError> {
+        attempts.begin_request(None)?;
         Ok(answer(text))
     });
     made.unwrap()
@@ -49,12 +54,12 @@ fn a_new_ledger_can_be_opened_by_many_at_once() {
                     let (store, together) = (&store, &together);
                     scope.spawn(move || {
                         together.wait();
-                        let run = store.open().run("a", Limits::default()).unwrap();
+                        let run = store.open().start_run("a", RunLimits::default()).unwrap();
                         ask(&run, number, "yes");
                     });
                 }
             });
-            assert_eq!(store.open().list(&Filter::default()).unwrap().len(), 8);
+            assert_eq!(store.open().list_calls(&LedgerFilter::default()).unwrap().len(), 8);
         }
     }
 }
@@ -69,9 +74,9 @@ fn new_files() -> Vec<Store> {
 #[test]
 fn all_programs_get_the_first_answer_to_a_call() {
     for store in shared_stores("the_first_answer_stands_for_whoever_asked_at_the_same_time") {
-        let [first, second] = ["a", "b"].map(|run| store.open().run(run, Limits::default()).unwrap());
-        let heard = second.once(&call(1), |attempts| -> Result<Answer, Refused> {
-            attempts.begin(None)?;
+        let [first, second] = ["a", "b"].map(|run| store.open().start_run(run, RunLimits::default()).unwrap());
+        let heard = second.answer_once(&call(1), |attempts| -> Result<CallAnswer, RequestRefusedError> {
+            attempts.begin_request(None)?;
             store.change("DELETE FROM claims");
             assert_eq!(ask(&first, 1, "first").text, "first");
             Ok(answer("second"))
@@ -79,8 +84,8 @@ fn all_programs_get_the_first_answer_to_a_call() {
         assert_eq!(heard.unwrap().text, "first");
         assert_eq!((second.totals().answered, second.totals().calls), (1, 1), "it was paid for all the same");
         let ledger = store.open();
-        assert_eq!(ledger.lost().unwrap(), 0);
-        let rows = ledger.list(&Filter { run: Some("b".into()), ..Filter::default() }).unwrap();
+        assert_eq!(ledger.count_lost_requests().unwrap(), 0);
+        let rows = ledger.list_calls(&LedgerFilter { run: Some("b".into()), ..LedgerFilter::default() }).unwrap();
         assert_eq!((rows.len(), rows[0].answer.text.as_str(), rows[0].run.as_str()), (1, "first", "a"));
     }
 }
@@ -90,7 +95,7 @@ fn all_programs_get_the_first_answer_to_a_call() {
 fn program() {
     let Ok(spec) = env::var(LEDGER) else { return };
     let who = std::process::id().to_string();
-    let run = open(&spec).run(&who, Limits::default()).unwrap();
+    let run = open(&spec).start_run(&who, RunLimits::default()).unwrap();
     thread::scope(|scope| {
         for _ in 0..4 {
             scope.spawn(|| (0..NUMBERS).for_each(|number| assert!(!ask(&run, number, &who).text.is_empty())));
@@ -102,9 +107,9 @@ fn program() {
 #[test]
 fn program_that_hangs() {
     let Ok(spec) = env::var(HANGS) else { return };
-    let run = open(&spec).run("hangs", Limits::default()).unwrap();
-    let _ = run.once(&call(1), |attempts| -> Result<Answer, Refused> {
-        attempts.begin(None)?;
+    let run = open(&spec).start_run("hangs", RunLimits::default()).unwrap();
+    let _ = run.answer_once(&call(1), |attempts| -> Result<CallAnswer, RequestRefusedError> {
+        attempts.begin_request(None)?;
         std::io::stdout().write_all(b"sent\n").unwrap();
         loop {
             thread::park();
@@ -140,8 +145,8 @@ fn programs_that_share_a_ledger_pay_for_each_call_once() {
             assert!(program.wait().unwrap().success());
         }
         let ledger = store.open();
-        assert_eq!(ledger.list(&Filter::default()).unwrap().len(), NUMBERS);
-        assert_eq!(ledger.lost().unwrap(), 0);
+        assert_eq!(ledger.list_calls(&LedgerFilter::default()).unwrap().len(), NUMBERS);
+        assert_eq!(ledger.count_lost_requests().unwrap(), 0);
         assert_eq!(store.count("sent"), NUMBERS as i64, "calls were paid for twice");
         assert_eq!(store.count("claims"), 0);
         drop(ledger);
@@ -156,12 +161,12 @@ fn a_call_of_a_program_that_is_killed_is_free_again() {
         let mut hangs = start("program_that_hangs", HANGS, &store, Stdio::piped());
         let mut said = BufReader::new(hangs.stdout.take().unwrap()).lines().map_while(Result::ok);
         assert!(said.any(|line| line.ends_with("sent")));
-        let run = store.open().run("a", Limits::default()).unwrap();
+        let run = store.open().start_run("a", RunLimits::default()).unwrap();
         let is_killed = AtomicBool::new(false);
         thread::scope(|scope| {
             let asks = scope.spawn(|| {
-                run.once(&call(1), |attempts| -> Result<Answer, Refused> {
-                    attempts.begin(None)?;
+                run.answer_once(&call(1), |attempts| -> Result<CallAnswer, RequestRefusedError> {
+                    attempts.begin_request(None)?;
                     assert!(is_killed.load(Ordering::SeqCst), "it was asked while the other program asked");
                     Ok(answer("yes"))
                 })
@@ -173,14 +178,14 @@ fn a_call_of_a_program_that_is_killed_is_free_again() {
             hangs.wait().unwrap();
             assert_eq!(asks.join().unwrap().unwrap().text, "yes");
         });
-        assert_eq!(store.open().lost().unwrap(), 1, "the one that was on the wire");
+        assert_eq!(store.open().count_lost_requests().unwrap(), 1, "the one that was on the wire");
         drop(run);
         if store.kind() == "postgres" {
             // A program is gone only some time after its last sign of life.
             thread::sleep(Duration::from_secs(2));
         }
         assert_eq!(left_behind(&store), 1);
-        ask(&store.open().run("b", Limits::default()).unwrap(), 2, "yes");
+        ask(&store.open().start_run("b", RunLimits::default()).unwrap(), 2, "yes");
         assert_eq!(left_behind(&store), 0, "the next program removes it");
     }
 }
@@ -188,15 +193,18 @@ fn a_call_of_a_program_that_is_killed_is_free_again() {
 #[test]
 fn a_wait_for_another_program_ends_when_the_run_is_stopped() {
     for store in shared_stores("a_wait_for_another_program_ends_when_the_run_is_stopped") {
-        let [first, second] = ["a", "b"].map(|run| store.open().run(run, Limits::default()).unwrap());
-        let made = first.once(&call(1), |attempts| -> Result<Answer, Refused> {
-            attempts.begin(None)?;
+        let [first, second] = ["a", "b"].map(|run| store.open().start_run(run, RunLimits::default()).unwrap());
+        let made = first.answer_once(&call(1), |attempts| -> Result<CallAnswer, RequestRefusedError> {
+            attempts.begin_request(None)?;
             thread::scope(|scope| {
-                let waits = scope
-                    .spawn(|| second.once(&call(1), |_| -> Result<Answer, Refused> { panic!("it is asked twice") }));
+                let waits = scope.spawn(|| {
+                    second.answer_once(&call(1), |_| -> Result<CallAnswer, RequestRefusedError> {
+                        panic!("it is asked twice")
+                    })
+                });
                 thread::sleep(Duration::from_millis(50));
                 second.stop();
-                assert!(matches!(waits.join().unwrap(), Err(OnceError::Refused(Refused::Stopped))));
+                assert!(matches!(waits.join().unwrap(), Err(OnceError::Refused(RequestRefusedError::Stopped))));
             });
             Ok(answer("yes"))
         });
@@ -207,14 +215,14 @@ fn a_wait_for_another_program_ends_when_the_run_is_stopped() {
 #[test]
 fn a_failed_call_is_tried_again_by_a_waiting_program() {
     for store in shared_stores("what_failed_for_one_program_is_tried_by_the_other_that_waited") {
-        let [first, second] = ["a", "b"].map(|run| store.open().run(run, Limits::default()).unwrap());
+        let [first, second] = ["a", "b"].map(|run| store.open().start_run(run, RunLimits::default()).unwrap());
         thread::scope(|scope| {
             let mut waits = None;
-            let failed = first.once(&call(1), |attempts| -> Result<Answer, Refused> {
-                attempts.begin(None)?;
+            let failed = first.answer_once(&call(1), |attempts| -> Result<CallAnswer, RequestRefusedError> {
+                attempts.begin_request(None)?;
                 waits = Some(scope.spawn(|| ask(&second, 1, "second")));
-                attempts.failed("503", false);
-                Err(Refused::Stopped)
+                attempts.mark_failed("503", false);
+                Err(RequestRefusedError::Stopped)
             });
             assert!(failed.is_err());
             assert_eq!(waits.unwrap().join().unwrap().text, "second");

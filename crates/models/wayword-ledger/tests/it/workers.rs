@@ -18,25 +18,31 @@ use std::{
     time::{Duration, Instant, SystemTime, UNIX_EPOCH},
 };
 use wayword_ledger::{
-    Answer, Call, Filter, Ledger, LedgerError, Limits, OnceError, Rates, Refused, Run, Spending, TABLES,
+    CallAnswer, LEDGER_TABLES, Ledger, LedgerError, LedgerFilter, LedgerRun, ModelCall, OnceError, ProviderRates,
+    RequestRefusedError, RunLimits, RunSpending,
 };
-use wayword_testkit::Postgres;
+use wayword_testkit::PostgresServer;
 
 const SPEC: &str = "WAYWORD_TEST_WORKERS";
 const WORKERS: usize = 8;
 
-fn call(number: usize) -> Call {
-    Call { model: "t/m".into(), base_url: String::new(), request: json!({ "text": number.to_string() }), replicate: 0 }
+fn call(number: usize) -> ModelCall {
+    ModelCall {
+        model: "t/m".into(),
+        base_url: String::new(),
+        request: json!({ "text": number.to_string() }),
+        replicate: 0,
+    }
 }
 
-fn answer(number: usize, usd: f64) -> Answer {
+fn answer(number: usize, usd: f64) -> CallAnswer {
     crate::common::answer(&format!("{number}!"), Some(usd))
 }
 
 /// Makes a call that may cost 0.001 and costs a part of it.
-fn ask(run: &Run, number: usize, share: f64) -> Result<Answer, OnceError<Refused>> {
-    run.once(&call(number), |attempts| {
-        attempts.begin(Some(0.001))?;
+fn ask(run: &LedgerRun, number: usize, share: f64) -> Result<CallAnswer, OnceError<RequestRefusedError>> {
+    run.answer_once(&call(number), |attempts| {
+        attempts.begin_request(Some(0.001))?;
         Ok(answer(number, 0.001 * share))
     })
 }
@@ -71,7 +77,7 @@ fn signal(child: &Child, name: &str) {
 #[test]
 fn program_that_spends() {
     let Ok(spec) = env::var(SPEC) else { return };
-    let run = open(&spec).run("run", Limits { max_usd: Some(1.0), max_calls: None }).unwrap();
+    let run = open(&spec).start_run("run", RunLimits { max_usd: Some(1.0), max_calls: None }).unwrap();
     let first = std::process::id() as usize * 1_000_000;
     let next = AtomicUsize::new(first);
     thread::scope(|scope| {
@@ -80,7 +86,7 @@ fn program_that_spends() {
                 loop {
                     match ask(&run, next.fetch_add(1, Ordering::SeqCst), 1.0) {
                         Ok(_) => say("made 1"),
-                        Err(OnceError::Call(Refused::MaxUsd { .. })) => break,
+                        Err(OnceError::Call(RequestRefusedError::MaxUsd { .. })) => break,
                         Err(error) => panic!("{error}"),
                     }
                 }
@@ -120,17 +126,17 @@ fn one_budget_is_used_up_to_the_last_cent_and_never_exceeded() {
     });
     assert_eq!(made, 1000);
     let ledger = store.open();
-    let spending = ledger.spending("run").unwrap();
+    let spending = ledger.run_spending("run").unwrap();
     assert_eq!((spending.requests, spending.answered, spending.lost), (1000, 1000, 0));
     assert!((spending.usd - 1.0).abs() < 1e-9);
     // The limit comes from the command, so a larger one goes on.
-    let larger = ledger.run("run", Limits { max_usd: Some(1.001), max_calls: None }).unwrap();
+    let larger = ledger.start_run("run", RunLimits { max_usd: Some(1.001), max_calls: None }).unwrap();
     ask(&larger, 1, 0.5).unwrap();
     let refused = ask(&larger, 2, 0.5).unwrap_err().to_string();
     assert!(refused.contains("$1.0005 are spent"), "{refused}");
-    let counted = ledger.run("run", Limits { max_usd: None, max_calls: Some(1001) }).unwrap();
-    assert!(matches!(ask(&counted, 3, 0.5), Err(OnceError::Call(Refused::MaxCalls { max_calls: 1001 }))));
-    let other = ledger.run("other", Limits { max_usd: Some(0.001), max_calls: None }).unwrap();
+    let counted = ledger.start_run("run", RunLimits { max_usd: None, max_calls: Some(1001) }).unwrap();
+    assert!(matches!(ask(&counted, 3, 0.5), Err(OnceError::Call(RequestRefusedError::MaxCalls { max_calls: 1001 }))));
+    let other = ledger.start_run("other", RunLimits { max_usd: Some(0.001), max_calls: None }).unwrap();
     ask(&other, 4, 1.0).unwrap();
 }
 
@@ -139,7 +145,7 @@ fn one_budget_is_used_up_to_the_last_cent_and_never_exceeded() {
 fn program_that_shares() {
     const CALLS: usize = 400;
     let Ok(spec) = env::var(SPEC) else { return };
-    let run = open(&spec).run("run", Limits { max_usd: Some(1.0), max_calls: None }).unwrap();
+    let run = open(&spec).start_run("run", RunLimits { max_usd: Some(1.0), max_calls: None }).unwrap();
     let next = AtomicUsize::new(0);
     let from = std::process::id() as usize * 7;
     thread::scope(|scope| {
@@ -201,8 +207,8 @@ fn workers_that_are_killed_lose_nothing_and_pay_for_nothing_twice() {
     });
     store.settle();
     let ledger = store.open();
-    let rows = ledger.list(&Filter::default()).unwrap();
-    let (known, lost) = (rows.len(), ledger.lost().unwrap());
+    let rows = ledger.list_calls(&LedgerFilter::default()).unwrap();
+    let (known, lost) = (rows.len(), ledger.count_lost_requests().unwrap());
     assert_eq!(known, 400);
     assert!(kept.len() <= known, "something was heard and is gone");
     assert_eq!(store.count("sent") as u64, known as u64 + lost, "every request is answered or counted as lost");
@@ -221,8 +227,8 @@ const RATE: f64 = 200.0;
 #[test]
 fn program_that_hurries() {
     let Ok(spec) = env::var(SPEC) else { return };
-    let run = open(&spec).run("run", Limits::default()).unwrap();
-    let rates = Rates { requests_per_s: Some(RATE), tokens_per_s: None };
+    let run = open(&spec).start_run("run", RunLimits::default()).unwrap();
+    let rates = ProviderRates { requests_per_s: Some(RATE), tokens_per_s: None };
     let until = Instant::now() + Duration::from_secs(6);
     thread::scope(|scope| {
         for _ in 0..8 {
@@ -262,9 +268,9 @@ fn workers_together_keep_one_rate_and_use_it() {
 #[test]
 fn tokens_have_a_rate_too_and_a_wait_can_be_stopped() {
     let Some(store) = postgres("tokens_have_a_rate_too_and_a_wait_can_be_stopped") else { return };
-    let run = store.open().run("run", Limits::default()).unwrap();
+    let run = store.open().start_run("run", RunLimits::default()).unwrap();
     assert!(run.shares_rates());
-    let rates = Rates { requests_per_s: None, tokens_per_s: Some(1000.0) };
+    let rates = ProviderRates { requests_per_s: None, tokens_per_s: Some(1000.0) };
     let begun = Instant::now();
     (0..4).for_each(|_| assert!(run.wait_turn("p", rates, 200, || false).unwrap()));
     // The first leaves at once, the others when those before them are paid for, but for the half of a burst.
@@ -274,10 +280,10 @@ fn tokens_have_a_rate_too_and_a_wait_can_be_stopped() {
     assert!(run.wait_turn("p", rates, 100_000, || false).unwrap());
     assert!(!run.wait_turn("p", rates, 1, || begun.elapsed() > Duration::from_millis(300)).unwrap());
     assert!(begun.elapsed() < Duration::from_secs(2));
-    for none in [Rates::default(), Rates { requests_per_s: Some(f64::NAN), tokens_per_s: Some(0.0) }] {
+    for none in [ProviderRates::default(), ProviderRates { requests_per_s: Some(f64::NAN), tokens_per_s: Some(0.0) }] {
         assert!(run.wait_turn("p", none, 1, || false).unwrap());
     }
-    let alone = Ledger::in_memory().unwrap().run("run", Limits::default()).unwrap();
+    let alone = Ledger::in_memory().unwrap().start_run("run", RunLimits::default()).unwrap();
     assert!(!alone.shares_rates() && alone.wait_turn("p", rates, u64::MAX, || false).unwrap());
 }
 
@@ -286,12 +292,12 @@ fn work_goes_on_when_the_database_was_restarted() {
     if postgres("work_goes_on_when_the_database_was_restarted").is_none() {
         return;
     }
-    let server = Arc::new(Postgres::start().unwrap());
+    let server = Arc::new(PostgresServer::start().unwrap());
     let store = database::on(Arc::clone(&server));
     let ledger = store.open();
-    let run = ledger.run("run", Limits { max_usd: Some(0.3), max_calls: None }).unwrap();
+    let run = ledger.start_run("run", RunLimits { max_usd: Some(0.3), max_calls: None }).unwrap();
     let next = AtomicUsize::new(0);
-    let rates = Rates { requests_per_s: Some(1000.0), tokens_per_s: None };
+    let rates = ProviderRates { requests_per_s: Some(1000.0), tokens_per_s: None };
     thread::scope(|scope| {
         for _ in 0..8 {
             scope.spawn(|| {
@@ -311,7 +317,7 @@ fn work_goes_on_when_the_database_was_restarted() {
             server.restart();
         }
     });
-    let spending = ledger.spending("run").unwrap();
+    let spending = ledger.run_spending("run").unwrap();
     assert_eq!((spending.requests, spending.answered, spending.lost), (300, 300, 0));
     assert_eq!((store.count("calls"), store.count("claims")), (300, 0));
     assert_eq!(exposed(&mut database::past(&store)), 300_000_000);
@@ -321,9 +327,9 @@ fn work_goes_on_when_the_database_was_restarted() {
 #[test]
 fn program_that_sleeps() {
     let Ok(spec) = env::var(SPEC) else { return };
-    let run = open(&spec).run("sleeps", Limits::default()).unwrap();
-    let made = run.once(&call(1), |attempts| -> Result<Answer, Refused> {
-        attempts.begin(Some(0.001))?;
+    let run = open(&spec).start_run("sleeps", RunLimits::default()).unwrap();
+    let made = run.answer_once(&call(1), |attempts| -> Result<CallAnswer, RequestRefusedError> {
+        attempts.begin_request(Some(0.001))?;
         say("sent 1");
         let mut line = String::new();
         std::io::stdin().read_line(&mut line).unwrap();
@@ -341,7 +347,7 @@ fn a_worker_that_was_suspended_too_long_finds_its_call_made() {
     let mut said = BufReader::new(sleeps.stdout.take().unwrap()).lines().map_while(Result::ok);
     assert!(said.any(|line| line.contains("sent 1")));
     signal(&sleeps, "-STOP");
-    let run = store.open().run("run", Limits::default()).unwrap();
+    let run = store.open().start_run("run", RunLimits::default()).unwrap();
     let begun = Instant::now();
     assert_eq!(ask(&run, 1, 1.0).unwrap().text, "1!");
     assert!(begun.elapsed() > Duration::from_millis(1000), "it was waited for as long as it may be alive");
@@ -349,9 +355,9 @@ fn a_worker_that_was_suspended_too_long_finds_its_call_made() {
     sleeps.stdin.take().unwrap().write_all(b"\n").unwrap();
     assert!(said.any(|line| line.contains("heard 1")), "the first answer stands");
     sleeps.wait().unwrap();
-    let both = Spending { requests: 1, answered: 1, lost: 0, usd: 0.001, maybe_usd: 0.0 };
+    let both = RunSpending { requests: 1, answered: 1, lost: 0, usd: 0.001, maybe_usd: 0.0 };
     let ledger = store.open();
-    assert_eq!([ledger.spending("run").unwrap(), ledger.spending("sleeps").unwrap()], [both; 2]);
+    assert_eq!([ledger.run_spending("run").unwrap(), ledger.run_spending("sleeps").unwrap()], [both; 2]);
 }
 
 #[test]
@@ -359,25 +365,25 @@ fn a_worker_needs_no_right_to_make_tables() {
     let Some(store) = postgres("a_worker_needs_no_right_to_make_tables") else { return };
     let url = store.spec().split_once(':').unwrap().1.replacen("postgres@", "worker@", 1);
     database::past(&store).batch_execute("CREATE ROLE worker LOGIN").unwrap();
-    let error = Ledger::postgres(&database::named(&url)).unwrap_err();
+    let error = Ledger::open_postgres(&database::named(&url)).unwrap_err();
     assert!(matches!(&error, LedgerError::Database { is_lost: false, .. }), "{error}");
     assert!(error.to_string().contains("may not make them") && error.to_string().contains("hint: "), "{error}");
 
     drop(store.open());
-    database::past(&store).batch_execute(&TABLES.grants.replace("ROLE", "worker")).unwrap();
-    let ledger = Ledger::postgres(&database::named(&url)).unwrap();
-    let run = ledger.run("run", Limits { max_usd: Some(1.0), max_calls: None }).unwrap();
-    let rates = Rates { requests_per_s: Some(100.0), tokens_per_s: Some(1000.0) };
+    database::past(&store).batch_execute(&LEDGER_TABLES.grants.replace("ROLE", "worker")).unwrap();
+    let ledger = Ledger::open_postgres(&database::named(&url)).unwrap();
+    let run = ledger.start_run("run", RunLimits { max_usd: Some(1.0), max_calls: None }).unwrap();
+    let rates = ProviderRates { requests_per_s: Some(100.0), tokens_per_s: Some(1000.0) };
     assert!(run.wait_turn("p", rates, 1, || false).unwrap());
     ask(&run, 1, 1.0).unwrap();
-    let failed = run.once(&call(2), |attempts| -> Result<Answer, Refused> {
-        attempts.begin(Some(0.5))?;
-        attempts.failed("a reason with \0", true);
-        Err(Refused::Stopped)
+    let failed = run.answer_once(&call(2), |attempts| -> Result<CallAnswer, RequestRefusedError> {
+        attempts.begin_request(Some(0.5))?;
+        attempts.mark_failed("a reason with \0", true);
+        Err(RequestRefusedError::Stopped)
     });
     assert!(failed.is_err());
-    assert!(ledger.has_answers_of("t/m", "").unwrap() && ledger.lost().unwrap() == 1);
-    assert_eq!((ledger.prune_changed().unwrap(), ledger.prune(&Filter::default()).unwrap()), (0, 1));
+    assert!(ledger.has_answers_from("t/m", "").unwrap() && ledger.count_lost_requests().unwrap() == 1);
+    assert_eq!((ledger.prune_changed().unwrap(), ledger.prune_calls(&LedgerFilter::default()).unwrap()), (0, 1));
     drop((run, ledger));
     assert_eq!(store.count("presence"), 0);
     database::past(&store).batch_execute("DROP OWNED BY worker; DROP ROLE worker").unwrap();

@@ -6,7 +6,7 @@ use std::path::Path;
 
 /// `config.json`, with the names of transformers.
 #[derive(Debug, Deserialize)]
-pub(crate) struct Config {
+pub(crate) struct BertConfig {
     pub(crate) vocab_size: usize,
     pub(crate) hidden_size: usize,
     pub(crate) num_hidden_layers: usize,
@@ -14,9 +14,9 @@ pub(crate) struct Config {
     pub(crate) intermediate_size: usize,
     pub(crate) hidden_act: Activation,
     pub(crate) max_position_embeddings: usize,
-    #[serde(default = "two")]
+    #[serde(default = "default_type_vocab_size")]
     pub(crate) type_vocab_size: usize,
-    #[serde(default = "epsilon")]
+    #[serde(default = "default_norm_epsilon")]
     pub(crate) layer_norm_eps: f64,
     model_type: Option<String>,
 }
@@ -24,7 +24,7 @@ pub(crate) struct Config {
 /// The sizes of an encoder that is a BERT in all other respects.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Sizes {
+pub(crate) struct BertSizes {
     pub(crate) vocab_size: usize,
     pub(crate) hidden_size: usize,
     pub(crate) num_hidden_layers: usize,
@@ -37,9 +37,9 @@ pub(crate) struct Sizes {
 /// The most layers. BERT-large has 24.
 const MOST_LAYERS: usize = 64;
 
-impl Sizes {
+impl BertSizes {
     /// The problem with the sizes, if there is one.
-    pub(crate) fn problem(&self) -> Option<String> {
+    pub(crate) fn find_problem(&self) -> Option<String> {
         let (heads, layers) = (self.num_attention_heads, self.num_hidden_layers);
         let sizes = [
             ("vocab_size", self.vocab_size),
@@ -76,35 +76,35 @@ struct LengthConfig {
 
 /// How a sentence's vector is made from the vectors of its tokens.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Pooling {
+pub(super) enum SentencePooling {
     /// The mean of all.
     Mean,
     /// The first token's.
     First,
 }
 
-fn two() -> usize {
+fn default_type_vocab_size() -> usize {
     2
 }
 
-fn epsilon() -> f64 {
+fn default_norm_epsilon() -> f64 {
     1e-12
 }
 
-impl Config {
-    pub(super) fn read(folder: &Path) -> Result<Self, LocalError> {
-        let config: Self = json::read(folder, "config.json", "the configuration")?;
+impl BertConfig {
+    pub(super) fn from_folder(folder: &Path) -> Result<Self, LocalError> {
+        let config: Self = json::read_required(folder, "config.json", "the configuration")?;
         let wrong = |problem: String| LocalError::File {
             file: folder.join("config.json"),
             problem,
             hint: "choose a sentence encoder with BERT's architecture, such as sentence-transformers/all-MiniLM-L6-v2",
         };
-        config.check().map_err(wrong)?;
+        config.check_values().map_err(wrong)?;
         Ok(config)
     }
 
     /// Checks the values that the computation relies on.
-    pub(crate) fn check(&self) -> Result<(), String> {
+    pub(crate) fn check_values(&self) -> Result<(), String> {
         if let Some(kind) = self.model_type.as_deref().filter(|kind| *kind != "bert") {
             return Err(format!("model_type: {kind} is not bert"));
         }
@@ -116,7 +116,7 @@ impl Config {
     }
 
     /// The configuration of an encoder of these sizes, with BERT's activation and norms.
-    pub(crate) fn uncased(sizes: &Sizes) -> Self {
+    pub(crate) fn for_sizes(sizes: &BertSizes) -> Self {
         Self {
             vocab_size: sizes.vocab_size,
             hidden_size: sizes.hidden_size,
@@ -126,7 +126,7 @@ impl Config {
             hidden_act: Activation::Gelu,
             max_position_embeddings: sizes.max_position_embeddings,
             type_vocab_size: sizes.type_vocab_size,
-            layer_norm_eps: epsilon(),
+            layer_norm_eps: default_norm_epsilon(),
             model_type: None,
         }
     }
@@ -145,16 +145,16 @@ impl Config {
     }
 
     /// The most tokens of a text: the model's limit, or the lower one that the sentence encoder sets.
-    pub(super) fn longest(&self, folder: &Path) -> Result<usize, LocalError> {
+    pub(super) fn max_text_tokens(&self, folder: &Path) -> Result<usize, LocalError> {
         let own: Option<LengthConfig> = json::read_if_there(folder, "sentence_bert_config.json")?;
         let own = own.and_then(|own| own.max_seq_length).unwrap_or(usize::MAX);
         Ok(own.min(self.max_position_embeddings))
     }
 }
 
-impl Pooling {
+impl SentencePooling {
     /// Reads the folder's pooling. Without a configuration it is the mean.
-    pub(super) fn read(folder: &Path) -> Result<Self, LocalError> {
+    pub(super) fn from_folder(folder: &Path) -> Result<Self, LocalError> {
         let config: Option<PoolingConfig> = json::read_if_there(folder, "1_Pooling/config.json")?;
         match config {
             None => Ok(Self::Mean),

@@ -5,6 +5,6 @@ mod config;
 mod encoder;
 mod sentences;
 
-pub(crate) use config::{Config, Sizes};
-pub(crate) use encoder::{Encoder, Layer};
+pub(crate) use config::{BertConfig, BertSizes};
+pub(crate) use encoder::{BertEncoder, BertLayer};
 pub use sentences::SentenceEncoder;

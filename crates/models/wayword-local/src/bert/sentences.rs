@@ -1,25 +1,25 @@
 //! Turns sentences into vectors of length 1 that can be compared, as sentence-transformers does.
 
 use super::{
-    config::{Config, Pooling},
-    encoder::Encoder,
+    config::{BertConfig, SentencePooling},
+    encoder::BertEncoder,
 };
-use crate::{Device, LocalError, Precision, text::Tokenizer, weights::Weights};
+use crate::{LocalError, ModelDevice, WeightPrecision, text::TextTokenizer, weights::CheckpointWeights};
 use candle_core::{DType, Tensor};
 use std::path::Path;
 use wayword_core::{ModelError, TextEncoder};
 
 /// The number of texts that are encoded together.
-const BATCH: usize = 32;
+const TEXTS_PER_BATCH: usize = 32;
 
 /// A sentence encoder: texts with a similar meaning get vectors with a large dot product.
 pub struct SentenceEncoder {
     name: String,
-    tokenizer: Tokenizer,
-    encoder: Encoder,
-    pooling: Pooling,
+    tokenizer: TextTokenizer,
+    encoder: BertEncoder,
+    pooling: SentencePooling,
     longest: usize,
-    device: Device,
+    device: ModelDevice,
 }
 
 impl SentenceEncoder {
@@ -28,18 +28,24 @@ impl SentenceEncoder {
     ///
     /// # Errors
     /// When a file is missing or damaged, or the checkpoint has another architecture.
-    pub fn load(name: &str, folder: &Path, device: &Device, precision: Precision) -> Result<Self, LocalError> {
-        let config = Config::read(folder)?;
-        let weights = Weights::open(folder, device, precision)?;
+    pub fn load(
+        name: &str,
+        folder: &Path,
+        device: &ModelDevice,
+        precision: WeightPrecision,
+    ) -> Result<Self, LocalError> {
+        let config = BertConfig::from_folder(folder)?;
+        let weights = CheckpointWeights::open(folder, device, precision)?;
         // A checkpoint of a whole BERT model has the encoder under the name `bert`.
-        let all = weights.scope("");
-        let encoder = if all.has("embeddings.word_embeddings.weight") { all } else { weights.scope("bert") };
+        let all = weights.scope_under("");
+        let encoder =
+            if all.has_tensor("embeddings.word_embeddings.weight") { all } else { weights.scope_under("bert") };
         Ok(Self {
             name: name.to_owned(),
-            tokenizer: Tokenizer::load(folder)?,
-            encoder: Encoder::load(&encoder, &config)?,
-            pooling: Pooling::read(folder)?,
-            longest: config.longest(folder)?,
+            tokenizer: TextTokenizer::load(folder)?,
+            encoder: BertEncoder::from_weights(&encoder, &config)?,
+            pooling: SentencePooling::from_folder(folder)?,
+            longest: config.max_text_tokens(folder)?,
             device: device.clone(),
         })
     }
@@ -48,15 +54,15 @@ impl SentenceEncoder {
     ///
     /// # Errors
     /// When the computation fails.
-    pub fn vectors(&self, texts: &[&str]) -> Result<Vec<Vec<f32>>, LocalError> {
-        let ids = texts.iter().map(|text| self.tokenizer.ids(text, self.longest));
+    pub fn unit_vectors(&self, texts: &[&str]) -> Result<Vec<Vec<f32>>, LocalError> {
+        let ids = texts.iter().map(|text| self.tokenizer.text_ids(text, self.longest));
         let ids: Vec<Vec<u32>> = ids.collect::<Result<_, _>>()?;
         let mut order: Vec<usize> = (0..texts.len()).collect();
         order.sort_by_key(|&at| ids[at].len());
         let mut vectors = vec![Vec::new(); texts.len()];
-        for batch in order.chunks(BATCH) {
+        for batch in order.chunks(TEXTS_PER_BATCH) {
             let of_batch: Vec<&[u32]> = batch.iter().map(|&at| &ids[at][..]).collect();
-            let found = self.batch(&of_batch);
+            let found = self.encode_batch(&of_batch);
             let found =
                 found.map_err(|error| LocalError::Compute { model: self.name.clone(), problem: error.to_string() })?;
             for (&at, vector) in batch.iter().zip(found) {
@@ -66,7 +72,7 @@ impl SentenceEncoder {
         Ok(vectors)
     }
 
-    fn batch(&self, texts: &[&[u32]]) -> candle_core::Result<Vec<Vec<f32>>> {
+    fn encode_batch(&self, texts: &[&[u32]]) -> candle_core::Result<Vec<Vec<f32>>> {
         let device = &self.device.0;
         let longest = texts.iter().map(|ids| ids.len()).max().unwrap_or(0).max(1);
         let padded = |ids: &&[u32]| ids.iter().copied().chain(std::iter::repeat(0)).take(longest).collect::<Vec<_>>();
@@ -79,11 +85,11 @@ impl SentenceEncoder {
         };
         let is_even = texts.iter().all(|ids| ids.len() == longest);
         let hides = if is_even { None } else { Some(weights(0.0, f32::NEG_INFINITY)?.unsqueeze(1)?.unsqueeze(1)?) };
-        let states = self.encoder.of(&ids, hides.as_ref())?.to_dtype(DType::F32)?;
+        let states = self.encoder.encode_tokens(&ids, hides.as_ref())?.to_dtype(DType::F32)?;
         let pooled = match self.pooling {
-            Pooling::First => states.narrow(1, 0, 1)?.squeeze(1)?,
-            Pooling::Mean if is_even => states.mean(1)?,
-            Pooling::Mean => {
+            SentencePooling::First => states.narrow(1, 0, 1)?.squeeze(1)?,
+            SentencePooling::Mean if is_even => states.mean(1)?,
+            SentencePooling::Mean => {
                 let weights = weights(1.0, 0.0)?.unsqueeze(2)?;
                 states.broadcast_mul(&weights)?.sum(1)?.broadcast_div(&weights.sum(1)?)?
             }
@@ -98,7 +104,8 @@ impl TextEncoder for SentenceEncoder {
         &self.name
     }
 
-    fn encode(&self, texts: &[&str]) -> Result<Vec<Vec<f32>>, ModelError> {
-        self.vectors(texts).map_err(|error| ModelError::Failed { model: self.name.clone(), reason: error.to_string() })
+    fn encode_texts(&self, texts: &[&str]) -> Result<Vec<Vec<f32>>, ModelError> {
+        self.unit_vectors(texts)
+            .map_err(|error| ModelError::Failed { model: self.name.clone(), reason: error.to_string() })
     }
 }

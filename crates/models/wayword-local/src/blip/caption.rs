@@ -1,7 +1,10 @@
 //! BLIP's checkpoint that describes pictures.
 
-use super::{config::Config, decoder::Decoder, vision::Vision};
-use crate::{Device, LocalError, Precision, picture::Processor, text::Tokenizer, weights::Weights};
+use super::{config::BlipConfig, decoder::BlipDecoder, vision::BlipVision};
+use crate::{
+    LocalError, ModelDevice, WeightPrecision, picture::PictureProcessor, text::TextTokenizer,
+    weights::CheckpointWeights,
+};
 use candle_core::DType;
 use std::path::Path;
 use wayword_core::Image;
@@ -9,11 +12,11 @@ use wayword_core::Image;
 /// A BLIP that describes pictures.
 pub struct BlipCaptioner {
     name: String,
-    pub(super) processor: Processor,
-    tokenizer: Tokenizer,
-    pub(super) vision: Vision,
-    pub(super) decoder: Decoder,
-    pub(super) device: Device,
+    pub(super) processor: PictureProcessor,
+    tokenizer: TextTokenizer,
+    pub(super) vision: BlipVision,
+    pub(super) decoder: BlipDecoder,
+    pub(super) device: ModelDevice,
 }
 
 impl BlipCaptioner {
@@ -22,15 +25,20 @@ impl BlipCaptioner {
     ///
     /// # Errors
     /// When a file is missing or damaged, or the checkpoint has another architecture.
-    pub fn load(name: &str, folder: &Path, device: &Device, precision: Precision) -> Result<Self, LocalError> {
-        let config = Config::read(folder)?;
-        let weights = Weights::open(folder, device, precision)?;
+    pub fn load(
+        name: &str,
+        folder: &Path,
+        device: &ModelDevice,
+        precision: WeightPrecision,
+    ) -> Result<Self, LocalError> {
+        let config = BlipConfig::from_folder(folder)?;
+        let weights = CheckpointWeights::open(folder, device, precision)?;
         Ok(Self {
             name: name.to_owned(),
-            processor: Processor::load(folder)?,
-            tokenizer: Tokenizer::load(folder)?,
-            vision: Vision::load(&weights.scope("vision_model"), &config.vision_config)?,
-            decoder: Decoder::load(&weights.scope("text_decoder"), &config.text_config)?,
+            processor: PictureProcessor::load(folder)?,
+            tokenizer: TextTokenizer::load(folder)?,
+            vision: BlipVision::from_weights(&weights.scope_under("vision_model"), &config.vision_config)?,
+            decoder: BlipDecoder::from_weights(&weights.scope_under("text_decoder"), &config.text_config)?,
             device: device.clone(),
         })
     }
@@ -39,22 +47,27 @@ impl BlipCaptioner {
     ///
     /// # Errors
     /// When the computation fails.
-    pub fn caption(&self, picture: &Image, beginning: &str, most_tokens: usize) -> Result<String, LocalError> {
-        self.tokenizer.text(&self.tokens(picture, beginning, most_tokens)?)
+    pub fn describe_picture(&self, picture: &Image, beginning: &str, most_tokens: usize) -> Result<String, LocalError> {
+        self.tokenizer.decode_ids(&self.description_tokens(picture, beginning, most_tokens)?)
     }
 
     /// The tokens of a description, without the ones that begin and end it.
     ///
     /// # Errors
     /// When the computation fails.
-    pub fn tokens(&self, picture: &Image, beginning: &str, most_tokens: usize) -> Result<Vec<u32>, LocalError> {
+    pub fn description_tokens(
+        &self,
+        picture: &Image,
+        beginning: &str,
+        most_tokens: usize,
+    ) -> Result<Vec<u32>, LocalError> {
         let prompt = self.tokenizer.inner_ids(beginning)?;
-        let pixels = self.processor.tensor(&[picture], &self.device)?;
-        let said = self.vision.of(&pixels).and_then(|states| {
-            let attended = self.decoder.text.attended(&states)?;
-            self.decoder.speak(&prompt, &attended, most_tokens, &self.device.0)
+        let pixels = self.processor.to_tensor(&[picture], &self.device)?;
+        let said = self.vision.encode_pictures(&pixels).and_then(|states| {
+            let attended = self.decoder.text.cross_keys_values(&states)?;
+            self.decoder.generate_tokens(&prompt, &attended, most_tokens, &self.device.0)
         });
-        let said = said.map_err(|error| LocalError::compute(&self.name, &error))?;
+        let said = said.map_err(|error| LocalError::compute_failed(&self.name, &error))?;
         Ok([prompt, said].concat())
     }
 
@@ -62,9 +75,12 @@ impl BlipCaptioner {
     ///
     /// # Errors
     /// When the computation fails.
-    pub fn states(&self, picture: &Image) -> Result<Vec<f32>, LocalError> {
-        let pixels = self.processor.tensor(&[picture], &self.device)?;
-        let states = self.vision.of(&pixels).and_then(|states| states.flatten_all()?.to_dtype(DType::F32)?.to_vec1());
-        states.map_err(|error| LocalError::compute(&self.name, &error))
+    pub fn picture_states(&self, picture: &Image) -> Result<Vec<f32>, LocalError> {
+        let pixels = self.processor.to_tensor(&[picture], &self.device)?;
+        let states = self
+            .vision
+            .encode_pictures(&pixels)
+            .and_then(|states| states.flatten_all()?.to_dtype(DType::F32)?.to_vec1());
+        states.map_err(|error| LocalError::compute_failed(&self.name, &error))
     }
 }

@@ -6,7 +6,7 @@ use std::path::Path;
 
 /// `config.json`.
 #[derive(Debug, Deserialize)]
-pub(super) struct Config {
+pub(super) struct BlipConfig {
     model_type: Option<String>,
     #[serde(default)]
     pub(super) text_config: TextConfig,
@@ -80,11 +80,11 @@ impl Default for TextConfig {
     }
 }
 
-impl Config {
-    pub(super) fn read(folder: &Path) -> Result<Self, LocalError> {
-        let mut config: Self = json::read(folder, "config.json", "the configuration")?;
+impl BlipConfig {
+    pub(super) fn from_folder(folder: &Path) -> Result<Self, LocalError> {
+        let mut config: Self = json::read_required(folder, "config.json", "the configuration")?;
         config.text_config.encoder_hidden_size = config.vision_config.hidden_size;
-        match config.problem() {
+        match config.find_problem() {
             None => Ok(config),
             Some(problem) => Err(LocalError::File {
                 file: folder.join("config.json"),
@@ -94,7 +94,7 @@ impl Config {
         }
     }
 
-    fn problem(&self) -> Option<String> {
+    fn find_problem(&self) -> Option<String> {
         if self.model_type.as_deref() != Some("blip") {
             return Some("model_type: it is not blip".to_owned());
         }
@@ -105,7 +105,7 @@ impl Config {
             ("text_config.intermediate_size", text.intermediate_size),
             ("text_config.max_position_embeddings", text.max_position_embeddings),
         ];
-        if let Some(problem) = self.vision_config.problem().or_else(|| json::size_problem(&sizes)) {
+        if let Some(problem) = self.vision_config.find_problem().or_else(|| json::size_problem(&sizes)) {
             return Some(problem);
         }
         let heads = text.num_attention_heads;
@@ -116,7 +116,7 @@ impl Config {
 
 impl VisionConfig {
     /// The problem with the values, if there is one.
-    pub(crate) fn problem(&self) -> Option<String> {
+    pub(crate) fn find_problem(&self) -> Option<String> {
         let sizes = [
             ("vision_config.hidden_size", self.hidden_size),
             ("vision_config.intermediate_size", self.intermediate_size),

@@ -2,46 +2,50 @@
 
 use super::{
     config::TextConfig,
-    text::{Attended, TextModel},
+    text::{BlipKeysValues, TextModel},
 };
 use crate::{
     LocalError,
-    greedy::greedy,
-    ops::{Activation, LayerNorm, Linear},
-    weights::Scope,
+    greedy::decode_greedily,
+    ops::{Activation, LayerNorm, LinearLayer},
+    weights::WeightScope,
 };
 use candle_core::{Device, Result, Tensor};
 
 /// A text model with a head that predicts the next token.
-pub(super) struct Decoder {
+pub(super) struct BlipDecoder {
     pub(super) text: TextModel,
-    dense: Linear,
+    dense: LinearLayer,
     activation: Activation,
     norm: LayerNorm,
-    words: Linear,
+    words: LinearLayer,
     begin: u32,
     end: u32,
     longest: usize,
 }
 
-impl Decoder {
-    pub(super) fn load(weights: &Scope<'_>, config: &TextConfig) -> std::result::Result<Self, LocalError> {
+impl BlipDecoder {
+    pub(super) fn from_weights(
+        weights: &WeightScope<'_>,
+        config: &TextConfig,
+    ) -> std::result::Result<Self, LocalError> {
         let (size, count) = (config.hidden_size, config.vocab_size);
-        let head = weights.sub("cls.predictions");
+        let head = weights.sub_scope("cls.predictions");
         // Checkpoints leave out tensors that are tied to another one.
-        let table = if head.has("decoder.weight") {
-            head.sub("decoder")
+        let table = if head.has_tensor("decoder.weight") {
+            head.sub_scope("decoder")
         } else {
-            weights.sub("bert.embeddings.word_embeddings")
+            weights.sub_scope("bert.embeddings.word_embeddings")
         };
-        let bias = if head.has("bias") { head.clone() } else { head.sub("decoder") };
-        let words = Linear::new(&table.tensor("weight", &[count, size])?, Some(bias.tensor("bias", &[count])?));
+        let bias = if head.has_tensor("bias") { head.clone() } else { head.sub_scope("decoder") };
+        let words =
+            LinearLayer::new(&table.read_tensor("weight", &[count, size])?, Some(bias.read_tensor("bias", &[count])?));
         Ok(Self {
-            text: TextModel::load(&weights.sub("bert"), config)?,
-            dense: head.linear("transform.dense", size, size)?,
+            text: TextModel::from_weights(&weights.sub_scope("bert"), config)?,
+            dense: head.read_linear("transform.dense", size, size)?,
             activation: config.hidden_act,
             norm: head.layer_norm("transform.LayerNorm", size, config.layer_norm_eps)?,
-            words: words.map_err(|error| table.wrong("weight", &error))?,
+            words: words.map_err(|error| table.tensor_error("weight", &error))?,
             begin: config.bos_token_id,
             end: config.sep_token_id,
             longest: config.max_position_embeddings,
@@ -49,19 +53,25 @@ impl Decoder {
     }
 
     /// Logits [1, length, words] from states [1, length, size].
-    pub(super) fn logits(&self, states: &Tensor) -> Result<Tensor> {
-        self.words.of(&self.norm.of(&self.dense.of_then(states, self.activation)?)?)
+    pub(super) fn token_logits(&self, states: &Tensor) -> Result<Tensor> {
+        self.words.apply_to(&self.norm.apply_to(&self.dense.apply_then(states, self.activation)?)?)
     }
 
     /// The tokens that continue a prompt: at most `most`, without the one that ends a text. `prompt` does not contain
     /// the token that begins every text.
-    pub(super) fn speak(&self, prompt: &[u32], attended: &Attended, most: usize, device: &Device) -> Result<Vec<u32>> {
+    pub(super) fn generate_tokens(
+        &self,
+        prompt: &[u32],
+        attended: &BlipKeysValues,
+        most: usize,
+        device: &Device,
+    ) -> Result<Vec<u32>> {
         let begun: Vec<u32> = std::iter::once(self.begin).chain(prompt.iter().copied()).collect();
-        let mut past = self.text.past();
-        greedy(most.min(self.longest.saturating_sub(begun.len())), self.end, |token| {
+        let mut past = self.text.empty_past();
+        decode_greedily(most.min(self.longest.saturating_sub(begun.len())), self.end, |token| {
             let next = token.map_or_else(|| begun.clone(), |token| vec![token]);
-            let states = self.text.go_on(&Tensor::new(next, device)?.unsqueeze(0)?, attended, &mut past)?;
-            self.logits(&states.narrow(1, states.dim(1)? - 1, 1)?)
+            let states = self.text.continue_text(&Tensor::new(next, device)?.unsqueeze(0)?, attended, &mut past)?;
+            self.token_logits(&states.narrow(1, states.dim(1)? - 1, 1)?)
         })
     }
 }

@@ -11,5 +11,5 @@ mod vqa;
 
 pub use caption::BlipCaptioner;
 pub(crate) use config::VisionConfig;
-pub(crate) use vision::Vision;
+pub(crate) use vision::BlipVision;
 pub use vqa::BlipVqa;

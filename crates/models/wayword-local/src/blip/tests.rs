@@ -1,8 +1,8 @@
 //! Compares the writing model's logits with PyTorch's (`fixtures/make_blip.py` made the numbers), because a small
 //! mistake may not change the words.
 
-use super::{BlipCaptioner, BlipVqa, decoder::Decoder, text::Attended};
-use crate::{Device, Precision};
+use super::{BlipCaptioner, BlipVqa, decoder::BlipDecoder, text::BlipKeysValues};
+use crate::{ModelDevice, WeightPrecision};
 use candle_core::{Result, Tensor};
 use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
@@ -26,20 +26,23 @@ fn drawn((width, height): (u32, u32)) -> Image {
 }
 
 /// Logits after each of these tokens. `parts` are the lengths of the parts in which the decoder gets them.
-fn logits(decoder: &Decoder, ids: &[u32], attended: &Attended, parts: &[usize]) -> Result<Vec<f32>> {
-    let (mut past, mut ids, mut all) = (decoder.text.past(), ids, Vec::new());
+fn logits(decoder: &BlipDecoder, ids: &[u32], attended: &BlipKeysValues, parts: &[usize]) -> Result<Vec<f32>> {
+    let (mut past, mut ids, mut all) = (decoder.text.empty_past(), ids, Vec::new());
     for &length in parts {
         let (now, later) = ids.split_at(length);
-        let states =
-            decoder.text.go_on(&Tensor::new(now, &candle_core::Device::Cpu)?.unsqueeze(0)?, attended, &mut past)?;
-        all.extend(decoder.logits(&states)?.flatten_all()?.to_vec1::<f32>()?);
+        let states = decoder.text.continue_text(
+            &Tensor::new(now, &candle_core::Device::Cpu)?.unsqueeze(0)?,
+            attended,
+            &mut past,
+        )?;
+        all.extend(decoder.token_logits(&states)?.flatten_all()?.to_vec1::<f32>()?);
         ids = later;
     }
     Ok(all)
 }
 
 #[track_caller]
-fn near_in_parts(decoder: &Decoder, ids: &[u32], attended: &Attended, theirs: &[f32]) {
+fn near_in_parts(decoder: &BlipDecoder, ids: &[u32], attended: &BlipKeysValues, theirs: &[f32]) {
     let singly = vec![1; ids.len()];
     for parts in [vec![ids.len()], singly, vec![3, ids.len() - 3]] {
         let ours = logits(decoder, ids, attended, &parts).unwrap();
@@ -59,9 +62,10 @@ struct Caption {
 #[test]
 fn logits_of_a_caption_agree_with_pytorch_however_the_tokens_come() {
     let expected: Caption = expected("blip_caption");
-    let blip = BlipCaptioner::load("hf/test/blip", &fixture("blip_caption"), &Device::cpu(), Precision::F32).unwrap();
-    let pixels = blip.processor.tensor(&[&drawn(expected.size)], &blip.device).unwrap();
-    let attended = blip.decoder.text.attended(&blip.vision.of(&pixels).unwrap()).unwrap();
+    let blip = BlipCaptioner::load("hf/test/blip", &fixture("blip_caption"), &ModelDevice::cpu(), WeightPrecision::F32)
+        .unwrap();
+    let pixels = blip.processor.to_tensor(&[&drawn(expected.size)], &blip.device).unwrap();
+    let attended = blip.decoder.text.cross_keys_values(&blip.vision.encode_pictures(&pixels).unwrap()).unwrap();
     near_in_parts(&blip.decoder, &expected.begun, &attended, &expected.logits);
 }
 
@@ -81,10 +85,10 @@ struct Answer {
 #[test]
 fn logits_of_answers_agree_with_pytorch_however_the_tokens_come() {
     let expected: Answers = expected("blip_vqa");
-    let blip = BlipVqa::load("hf/test/blip", &fixture("blip_vqa"), &Device::cpu(), Precision::F32).unwrap();
+    let blip = BlipVqa::load("hf/test/blip", &fixture("blip_vqa"), &ModelDevice::cpu(), WeightPrecision::F32).unwrap();
     for answer in &expected.answers {
-        let read = blip.read(&drawn(expected.size), &answer.question).unwrap();
-        let attended = blip.decoder.text.attended(&read).unwrap();
+        let read = blip.encode_question(&drawn(expected.size), &answer.question).unwrap();
+        let attended = blip.decoder.text.cross_keys_values(&read).unwrap();
         near_in_parts(&blip.decoder, &answer.said, &attended, &answer.logits);
     }
 }

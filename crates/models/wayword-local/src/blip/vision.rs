@@ -3,47 +3,50 @@
 use super::config::VisionConfig;
 use crate::{
     LocalError,
-    ops::{Activation, Attention, FeedForward, LayerNorm, Linear, patches},
-    weights::Scope,
+    ops::{Activation, FeedForward, LayerNorm, LinearLayer, MultiHeadAttention, cut_patches},
+    weights::WeightScope,
 };
 use candle_core::{Result, Tensor};
 
 /// Computes the states of the patches of pictures.
-pub(crate) struct Vision {
-    patch: Linear,
+pub(crate) struct BlipVision {
+    patch: LinearLayer,
     patch_px: usize,
     class: Tensor,
     positions: Tensor,
-    layers: Vec<Layer>,
+    layers: Vec<BlipVisionLayer>,
     norm: LayerNorm,
 }
 
-struct Layer {
+struct BlipVisionLayer {
     norm: LayerNorm,
-    qkv: Linear,
-    mixed: Linear,
+    qkv: LinearLayer,
+    mixed: LinearLayer,
     mixed_norm: LayerNorm,
-    wide: Linear,
-    narrow: Linear,
+    wide: LinearLayer,
+    narrow: LinearLayer,
     heads: usize,
     activation: Activation,
 }
 
-impl Vision {
-    pub(crate) fn load(weights: &Scope<'_>, config: &VisionConfig) -> std::result::Result<Self, LocalError> {
+impl BlipVision {
+    pub(crate) fn from_weights(
+        weights: &WeightScope<'_>,
+        config: &VisionConfig,
+    ) -> std::result::Result<Self, LocalError> {
         let (size, patch_px) = (config.hidden_size, config.patch_size);
-        let embeddings = weights.sub("embeddings");
+        let embeddings = weights.sub_scope("embeddings");
         let count = (config.image_size / patch_px).pow(2) + 1;
-        let kernel = embeddings.tensor("patch_embedding.weight", &[size, 3, patch_px, patch_px])?;
-        let bias = embeddings.tensor("patch_embedding.bias", &[size])?;
-        let patch = kernel.flatten_from(1).and_then(|kernel| Linear::new(&kernel, Some(bias)));
-        let layers =
-            (0..config.num_hidden_layers).map(|layer| Layer::load(&weights.sub("encoder.layers").sub(layer), config));
+        let kernel = embeddings.read_tensor("patch_embedding.weight", &[size, 3, patch_px, patch_px])?;
+        let bias = embeddings.read_tensor("patch_embedding.bias", &[size])?;
+        let patch = kernel.flatten_from(1).and_then(|kernel| LinearLayer::new(&kernel, Some(bias)));
+        let layers = (0..config.num_hidden_layers)
+            .map(|layer| BlipVisionLayer::from_weights(&weights.sub_scope("encoder.layers").sub_scope(layer), config));
         Ok(Self {
-            patch: patch.map_err(|error| embeddings.wrong("patch_embedding.weight", &error))?,
+            patch: patch.map_err(|error| embeddings.tensor_error("patch_embedding.weight", &error))?,
             patch_px,
-            class: embeddings.state("class_embedding", &[1, 1, size])?,
-            positions: embeddings.state("position_embedding", &[1, count, size])?,
+            class: embeddings.read_state("class_embedding", &[1, 1, size])?,
+            positions: embeddings.read_state("position_embedding", &[1, count, size])?,
             layers: layers.collect::<std::result::Result<_, _>>()?,
             norm: weights.layer_norm("post_layernorm", size, config.layer_norm_eps)?,
         })
@@ -51,37 +54,38 @@ impl Vision {
 
     /// The states [batch, patches + 1, size] of pictures [batch, 3, height, width]. The first state is the class
     /// token's.
-    pub(crate) fn of(&self, pictures: &Tensor) -> Result<Tensor> {
+    pub(crate) fn encode_pictures(&self, pictures: &Tensor) -> Result<Tensor> {
         let pictures = pictures.to_dtype(self.class.dtype())?;
-        let x = self.patch.of(&patches(&pictures, self.patch_px)?)?;
+        let x = self.patch.apply_to(&cut_patches(&pictures, self.patch_px)?)?;
         let (batch, _, size) = x.dims3()?;
         let x = Tensor::cat(&[&self.class.expand((batch, 1, size))?.contiguous()?, &x], 1)?;
         let x = x.broadcast_add(&self.positions)?;
-        self.norm.of(&self.layers.iter().try_fold(x, |x, layer| layer.of(&x))?)
+        self.norm.apply_to(&self.layers.iter().try_fold(x, |x, layer| layer.apply_to(&x))?)
     }
 }
 
-impl Layer {
-    fn load(weights: &Scope<'_>, config: &VisionConfig) -> std::result::Result<Self, LocalError> {
+impl BlipVisionLayer {
+    fn from_weights(weights: &WeightScope<'_>, config: &VisionConfig) -> std::result::Result<Self, LocalError> {
         let (size, inner, epsilon) = (config.hidden_size, config.intermediate_size, config.layer_norm_eps);
         Ok(Self {
             norm: weights.layer_norm("layer_norm1", size, epsilon)?,
-            qkv: weights.linear("self_attn.qkv", size, 3 * size)?,
-            mixed: weights.linear("self_attn.projection", size, size)?,
+            qkv: weights.read_linear("self_attn.qkv", size, 3 * size)?,
+            mixed: weights.read_linear("self_attn.projection", size, size)?,
             mixed_norm: weights.layer_norm("layer_norm2", size, epsilon)?,
-            wide: weights.linear("mlp.fc1", size, inner)?,
-            narrow: weights.linear("mlp.fc2", inner, size)?,
+            wide: weights.read_linear("mlp.fc1", size, inner)?,
+            narrow: weights.read_linear("mlp.fc2", inner, size)?,
             heads: config.num_attention_heads,
             activation: config.hidden_act,
         })
     }
 
-    fn of(&self, x: &Tensor) -> Result<Tensor> {
+    fn apply_to(&self, x: &Tensor) -> Result<Tensor> {
         let size = x.dim(2)?;
-        let qkv = self.qkv.of_normed(x, &self.norm)?;
+        let qkv = self.qkv.apply_to_normed(x, &self.norm)?;
         let part = |at: usize| qkv.narrow(2, at * size, size);
         let scale = 1.0 / ((size / self.heads) as f32).sqrt();
-        let mixed = Attention { heads: self.heads, scale, bias: None }.of(&part(0)?, &part(1)?, &part(2)?)?;
+        let mixed =
+            MultiHeadAttention { heads: self.heads, scale, bias: None }.attend_to(&part(0)?, &part(1)?, &part(2)?)?;
         let then = FeedForward {
             before: Some(&self.mixed_norm),
             wide: &self.wide,
@@ -89,6 +93,6 @@ impl Layer {
             narrow: &self.narrow,
             after: None,
         };
-        then.of(&self.mixed.onto(&mixed, x)?)
+        then.apply_to(&self.mixed.apply_onto(&mixed, x)?)
     }
 }

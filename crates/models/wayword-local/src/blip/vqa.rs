@@ -1,37 +1,37 @@
 //! BLIP's checkpoint that answers questions about pictures (visual question answering).
 
 use super::{
-    config::Config,
-    decoder::Decoder,
-    text::{Attended, TextModel},
-    vision::Vision,
+    config::BlipConfig,
+    decoder::BlipDecoder,
+    text::{BlipKeysValues, TextModel},
+    vision::BlipVision,
 };
 use crate::{
-    Device, LocalError, Precision,
-    picture::{Processor, digest},
-    text::Tokenizer,
-    weights::Weights,
+    LocalError, ModelDevice, WeightPrecision,
+    picture::{PictureProcessor, picture_digest},
+    text::TextTokenizer,
+    weights::CheckpointWeights,
 };
 use candle_core::{DType, Tensor};
 use std::path::Path;
-use wayword_core::{Image, Recent};
+use wayword_core::{Image, RecentCache};
 
 /// The number of pictures for which keys and values are kept, about 45 MB each. A frame gets about ten questions, so
 /// recomputing them would waste most of the time.
-const KEPT: usize = 4;
+const MAX_KEPT_PICTURES: usize = 4;
 
 /// A BLIP that answers questions about pictures. An encoder reads the question and attends to the picture, and a
 /// decoder answers from the encoder's states.
 pub struct BlipVqa {
     name: String,
-    processor: Processor,
-    tokenizer: Tokenizer,
-    vision: Vision,
+    processor: PictureProcessor,
+    tokenizer: TextTokenizer,
+    vision: BlipVision,
     encoder: TextModel,
-    pub(super) decoder: Decoder,
+    pub(super) decoder: BlipDecoder,
     longest: usize,
-    seen: Recent<[u8; 32], Attended>,
-    device: Device,
+    seen: RecentCache<[u8; 32], BlipKeysValues>,
+    device: ModelDevice,
 }
 
 impl BlipVqa {
@@ -40,18 +40,23 @@ impl BlipVqa {
     ///
     /// # Errors
     /// When a file is missing or damaged, or the checkpoint has another architecture.
-    pub fn load(name: &str, folder: &Path, device: &Device, precision: Precision) -> Result<Self, LocalError> {
-        let config = Config::read(folder)?;
-        let weights = Weights::open(folder, device, precision)?;
+    pub fn load(
+        name: &str,
+        folder: &Path,
+        device: &ModelDevice,
+        precision: WeightPrecision,
+    ) -> Result<Self, LocalError> {
+        let config = BlipConfig::from_folder(folder)?;
+        let weights = CheckpointWeights::open(folder, device, precision)?;
         Ok(Self {
             name: name.to_owned(),
-            processor: Processor::load(folder)?,
-            tokenizer: Tokenizer::load(folder)?,
-            vision: Vision::load(&weights.scope("vision_model"), &config.vision_config)?,
-            encoder: TextModel::load(&weights.scope("text_encoder"), &config.text_config)?,
-            decoder: Decoder::load(&weights.scope("text_decoder"), &config.text_config)?,
+            processor: PictureProcessor::load(folder)?,
+            tokenizer: TextTokenizer::load(folder)?,
+            vision: BlipVision::from_weights(&weights.scope_under("vision_model"), &config.vision_config)?,
+            encoder: TextModel::from_weights(&weights.scope_under("text_encoder"), &config.text_config)?,
+            decoder: BlipDecoder::from_weights(&weights.scope_under("text_decoder"), &config.text_config)?,
             longest: config.text_config.max_position_embeddings,
-            seen: Recent::one_at_a_time(KEPT),
+            seen: RecentCache::one_at_a_time(MAX_KEPT_PICTURES),
             device: device.clone(),
         })
     }
@@ -61,34 +66,38 @@ impl BlipVqa {
     ///
     /// # Errors
     /// When the computation fails.
-    pub fn answer(&self, picture: &Image, question: &str, most_tokens: usize) -> Result<String, LocalError> {
-        let said = self.read(picture, question)?;
+    pub fn answer_question(&self, picture: &Image, question: &str, most_tokens: usize) -> Result<String, LocalError> {
+        let said = self.encode_question(picture, question)?;
         let said = self
             .decoder
             .text
-            .attended(&said)
-            .and_then(|attended| self.decoder.speak(&[], &attended, most_tokens, &self.device.0));
-        self.tokenizer.text(&said.map_err(|error| LocalError::compute(&self.name, &error))?)
+            .cross_keys_values(&said)
+            .and_then(|attended| self.decoder.generate_tokens(&[], &attended, most_tokens, &self.device.0));
+        self.tokenizer.decode_ids(&said.map_err(|error| LocalError::compute_failed(&self.name, &error))?)
     }
 
     /// The encoder's states of a question and a picture, [tokens, size] row by row.
     ///
     /// # Errors
     /// When the computation fails.
-    pub fn states(&self, picture: &Image, question: &str) -> Result<Vec<f32>, LocalError> {
-        let states = self.read(picture, question)?;
+    pub fn question_states(&self, picture: &Image, question: &str) -> Result<Vec<f32>, LocalError> {
+        let states = self.encode_question(picture, question)?;
         let states = states.flatten_all().and_then(|states| states.to_dtype(DType::F32)?.to_vec1());
-        states.map_err(|error| LocalError::compute(&self.name, &error))
+        states.map_err(|error| LocalError::compute_failed(&self.name, &error))
     }
 
-    pub(super) fn read(&self, picture: &Image, question: &str) -> Result<Tensor, LocalError> {
-        let compute = |error: candle_core::Error| LocalError::compute(&self.name, &error);
-        let seen = self.seen.get_or_make(digest(picture), || {
-            let pixels = self.processor.tensor(&[picture], &self.device)?;
-            self.vision.of(&pixels).and_then(|states| self.encoder.attended(&states)).map_err(compute)
+    pub(super) fn encode_question(&self, picture: &Image, question: &str) -> Result<Tensor, LocalError> {
+        let compute = |error: candle_core::Error| LocalError::compute_failed(&self.name, &error);
+        let seen = self.seen.get_or_make(picture_digest(picture), || {
+            let pixels = self.processor.to_tensor(&[picture], &self.device)?;
+            self.vision
+                .encode_pictures(&pixels)
+                .and_then(|states| self.encoder.cross_keys_values(&states))
+                .map_err(compute)
         })?;
-        let ids = self.tokenizer.ids(question, self.longest)?;
-        let read = Tensor::new(&ids[..], &self.device.0).and_then(|ids| self.encoder.read(&ids.unsqueeze(0)?, &seen));
+        let ids = self.tokenizer.text_ids(question, self.longest)?;
+        let read =
+            Tensor::new(&ids[..], &self.device.0).and_then(|ids| self.encoder.encode_text(&ids.unsqueeze(0)?, &seen));
         read.map_err(compute)
     }
 }

@@ -6,14 +6,14 @@ use std::path::Path;
 
 /// `config.json`.
 #[derive(Debug, Deserialize)]
-pub(super) struct Config {
+pub(super) struct Blip2Config {
     model_type: Option<String>,
     #[serde(default)]
     pub(super) vision_config: VisionConfig,
     #[serde(default)]
     pub(super) qformer_config: QFormerConfig,
     pub(super) text_config: TextConfig,
-    #[serde(default = "queries")]
+    #[serde(default = "default_query_count")]
     pub(super) num_query_tokens: usize,
 }
 
@@ -94,7 +94,7 @@ pub(super) struct OptConfig {
     pub(super) eos_token_id: u32,
 }
 
-fn queries() -> usize {
+fn default_query_count() -> usize {
     32
 }
 
@@ -170,7 +170,7 @@ impl Default for OptConfig {
 
 impl VisionConfig {
     /// The same configuration for BLIP's vision model, which has the same architecture.
-    pub(super) fn blip(&self) -> BlipVisionConfig {
+    pub(super) fn to_blip_config(&self) -> BlipVisionConfig {
         BlipVisionConfig {
             hidden_size: self.hidden_size,
             intermediate_size: self.intermediate_size,
@@ -186,7 +186,7 @@ impl VisionConfig {
 
 impl TextConfig {
     /// The number of numbers in a token's state.
-    pub(super) fn width(&self) -> usize {
+    pub(super) fn state_width(&self) -> usize {
         match self {
             Self::T5(text) => text.d_model,
             Self::Opt(text) => text.hidden_size,
@@ -194,7 +194,7 @@ impl TextConfig {
     }
 
     /// The problem with the values, if there is one.
-    fn problem(&self) -> Option<String> {
+    fn find_problem(&self) -> Option<String> {
         let (sizes, problem) = match self {
             Self::T5(text) => {
                 let sizes = vec![
@@ -225,7 +225,7 @@ impl TextConfig {
                     ("text_config.max_position_embeddings", text.max_position_embeddings),
                 ];
                 let projects = text.word_embed_proj_dim.is_some_and(|width| width != text.hidden_size);
-                let problem = if !divides(text.num_attention_heads, text.hidden_size) {
+                let problem = if !divides_evenly(text.num_attention_heads, text.hidden_size) {
                     Some("text_config.num_attention_heads: it does not divide hidden_size")
                 } else if !text.do_layer_norm_before || projects {
                     Some("text_config: the architecture of OPT-350m is not supported")
@@ -239,14 +239,14 @@ impl TextConfig {
     }
 }
 
-fn divides(part: usize, whole: usize) -> bool {
+fn divides_evenly(part: usize, whole: usize) -> bool {
     part > 0 && whole.is_multiple_of(part)
 }
 
-impl Config {
-    pub(super) fn read(folder: &Path) -> Result<Self, LocalError> {
-        let config: Self = json::read(folder, "config.json", "the configuration")?;
-        match config.problem() {
+impl Blip2Config {
+    pub(super) fn from_folder(folder: &Path) -> Result<Self, LocalError> {
+        let config: Self = json::read_required(folder, "config.json", "the configuration")?;
+        match config.find_problem() {
             None => Ok(config),
             Some(problem) => Err(LocalError::File {
                 file: folder.join("config.json"),
@@ -256,7 +256,7 @@ impl Config {
         }
     }
 
-    fn problem(&self) -> Option<String> {
+    fn find_problem(&self) -> Option<String> {
         if self.model_type.as_deref() != Some("blip-2") {
             return Some("model_type: it is not blip-2".to_owned());
         }
@@ -268,13 +268,13 @@ impl Config {
             ("qformer_config.encoder_hidden_size", queries.encoder_hidden_size),
             ("qformer_config.cross_attention_frequency", queries.cross_attention_frequency),
         ];
-        if !divides(queries.num_attention_heads, queries.hidden_size) {
+        if !divides_evenly(queries.num_attention_heads, queries.hidden_size) {
             return Some("qformer_config.num_attention_heads: it does not divide hidden_size".to_owned());
         }
         self.vision_config
-            .blip()
-            .problem()
+            .to_blip_config()
+            .find_problem()
             .or_else(|| json::size_problem(&sizes))
-            .or_else(|| self.text_config.problem())
+            .or_else(|| self.text_config.find_problem())
     }
 }

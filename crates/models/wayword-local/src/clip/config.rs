@@ -8,7 +8,7 @@ use std::path::Path;
 
 /// `config.json`, with missing values filled in.
 #[derive(Debug)]
-pub(crate) struct Config {
+pub(crate) struct ClipConfig {
     pub(crate) text: TextConfig,
     pub(crate) vision: VisionConfig,
     /// The length of a vector of a picture or a text.
@@ -46,14 +46,14 @@ pub(crate) struct LayersConfig {
 
 /// A family of checkpoints with these towers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Family {
+pub(crate) enum TowerFamily {
     Clip,
     Owl,
 }
 
 /// `config.json` as it is in the file, before defaults are filled in.
 #[derive(Deserialize)]
-struct Written {
+struct ClipConfigFile {
     model_type: Option<String>,
     projection_dim: Option<usize>,
     text_config: Option<Map<String, Value>>,
@@ -67,18 +67,18 @@ struct Written {
 /// Longest edge of a picture for a model, pixels.
 const LONGEST_EDGE: usize = 2048;
 
-impl Config {
-    pub(crate) fn read(folder: &Path, family: Family) -> Result<Self, LocalError> {
-        let written: Written = files::read(folder, "config.json", "the configuration")?;
-        written.complete(family).map_err(|problem| LocalError::File {
+impl ClipConfig {
+    pub(crate) fn from_folder(folder: &Path, family: TowerFamily) -> Result<Self, LocalError> {
+        let written: ClipConfigFile = files::read_required(folder, "config.json", "the configuration")?;
+        written.fill_defaults(family).map_err(|problem| LocalError::File {
             file: folder.join("config.json"),
             problem,
-            hint: family.hint(),
+            hint: family.error_hint(),
         })
     }
 }
 
-impl Family {
+impl TowerFamily {
     /// The `model_type` of the family's checkpoints.
     fn model_type(self) -> &'static str {
         match self {
@@ -87,7 +87,7 @@ impl Family {
         }
     }
 
-    fn hint(self) -> &'static str {
+    fn error_hint(self) -> &'static str {
         match self {
             Self::Clip => {
                 "choose a CLIP model, such as hf/openai/clip-vit-base-patch32; if this is one, its file is damaged: delete the folder models--ORG--NAME that holds it, and run `wayword models fetch hf/ORG/NAME`"
@@ -99,7 +99,7 @@ impl Family {
     }
 
     /// The text tower's configuration, with the given values over the defaults.
-    fn text(self, given: Option<Map<String, Value>>) -> Result<TextConfig, String> {
+    fn text_config(self, given: Option<Map<String, Value>>) -> Result<TextConfig, String> {
         let mut given = given.unwrap_or_default();
         let (positions, end) = match self {
             Self::Clip => (77, Some(49407)),
@@ -114,11 +114,11 @@ impl Family {
             "num_attention_heads": 8, "max_position_embeddings": positions, "hidden_act": "quick_gelu",
             "layer_norm_eps": 1e-5, "eos_token_id": end,
         });
-        overlaid("text_config", given, defaults)
+        overlay_defaults("text_config", given, defaults)
     }
 
     /// The vision tower's configuration, with the given values over the defaults.
-    fn vision(self, given: Option<Map<String, Value>>) -> Result<VisionConfig, String> {
+    fn vision_config(self, given: Option<Map<String, Value>>) -> Result<VisionConfig, String> {
         let (edge, patch) = match self {
             Self::Clip => (224, 32),
             Self::Owl => (768, 16),
@@ -127,20 +127,20 @@ impl Family {
             "hidden_size": 768, "intermediate_size": 3072, "num_hidden_layers": 12, "num_attention_heads": 12,
             "image_size": edge, "patch_size": patch, "hidden_act": "quick_gelu", "layer_norm_eps": 1e-5,
         });
-        overlaid("vision_config", given.unwrap_or_default(), defaults)
+        overlay_defaults("vision_config", given.unwrap_or_default(), defaults)
     }
 }
 
-impl Written {
-    fn complete(self, family: Family) -> Result<Config, String> {
+impl ClipConfigFile {
+    fn fill_defaults(self, family: TowerFamily) -> Result<ClipConfig, String> {
         let expected = family.model_type();
         if let Some(kind) = self.model_type.filter(|kind| kind != expected) {
             return Err(format!("model_type: {kind} is not {expected}"));
         }
-        let text = family.text(self.text_config_dict.or(self.text_config))?;
-        let vision = family.vision(self.vision_config_dict.or(self.vision_config))?;
-        text.layers.check("text_config")?;
-        vision.layers.check("vision_config")?;
+        let text = family.text_config(self.text_config_dict.or(self.text_config))?;
+        let vision = family.vision_config(self.vision_config_dict.or(self.vision_config))?;
+        text.layers.check_sizes("text_config")?;
+        vision.layers.check_sizes("vision_config")?;
         let (edge, patch) = (vision.image_size, vision.patch_size);
         if edge == 0 || edge > LONGEST_EDGE || patch == 0 || !edge.is_multiple_of(patch) {
             return Err(format!("vision_config: pictures of {edge} pixels cannot be cut into patches of {patch}"));
@@ -148,12 +148,12 @@ impl Written {
         if text.max_position_embeddings == 0 {
             return Err("text_config.max_position_embeddings: it must be at least 1".to_owned());
         }
-        Ok(Config { text, vision, projection_dim: self.projection_dim.unwrap_or(512) })
+        Ok(ClipConfig { text, vision, projection_dim: self.projection_dim.unwrap_or(512) })
     }
 }
 
 impl LayersConfig {
-    fn check(&self, part: &str) -> Result<(), String> {
+    fn check_sizes(&self, part: &str) -> Result<(), String> {
         let (size, heads) = (self.hidden_size, self.num_attention_heads);
         if size == 0 || heads == 0 || !size.is_multiple_of(heads) {
             return Err(format!("{part}.num_attention_heads: {heads} does not divide hidden_size {size}"));
@@ -166,7 +166,7 @@ impl LayersConfig {
 }
 
 /// Replaces defaults by the given values, and reads the result. `part` is the name for errors.
-fn overlaid<T: DeserializeOwned>(part: &str, given: Map<String, Value>, defaults: Value) -> Result<T, String> {
+fn overlay_defaults<T: DeserializeOwned>(part: &str, given: Map<String, Value>, defaults: Value) -> Result<T, String> {
     let Value::Object(mut all) = defaults else { return Err(format!("{part}: there are no defaults")) };
     all.extend(given.into_iter().filter(|(_, value)| !value.is_null()));
     serde_path_to_error::deserialize(Value::Object(all)).map_err(|error| format!("{part}: {error}"))

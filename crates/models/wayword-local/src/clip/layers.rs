@@ -4,45 +4,48 @@
 use super::config::LayersConfig;
 use crate::{
     LocalError,
-    ops::{Activation, Attention, FeedForward, LayerNorm, Linear},
-    weights::Scope,
+    ops::{Activation, FeedForward, LayerNorm, LinearLayer, MultiHeadAttention},
+    weights::WeightScope,
 };
 use candle_core::{Result, Tensor};
 
 /// A stack of layers that computes the states of all tokens, or of one token of each text or picture.
-pub(crate) struct Layers {
-    before: Vec<Layer>,
-    last: Layer,
+pub(crate) struct ClipLayers {
+    before: Vec<ClipLayer>,
+    last: ClipLayer,
 }
 
-struct Layer {
+struct ClipLayer {
     mix_norm: LayerNorm,
-    qkv: Linear,
-    mixed: Linear,
+    qkv: LinearLayer,
+    mixed: LinearLayer,
     think_norm: LayerNorm,
-    wide: Linear,
-    narrow: Linear,
+    wide: LinearLayer,
+    narrow: LinearLayer,
     heads: usize,
     activation: Activation,
 }
 
-impl Layers {
+impl ClipLayers {
     /// The layers 0, 1, .. of a part of a checkpoint.
-    pub(crate) fn load(weights: &Scope<'_>, config: &LayersConfig) -> std::result::Result<Self, LocalError> {
-        let layer = |at: usize| Layer::load(&weights.sub(at), config);
+    pub(crate) fn from_weights(
+        weights: &WeightScope<'_>,
+        config: &LayersConfig,
+    ) -> std::result::Result<Self, LocalError> {
+        let layer = |at: usize| ClipLayer::from_weights(&weights.sub_scope(at), config);
         let last = config.num_hidden_layers.saturating_sub(1);
         Ok(Self { before: (0..last).map(layer).collect::<std::result::Result<_, _>>()?, last: layer(last)? })
     }
 
     /// The states of all tokens x [batch, length, size], with a mask [length, length].
-    pub(crate) fn all(&self, x: Tensor, mask: Option<&Tensor>) -> Result<Tensor> {
-        self.before.iter().chain([&self.last]).try_fold(x, |x, layer| layer.all(&x, mask))
+    pub(crate) fn apply_to_all(&self, x: Tensor, mask: Option<&Tensor>) -> Result<Tensor> {
+        self.before.iter().chain([&self.last]).try_fold(x, |x, layer| layer.apply_to_all(&x, mask))
     }
 
     /// The state [batch, 1, size] of one token `at` of each text or picture in x [batch, length, size], with a mask
     /// [length, length]. The last layer computes only this state, which saves most of its work.
-    pub(crate) fn of(&self, x: Tensor, mask: Option<&Tensor>, at: &[u32]) -> Result<Tensor> {
-        let x = self.before.iter().try_fold(x, |x, layer| layer.all(&x, mask))?;
+    pub(crate) fn states_at(&self, x: Tensor, mask: Option<&Tensor>, at: &[u32]) -> Result<Tensor> {
+        let x = self.before.iter().try_fold(x, |x, layer| layer.apply_to_all(&x, mask))?;
         let (batch, length, size) = x.dims3()?;
         let place = |(text, at): (usize, &u32)| (text * length) as u32 + at;
         let rows = Tensor::from_vec(at.iter().enumerate().map(place).collect(), batch, x.device())?;
@@ -54,45 +57,45 @@ impl Layers {
             let at = Tensor::new(at, x.device())?;
             mask.index_select(&at, 0)?.reshape((batch, 1, 1, length))
         });
-        let qkv = self.last.qkv.of_normed(&x, &self.last.mix_norm)?;
+        let qkv = self.last.qkv.apply_to_normed(&x, &self.last.mix_norm)?;
         let q = picked(&qkv)?.narrow(2, 0, size)?;
-        self.last.of(&picked(&x)?, &qkv, &q, mask.transpose()?.as_ref())
+        self.last.apply_to(&picked(&x)?, &qkv, &q, mask.transpose()?.as_ref())
     }
 }
 
 /// The queries (`at` 0), keys (1) or values (2) of a tensor that has them side by side.
-fn third(qkv: &Tensor, at: usize) -> Result<Tensor> {
+fn qkv_part(qkv: &Tensor, at: usize) -> Result<Tensor> {
     let size = qkv.dim(2)? / 3;
     qkv.narrow(2, at * size, size)
 }
 
-impl Layer {
-    fn load(weights: &Scope<'_>, config: &LayersConfig) -> std::result::Result<Self, LocalError> {
+impl ClipLayer {
+    fn from_weights(weights: &WeightScope<'_>, config: &LayersConfig) -> std::result::Result<Self, LocalError> {
         let (size, inner, epsilon) = (config.hidden_size, config.intermediate_size, config.layer_norm_eps);
         Ok(Self {
             mix_norm: weights.layer_norm("layer_norm1", size, epsilon)?,
-            qkv: weights.sub("self_attn").linears(&["q_proj", "k_proj", "v_proj"], size, size)?,
-            mixed: weights.linear("self_attn.out_proj", size, size)?,
+            qkv: weights.sub_scope("self_attn").read_joined_linears(&["q_proj", "k_proj", "v_proj"], size, size)?,
+            mixed: weights.read_linear("self_attn.out_proj", size, size)?,
             think_norm: weights.layer_norm("layer_norm2", size, epsilon)?,
-            wide: weights.linear("mlp.fc1", size, inner)?,
-            narrow: weights.linear("mlp.fc2", inner, size)?,
+            wide: weights.read_linear("mlp.fc1", size, inner)?,
+            narrow: weights.read_linear("mlp.fc2", inner, size)?,
             heads: config.num_attention_heads,
             activation: config.hidden_act,
         })
     }
 
     /// The layer's output for all tokens x [batch, length, size].
-    fn all(&self, x: &Tensor, mask: Option<&Tensor>) -> Result<Tensor> {
-        let qkv = self.qkv.of_normed(x, &self.mix_norm)?;
-        self.of(x, &qkv, &third(&qkv, 0)?, mask)
+    fn apply_to_all(&self, x: &Tensor, mask: Option<&Tensor>) -> Result<Tensor> {
+        let qkv = self.qkv.apply_to_normed(x, &self.mix_norm)?;
+        self.apply_to(x, &qkv, &qkv_part(&qkv, 0)?, mask)
     }
 
     /// The layer's output for x [batch, queries, size]. `q` are the queries of x, and `qkv` has the keys and values of
     /// all tokens.
-    fn of(&self, x: &Tensor, qkv: &Tensor, q: &Tensor, mask: Option<&Tensor>) -> Result<Tensor> {
+    fn apply_to(&self, x: &Tensor, qkv: &Tensor, q: &Tensor, mask: Option<&Tensor>) -> Result<Tensor> {
         let scale = 1.0 / ((x.dim(2)? / self.heads) as f32).sqrt();
-        let attention = Attention { heads: self.heads, scale, bias: mask };
-        let mixed = attention.of(q, &third(qkv, 1)?, &third(qkv, 2)?)?;
+        let attention = MultiHeadAttention { heads: self.heads, scale, bias: mask };
+        let mixed = attention.attend_to(q, &qkv_part(qkv, 1)?, &qkv_part(qkv, 2)?)?;
         let then = FeedForward {
             before: Some(&self.think_norm),
             wide: &self.wide,
@@ -100,6 +103,6 @@ impl Layer {
             narrow: &self.narrow,
             after: None,
         };
-        then.of(&self.mixed.onto(&mixed, x)?)
+        then.apply_to(&self.mixed.apply_onto(&mixed, x)?)
     }
 }

@@ -8,8 +8,8 @@ mod model;
 mod text;
 mod vision;
 
-pub(crate) use config::{Config as TowersConfig, Family};
+pub(crate) use config::{ClipConfig as TowersConfig, TowerFamily};
 pub use grounder::ClipGrounder;
-pub use model::Clip;
+pub use model::ClipModel;
 pub(crate) use text::TextTower;
 pub(crate) use vision::VisionTower;

@@ -1,53 +1,57 @@
 //! Detectors in process: which checkpoints are detectors, how they are loaded, and how the ledger keeps their answers.
 //!
-//! To add an architecture, add a variant to [`Checkpoint`], the line by which [`Checkpoint::find`] recognises it, its
-//! line in [`Checkpoint::load`], and the bytes of features that it keeps in [`Checkpoint::bytes`].
+//! To add an architecture, add a variant to [`DetectorCheckpoint`], the line by which [`DetectorCheckpoint::find_files`] recognises it, its
+//! line in [`DetectorCheckpoint::load`], and the bytes of features that it keeps in [`DetectorCheckpoint::memory_bytes`].
 
 mod kept;
 
 pub use kept::LocalDetector;
 
 use crate::{
-    Device, LocalError, Precision,
-    dino::{self, Dino},
-    glip::{self, Glip, GlipFiles},
-    hub::{Hub, ModelFolder, ModelName, Needs, Progress},
+    LocalError, ModelDevice, WeightPrecision,
+    dino::{self, GroundingDino},
+    glip::{self, GlipDetector, GlipFiles},
+    hub::{DownloadProgress, ModelFolder, ModelHub, ModelName, NeededFiles},
     json, memory,
-    owl::{self, Owl},
+    owl::{self, OwlDetector},
 };
 use serde::Deserialize;
-use wayword_core::Detector;
+use wayword_core::ObjectDetector;
 
 /// The files of a detector, by its kind.
 #[derive(Debug)]
-pub(crate) enum Checkpoint {
+pub(crate) enum DetectorCheckpoint {
     Glip(GlipFiles),
     Dino(ModelFolder),
     Owl(ModelFolder),
 }
 
 /// A loaded detector.
-pub(crate) struct Ready {
-    pub(crate) detector: Box<dyn Detector>,
+pub(crate) struct LoadedDetector {
+    pub(crate) detector: Box<dyn ObjectDetector>,
     /// The size to which pictures are resized, in words. It is part of a call's key, because it may change the boxes.
     pub(crate) size: String,
 }
 
 /// The field of `config.json` that identifies the architecture.
 #[derive(Deserialize)]
-struct Config {
+struct DetectorConfig {
     model_type: Option<String>,
 }
 
-impl Checkpoint {
+impl DetectorCheckpoint {
     /// Finds the files of a detector by its name, and fetches missing ones. A file as training leaves it (`.pth`) is
     /// taken for GLIP's; the architecture of a folder is read from its `config.json`.
-    pub(crate) fn find(hub: &Hub, name: &ModelName, progress: &dyn Progress) -> Result<Self, LocalError> {
+    pub(crate) fn find_files(
+        hub: &ModelHub,
+        name: &ModelName,
+        progress: &dyn DownloadProgress,
+    ) -> Result<Self, LocalError> {
         if name.is_trained() {
-            return GlipFiles::find(hub, name, progress).map(Self::Glip);
+            return GlipFiles::find_files(hub, name, progress).map(Self::Glip);
         }
-        let folder = hub.folder(name, &Needs::of_any(name), progress)?;
-        let config: Config = json::read(&folder.path, "config.json", "the configuration")?;
+        let folder = hub.model_folder(name, &NeededFiles::for_any_architecture(name), progress)?;
+        let config: DetectorConfig = json::read_required(&folder.path, "config.json", "the configuration")?;
         match config.model_type.as_deref() {
             Some("owlv2") => Ok(Self::Owl(folder)),
             Some("grounding-dino" | "mm-grounding-dino") => Ok(Self::Dino(folder)),
@@ -60,20 +64,25 @@ impl Checkpoint {
     }
 
     /// Loads a detector. `name` is its name, `hf/ORG/NAME`.
-    pub(crate) fn load(&self, name: &str, device: &Device, precision: Precision) -> Result<Ready, LocalError> {
+    pub(crate) fn load(
+        &self,
+        name: &str,
+        device: &ModelDevice,
+        precision: WeightPrecision,
+    ) -> Result<LoadedDetector, LocalError> {
         match self {
             Self::Glip(files) => {
-                let edge_px = Glip::SHORT_EDGE_PX;
-                let glip = Glip::load(name, files, edge_px, device, precision)?;
-                Ok(Ready { size: format!("{edge_px} px, short edge"), detector: Box::new(glip) })
+                let edge_px = GlipDetector::SHORT_EDGE_PX;
+                let glip = GlipDetector::load(name, files, edge_px, device, precision)?;
+                Ok(LoadedDetector { size: format!("{edge_px} px, short edge"), detector: Box::new(glip) })
             }
             Self::Dino(folder) => {
-                let dino = Dino::load(name, &folder.path, device, precision)?;
-                Ok(Ready { size: "as its preprocessor says".to_owned(), detector: Box::new(dino) })
+                let dino = GroundingDino::load(name, &folder.path, device, precision)?;
+                Ok(LoadedDetector { size: "as its preprocessor says".to_owned(), detector: Box::new(dino) })
             }
             Self::Owl(folder) => {
-                let owl = Owl::load(name, &folder.path, device, precision)?;
-                Ok(Ready { size: format!("{} px", owl.edge_px()), detector: Box::new(owl) })
+                let owl = OwlDetector::load(name, &folder.path, device, precision)?;
+                Ok(LoadedDetector { size: format!("{} px", owl.edge_px()), detector: Box::new(owl) })
             }
         }
     }
@@ -88,11 +97,11 @@ impl Checkpoint {
 
     /// The memory that the detector takes, bytes: its weights at a precision, and the features of pictures that it
     /// keeps.
-    pub(crate) fn bytes(&self, precision: Precision) -> Result<u64, LocalError> {
+    pub(crate) fn memory_bytes(&self, precision: WeightPrecision) -> Result<u64, LocalError> {
         let (weights, kept) = match self {
             Self::Glip(files) => (memory::of_file(&files.weights, precision)?, glip::FEATURES_BYTES),
-            Self::Dino(folder) => (memory::of_checkpoint(&folder.path, precision)?, dino::KEPT_BYTES),
-            Self::Owl(folder) => (memory::of_checkpoint(&folder.path, precision)?, owl::KEPT_BYTES),
+            Self::Dino(folder) => (memory::checkpoint_bytes(&folder.path, precision)?, dino::KEPT_BYTES),
+            Self::Owl(folder) => (memory::checkpoint_bytes(&folder.path, precision)?, owl::KEPT_BYTES),
         };
         Ok(weights.saturating_add(kept as u64))
     }

@@ -7,7 +7,7 @@ use serde_json::{Map, Value};
 /// `backbone_config` as it is in the file. Missing values get the defaults of transformers.
 #[derive(Deserialize)]
 #[serde(default)]
-struct Written {
+struct DinoBackboneConfig {
     model_type: String,
     embed_dim: usize,
     depths: Vec<usize>,
@@ -24,9 +24,9 @@ struct Written {
     out_indices: Option<Vec<usize>>,
 }
 
-impl Default for Written {
+impl Default for DinoBackboneConfig {
     fn default() -> Self {
-        let tiny = SwinConfig::tiny();
+        let tiny = SwinConfig::for_swin_tiny();
         Self {
             model_type: "swin".to_owned(),
             embed_dim: tiny.width,
@@ -49,7 +49,8 @@ impl Default for Written {
 /// Reads and checks the sizes of a Swin transformer.
 pub(super) fn swin_config(given: Map<String, Value>) -> Result<SwinConfig, String> {
     let given = given.into_iter().filter(|(_, value)| !value.is_null()).collect();
-    let written: Written = serde_path_to_error::deserialize(Value::Object(given)).map_err(|e| e.to_string())?;
+    let written: DinoBackboneConfig =
+        serde_path_to_error::deserialize(Value::Object(given)).map_err(|e| e.to_string())?;
     if written.model_type != "swin" {
         return Err(format!("model_type: {} is not swin", written.model_type));
     }
@@ -60,7 +61,7 @@ pub(super) fn swin_config(given: Map<String, Value>) -> Result<SwinConfig, Strin
     if !(written.mlp_ratio >= 1.0 && written.mlp_ratio.fract() == 0.0 && written.mlp_ratio <= 32.0) {
         return Err(format!("mlp_ratio: {} is not a whole number from 1 to 32", written.mlp_ratio));
     }
-    let outputs = outputs(written.out_indices, written.out_features)?;
+    let outputs = output_stages(written.out_indices, written.out_features)?;
     let config = SwinConfig {
         width: written.embed_dim,
         depths: written.depths,
@@ -70,12 +71,12 @@ pub(super) fn swin_config(given: Map<String, Value>) -> Result<SwinConfig, Strin
         outputs,
         epsilon: written.layer_norm_eps,
     };
-    config.problem().map_or(Ok(config), Err)
+    config.find_problem().map_or(Ok(config), Err)
 }
 
 /// The stages, from 0, from which the model takes outputs. The file has numbers, in which 0 is the input of the first
 /// stage and 1 the first stage itself, or names (`stage1`).
-fn outputs(indices: Option<Vec<usize>>, names: Option<Vec<String>>) -> Result<Vec<usize>, String> {
+fn output_stages(indices: Option<Vec<usize>>, names: Option<Vec<String>>) -> Result<Vec<usize>, String> {
     let from_name = |name: &String| name.strip_prefix("stage").and_then(|number| number.parse().ok());
     let numbers: Vec<Option<usize>> = match (indices, names) {
         (Some(indices), _) => indices.into_iter().map(Some).collect(),

@@ -3,7 +3,7 @@
 use super::backbone::swin_config;
 use crate::{
     LocalError,
-    bert::Config as BertConfig,
+    bert::BertConfig,
     json::{self, size_problem},
     ops::Activation,
     swin::SwinConfig,
@@ -16,12 +16,12 @@ use std::path::Path;
 const MOST_LEVELS: usize = 8;
 
 /// The groups of channels of the norm that follows each projection of the backbone's maps.
-pub(super) const GROUPS: usize = 32;
+pub(super) const NORM_GROUP_COUNT: usize = 32;
 
 /// `config.json`, with missing values filled in.
 #[derive(Debug)]
-pub(super) struct Config {
-    pub(super) family: Family,
+pub(super) struct DinoConfig {
+    pub(super) family: DinoFamily,
     /// The length of a state.
     pub(super) size: usize,
     /// How many cells become queries, each with a box.
@@ -57,7 +57,7 @@ pub(super) struct LayersConfig {
 
 /// The kind of checkpoint. They differ in how a logit is computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Family {
+pub(super) enum DinoFamily {
     /// Grounding DINO: a logit is the dot product of a state and a token.
     Plain,
     /// MM Grounding DINO and LLMDet: the dot product is divided by the root of the state's length, and a bias is added.
@@ -67,7 +67,7 @@ pub(super) enum Family {
 /// `config.json` as it is in the file.
 #[derive(Deserialize)]
 #[serde(default)]
-struct Written {
+struct DinoConfigFile {
     model_type: String,
     d_model: usize,
     num_queries: usize,
@@ -94,7 +94,7 @@ struct Written {
     backbone_config: Map<String, Value>,
 }
 
-impl Default for Written {
+impl Default for DinoConfigFile {
     fn default() -> Self {
         Self {
             model_type: String::new(),
@@ -125,10 +125,10 @@ impl Default for Written {
     }
 }
 
-impl Config {
-    pub(super) fn read(folder: &Path) -> Result<Self, LocalError> {
-        let written: Written = json::read(folder, "config.json", "the configuration")?;
-        written.complete().map_err(|problem| LocalError::File {
+impl DinoConfig {
+    pub(super) fn from_folder(folder: &Path) -> Result<Self, LocalError> {
+        let written: DinoConfigFile = json::read_required(folder, "config.json", "the configuration")?;
+        written.fill_defaults().map_err(|problem| LocalError::File {
             file: folder.join("config.json"),
             problem,
             hint: "choose a model of Grounding DINO's architecture, such as hf/iSEE-Laboratory/llmdet_tiny; if this is one, its file is damaged: delete the folder models--ORG--NAME that holds it, and run `wayword models fetch hf/ORG/NAME`",
@@ -136,21 +136,21 @@ impl Config {
     }
 }
 
-impl Written {
-    fn complete(self) -> Result<Config, String> {
+impl DinoConfigFile {
+    fn fill_defaults(self) -> Result<DinoConfig, String> {
         let family = match &self.model_type[..] {
-            "grounding-dino" => Family::Plain,
-            "mm-grounding-dino" => Family::Mm,
+            "grounding-dino" => DinoFamily::Plain,
+            "mm-grounding-dino" => DinoFamily::Mm,
             other => return Err(format!("model_type: {other} is neither grounding-dino nor mm-grounding-dino")),
         };
-        self.check()?;
+        self.check_values()?;
         let text = text_config(self.text_config)?;
         let backbone = swin_config(self.backbone_config).map_err(|problem| format!("backbone_config.{problem}"))?;
         if self.num_feature_levels < backbone.outputs.len() {
             let (levels, outputs) = (self.num_feature_levels, backbone.outputs.len());
             return Err(format!("num_feature_levels: {levels} are fewer than the backbone's {outputs}"));
         }
-        Ok(Config {
+        Ok(DinoConfig {
             family,
             size: self.d_model,
             queries: self.num_queries,
@@ -178,7 +178,7 @@ impl Written {
         })
     }
 
-    fn check(&self) -> Result<(), String> {
+    fn check_values(&self) -> Result<(), String> {
         let sizes = [
             ("d_model", self.d_model),
             ("num_queries", self.num_queries),
@@ -195,8 +195,8 @@ impl Written {
             return Err(problem);
         }
         let size = self.d_model;
-        if !size.is_multiple_of(GROUPS) {
-            return Err(format!("d_model: {size} cannot be cut into {GROUPS} groups"));
+        if !size.is_multiple_of(NORM_GROUP_COUNT) {
+            return Err(format!("d_model: {size} cannot be cut into {NORM_GROUP_COUNT} groups"));
         }
         // In their part for the text, the encoder's layers have half of the heads and half of the inner width.
         let heads = self.encoder_attention_heads;
@@ -238,6 +238,6 @@ fn text_config(given: Map<String, Value>) -> Result<BertConfig, String> {
     all.extend(given.into_iter().filter(|(_, value)| !value.is_null()));
     let config: BertConfig =
         serde_path_to_error::deserialize(Value::Object(all)).map_err(|e| format!("text_config: {e}"))?;
-    config.check().map_err(|problem| format!("text_config.{problem}"))?;
+    config.check_values().map_err(|problem| format!("text_config.{problem}"))?;
     Ok(config)
 }

@@ -4,30 +4,30 @@
 //! the query into a few offsets and weights. The values at these places, interpolated between cells, are added with the
 //! weights.
 
-use super::{config::LayersConfig, features::Level};
+use super::{config::LayersConfig, features::FeatureLevel};
 use crate::{
     LocalError,
-    ops::{Linear, kernels::slice},
-    weights::Scope,
+    ops::{LinearLayer, kernels::contiguous_slice},
+    weights::WeightScope,
 };
 use candle_core::{CpuStorage, CustomOp2, DType, Layout, Result, Shape, Tensor, bail};
 use rayon::prelude::*;
 
 /// The number of queries that a thread computes at a time.
-const PIECE: usize = 64;
+const QUERIES_PER_TASK: usize = 64;
 
 /// Deformable attention of one layer.
-pub(super) struct Deformable {
-    value: Linear,
+pub(super) struct DeformableAttention {
+    value: LinearLayer,
     /// The outputs are two offsets for each head, level and point; then a weight for each head, level and point.
-    points: Linear,
-    out: Linear,
-    shape: Sampling,
+    points: LinearLayer,
+    out: LinearLayer,
+    shape: SamplingShape,
 }
 
 /// How many places a query looks at: `points` for each head and level.
 #[derive(Debug, Clone, Copy)]
-struct Sampling {
+struct SamplingShape {
     heads: usize,
     levels: usize,
     points: usize,
@@ -35,7 +35,7 @@ struct Sampling {
 
 /// The places from which the offsets of queries count.
 #[derive(Clone, Copy)]
-pub(super) enum Origin<'a> {
+pub(super) enum SamplingOrigin<'a> {
     /// The queries are the cells of all levels, each with its own middle. An offset of 1 is one cell of the sampled
     /// level.
     Cells,
@@ -44,65 +44,74 @@ pub(super) enum Origin<'a> {
     Boxes(&'a [[f32; 4]]),
 }
 
-impl Deformable {
-    pub(super) fn load(
-        weights: &Scope<'_>,
+impl DeformableAttention {
+    pub(super) fn from_weights(
+        weights: &WeightScope<'_>,
         size: usize,
         levels: usize,
         config: LayersConfig,
     ) -> std::result::Result<Self, LocalError> {
-        let shape = Sampling { heads: config.heads, levels, points: config.points };
-        let count = shape.count();
-        let (offsets, shares) = (weights.sub("sampling_offsets"), weights.sub("attention_weights"));
-        let weight = [offsets.tensor("weight", &[2 * count, size])?, shares.tensor("weight", &[count, size])?];
-        let bias = [offsets.tensor("bias", &[2 * count])?, shares.tensor("bias", &[count])?];
-        let points = Tensor::cat(&weight, 0).and_then(|weight| Linear::new(&weight, Some(Tensor::cat(&bias, 0)?)));
+        let shape = SamplingShape { heads: config.heads, levels, points: config.points };
+        let count = shape.sample_count();
+        let (offsets, shares) = (weights.sub_scope("sampling_offsets"), weights.sub_scope("attention_weights"));
+        let weight =
+            [offsets.read_tensor("weight", &[2 * count, size])?, shares.read_tensor("weight", &[count, size])?];
+        let bias = [offsets.read_tensor("bias", &[2 * count])?, shares.read_tensor("bias", &[count])?];
+        let points = Tensor::cat(&weight, 0).and_then(|weight| LinearLayer::new(&weight, Some(Tensor::cat(&bias, 0)?)));
         Ok(Self {
-            value: weights.linear("value_proj", size, size)?,
-            points: points.map_err(|error| offsets.wrong("weight", &error))?,
-            out: weights.linear("output_proj", size, size)?,
+            value: weights.read_linear("value_proj", size, size)?,
+            points: points.map_err(|error| offsets.tensor_error("weight", &error))?,
+            out: weights.read_linear("output_proj", size, size)?,
             shape,
         })
     }
 
     /// The sums [1, queries, size] of the values that the queries sample from the cells [1, cells, size].
-    pub(super) fn of(&self, queries: &Tensor, cells: &Tensor, levels: &[Level], from: Origin<'_>) -> Result<Tensor> {
-        let value = self.value.of(cells)?.squeeze(0)?;
-        let points = self.points.of(queries)?.squeeze(0)?;
-        let from = starts(from, levels, self.shape.points);
+    pub(super) fn sample_cells(
+        &self,
+        queries: &Tensor,
+        cells: &Tensor,
+        levels: &[FeatureLevel],
+        from: SamplingOrigin<'_>,
+    ) -> Result<Tensor> {
+        let value = self.value.apply_to(cells)?.squeeze(0)?;
+        let points = self.points.apply_to(queries)?.squeeze(0)?;
+        let from = sampling_starts(from, levels, self.shape.points);
         let mixed = if value.device().is_cpu() {
-            let look = Look { shape: self.shape, levels, from: &from };
+            let look = DeformableSampler { shape: self.shape, levels, from: &from };
             value.contiguous()?.apply_op2_no_bwd(&points.contiguous()?, &look)?
         } else {
-            gathered(self.shape, &value, &points, levels, &from)?
+            sample_on_device(self.shape, &value, &points, levels, &from)?
         };
-        self.out.of(&mixed.unsqueeze(0)?)
+        self.out.apply_to(&mixed.unsqueeze(0)?)
     }
 }
 
-impl Sampling {
+impl SamplingShape {
     /// The number of places that a query looks at, over all heads and levels.
-    fn count(self) -> usize {
+    fn sample_count(self) -> usize {
         self.heads * self.levels * self.points
     }
 }
 
 /// The place from which a query's offsets count, as shares of the picture, and the length of an offset of 1: a share of
 /// the picture, or one cell if it is `None`.
-type Start = ([f32; 2], Option<[f32; 2]>);
+type SamplingStart = ([f32; 2], Option<[f32; 2]>);
 
-fn starts(from: Origin<'_>, levels: &[Level], points: usize) -> Vec<Start> {
+fn sampling_starts(from: SamplingOrigin<'_>, levels: &[FeatureLevel], points: usize) -> Vec<SamplingStart> {
     match from {
-        Origin::Boxes(boxes) => {
+        SamplingOrigin::Boxes(boxes) => {
             let step = |edge: f32| 0.5 * edge / points as f32;
             boxes.iter().map(|&[x, y, width, height]| ([x, y], Some([step(width), step(height)]))).collect()
         }
-        Origin::Cells => levels.iter().flat_map(|level| level.middles().map(|middle| (middle, None))).collect(),
+        SamplingOrigin::Cells => {
+            levels.iter().flat_map(|level| level.cell_middles().map(|middle| (middle, None))).collect()
+        }
     }
 }
 
 /// The position of a sample in a level, in cells from the middle of the first cell.
-fn place((from, step): Start, level: Level, offset: [f32; 2]) -> (f32, f32) {
+fn sample_position((from, step): SamplingStart, level: FeatureLevel, offset: [f32; 2]) -> (f32, f32) {
     let (width, height) = (level.width as f32, level.height as f32);
     match step {
         None => (from[0] * width + offset[0] - 0.5, from[1] * height + offset[1] - 0.5),
@@ -111,13 +120,13 @@ fn place((from, step): Start, level: Level, offset: [f32; 2]) -> (f32, f32) {
 }
 
 /// Samples for all queries in one pass on the processor.
-struct Look<'a> {
-    shape: Sampling,
-    levels: &'a [Level],
-    from: &'a [Start],
+struct DeformableSampler<'a> {
+    shape: SamplingShape,
+    levels: &'a [FeatureLevel],
+    from: &'a [SamplingStart],
 }
 
-impl CustomOp2 for Look<'_> {
+impl CustomOp2 for DeformableSampler<'_> {
     fn name(&self) -> &'static str {
         "deformable-attention"
     }
@@ -131,39 +140,46 @@ impl CustomOp2 for Look<'_> {
     ) -> Result<(CpuStorage, Shape)> {
         let ((cells, size), (queries, width)) = (v_layout.shape().dims2()?, p_layout.shape().dims2()?);
         let held: usize = self.levels.iter().map(|level| level.height * level.width).sum();
-        if held != cells || self.from.len() != queries || width != 3 * self.shape.count() {
+        if held != cells || self.from.len() != queries || width != 3 * self.shape.sample_count() {
             bail!("{cells} cells and {queries} queries do not fit together");
         }
-        let (values, points) = (slice::<f32>(v, v_layout)?, slice::<f32>(p, p_layout)?);
+        let (values, points) = (contiguous_slice::<f32>(v, v_layout)?, contiguous_slice::<f32>(p, p_layout)?);
         let mut mixed = vec![0.0; queries * size];
-        let pieces =
-            mixed.par_chunks_mut(PIECE * size).zip(points.par_chunks(PIECE * width)).zip(self.from.par_chunks(PIECE));
+        let pieces = mixed
+            .par_chunks_mut(QUERIES_PER_TASK * size)
+            .zip(points.par_chunks(QUERIES_PER_TASK * width))
+            .zip(self.from.par_chunks(QUERIES_PER_TASK));
         pieces.for_each(|((mixed, points), from)| {
             let mut shares = vec![0.0; self.shape.levels * self.shape.points];
             for ((mixed, points), &from) in mixed.chunks_mut(size).zip(points.chunks(width)).zip(from) {
-                self.query(values, points, from, &mut shares, mixed);
+                self.sample_query(values, points, from, &mut shares, mixed);
             }
         });
         Ok((CpuStorage::F32(mixed), (queries, size).into()))
     }
 }
 
-impl Look<'_> {
-    fn query(&self, values: &[f32], points: &[f32], from: Start, shares: &mut [f32], mixed: &mut [f32]) {
+impl DeformableSampler<'_> {
+    fn sample_query(&self, values: &[f32], points: &[f32], from: SamplingStart, shares: &mut [f32], mixed: &mut [f32]) {
         let each = mixed.len() / self.shape.heads;
         let size = mixed.len();
-        let (offsets, weights) = points.split_at(2 * self.shape.count());
+        let (offsets, weights) = points.split_at(2 * self.shape.sample_count());
         let heads = offsets.chunks(2 * shares.len()).zip(weights.chunks(shares.len()));
         for (head, ((offsets, weights), mixed)) in heads.zip(mixed.chunks_mut(each)).enumerate() {
-            softmax(weights, shares);
+            softmax_into(weights, shares);
             let mut begin = 0;
             let of_levels = offsets.chunks(2 * self.shape.points).zip(shares.chunks(self.shape.points));
             for (&level, (offsets, shares)) in self.levels.iter().zip(of_levels) {
                 let cells = level.height * level.width;
-                let map = Map { values: &values[begin * size..(begin + cells) * size], level, size, from: head * each };
+                let map = HeadValueMap {
+                    values: &values[begin * size..(begin + cells) * size],
+                    level,
+                    size,
+                    from: head * each,
+                };
                 for (offset, &share) in offsets.chunks(2).zip(shares) {
-                    let (x, y) = place(from, level, [offset[0], offset[1]]);
-                    map.add(x, y, share, mixed);
+                    let (x, y) = sample_position(from, level, [offset[0], offset[1]]);
+                    map.add_interpolated(x, y, share, mixed);
                 }
                 begin += cells;
             }
@@ -171,7 +187,7 @@ impl Look<'_> {
     }
 }
 
-fn softmax(weights: &[f32], shares: &mut [f32]) {
+fn softmax_into(weights: &[f32], shares: &mut [f32]) {
     let most = weights.iter().copied().fold(f32::NEG_INFINITY, f32::max);
     let mut sum = 0.0;
     for (share, weight) in shares.iter_mut().zip(weights) {
@@ -182,19 +198,19 @@ fn softmax(weights: &[f32], shares: &mut [f32]) {
 }
 
 /// One head's values of one level.
-struct Map<'a> {
+struct HeadValueMap<'a> {
     values: &'a [f32],
-    level: Level,
+    level: FeatureLevel,
     /// The numbers from one cell to the next: those of all heads.
     size: usize,
     /// The index of the head's first value within a cell.
     from: usize,
 }
 
-impl Map<'_> {
+impl HeadValueMap<'_> {
     /// Adds the value at a place, interpolated between four cells and times `share`, to a sum. Outside of the map
     /// values are 0.
-    fn add(&self, x: f32, y: f32, share: f32, sum: &mut [f32]) {
+    fn add_interpolated(&self, x: f32, y: f32, share: f32, sum: &mut [f32]) {
         let (width, height) = (self.level.width, self.level.height);
         if !(x > -1.0 && y > -1.0 && x < width as f32 && y < height as f32) {
             return;
@@ -221,15 +237,25 @@ impl Map<'_> {
     }
 }
 
-/// Samples with candle's operators, for any device. Its result is that of [`Look`].
-fn gathered(shape: Sampling, value: &Tensor, points: &Tensor, levels: &[Level], from: &[Start]) -> Result<Tensor> {
+/// Samples with candle's operators, for any device. Its result is that of [`DeformableSampler`].
+fn sample_on_device(
+    shape: SamplingShape,
+    value: &Tensor,
+    points: &Tensor,
+    levels: &[FeatureLevel],
+    from: &[SamplingStart],
+) -> Result<Tensor> {
     let (device, dtype) = (value.device(), value.dtype());
     let ((cells, size), queries) = (value.dims2()?, points.dim(0)?);
-    let Sampling { heads, levels: _, points: count } = shape;
+    let SamplingShape { heads, levels: _, points: count } = shape;
     let rows = value.reshape((cells * heads, size / heads))?;
     let points = points.to_dtype(DType::F32)?;
-    let offsets = points.narrow(1, 0, 2 * shape.count())?.reshape((queries, heads, levels.len() * count, 2))?;
-    let shares = points.narrow(1, 2 * shape.count(), shape.count())?.reshape((queries, heads, levels.len() * count))?;
+    let offsets = points.narrow(1, 0, 2 * shape.sample_count())?.reshape((queries, heads, levels.len() * count, 2))?;
+    let shares = points.narrow(1, 2 * shape.sample_count(), shape.sample_count())?.reshape((
+        queries,
+        heads,
+        levels.len() * count,
+    ))?;
     let shares = candle_nn::ops::softmax_last_dim(&shares.contiguous()?)?;
     let head = Tensor::arange(0, heads as u32, device)?.to_dtype(DType::F32)?;
     let mut sum = Tensor::zeros((queries * heads, size / heads), dtype, device)?;

@@ -1,15 +1,18 @@
-//! Uses the family's models as a [`Detector`]: turns the scores and boxes of queries into finds for each phrase.
+//! Uses the family's models as a [`ObjectDetector`]: turns the scores and boxes of queries into finds for each phrase.
 
-use super::{config::Family, decoder::Seen, model::Dino, prompt::Prompt, queries::sigmoid, text::Text};
-use crate::{LocalError, picture::of_view};
+use super::{
+    config::DinoFamily, decoder::DinoPredictions, model::GroundingDino, prompt::DinoPrompt, queries::sigmoid,
+    text::PromptStates,
+};
+use crate::{LocalError, picture::picture_of_view};
 use candle_core::DType;
-use wayword_core::{Detector, Found, Image, MOST_BOXES, ModelError, Scoring, View};
+use wayword_core::{DetectedBox, DetectorScoring, Image, MOST_BOXES, ModelError, ObjectDetector, View};
 
 /// The score from which the processors of these models take a box for a find.
 const FOUND_FROM: f32 = 0.25;
 
-impl Dino {
-    fn failed(&self, error: &LocalError) -> ModelError {
+impl GroundingDino {
+    fn to_model_error(&self, error: &LocalError) -> ModelError {
         ModelError::Failed { model: self.name.clone(), reason: error.to_string() }
     }
 
@@ -17,16 +20,22 @@ impl Dino {
     ///
     /// # Errors
     /// When a phrase is too long, the picture has no pixels, or the computation fails.
-    pub fn find(&self, image: &Image, phrases: &[&str]) -> Result<Vec<Vec<Found>>, LocalError> {
-        self.view(image, &self.prompts(phrases)?, phrases.len())
+    pub fn find_phrases(&self, image: &Image, phrases: &[&str]) -> Result<Vec<Vec<DetectedBox>>, LocalError> {
+        self.find_in_prompts(image, &self.encode_prompts(phrases)?, phrases.len())
     }
 
-    fn view(&self, image: &Image, prompts: &[(Prompt, Text)], phrases: usize) -> Result<Vec<Vec<Found>>, LocalError> {
+    fn find_in_prompts(
+        &self,
+        image: &Image,
+        prompts: &[(DinoPrompt, PromptStates)],
+        phrases: usize,
+    ) -> Result<Vec<Vec<DetectedBox>>, LocalError> {
         let mut found = vec![Vec::new(); phrases];
-        let features = self.features(image)?;
+        let features = self.picture_features(image)?;
         for (prompt, text) in prompts {
-            let seen = self.seen(&features, text)?;
-            let of_prompt = boxes(&seen, prompt, image).map_err(|error| LocalError::compute(&self.name, &error))?;
+            let seen = self.predict_boxes(&features, text)?;
+            let of_prompt =
+                phrase_boxes(&seen, prompt, image).map_err(|error| LocalError::compute_failed(&self.name, &error))?;
             for ((at, _), boxes) in prompt.phrases.iter().zip(of_prompt) {
                 found[*at] = boxes;
             }
@@ -36,7 +45,11 @@ impl Dino {
 }
 
 /// The best boxes for each phrase of a prompt. The score of a box for a phrase is that of the phrase's best token.
-fn boxes(seen: &Seen, prompt: &Prompt, image: &Image) -> candle_core::Result<Vec<Vec<Found>>> {
+fn phrase_boxes(
+    seen: &DinoPredictions,
+    prompt: &DinoPrompt,
+    image: &Image,
+) -> candle_core::Result<Vec<Vec<DetectedBox>>> {
     let logits: Vec<Vec<f32>> = seen.logits.to_dtype(DType::F32)?.to_vec2()?;
     let (width, height) = (image.width_px() as f32, image.height_px() as f32);
     let edges = |&[x, y, across, down]: &[f32; 4]| {
@@ -52,9 +65,9 @@ fn boxes(seen: &Seen, prompt: &Prompt, image: &Image) -> candle_core::Result<Vec
     let of_phrase = |(_, tokens): &(usize, std::ops::Range<usize>)| {
         let best = |logits: &Vec<f32>| logits[tokens.clone()].iter().copied().fold(f32::NEG_INFINITY, f32::max);
         let scores = logits.iter().map(|logits| sigmoid(best(logits)));
-        let mut found: Vec<Found> = scores
+        let mut found: Vec<DetectedBox> = scores
             .zip(&edges)
-            .map(|(score, &box_px)| Found { box_px, score })
+            .map(|(score, &box_px)| DetectedBox { box_px, score })
             .filter(|found| is_sound(*found))
             .collect();
         found.sort_by(|a, b| b.score.total_cmp(&a.score));
@@ -65,35 +78,35 @@ fn boxes(seen: &Seen, prompt: &Prompt, image: &Image) -> candle_core::Result<Vec
 }
 
 /// Whether score and box are finite. A damaged checkpoint may give other numbers.
-fn is_sound(found: Found) -> bool {
+fn is_sound(found: DetectedBox) -> bool {
     found.score.is_finite() && found.box_px.iter().all(|edge| edge.is_finite())
 }
 
-impl Detector for Dino {
+impl ObjectDetector for GroundingDino {
     fn name(&self) -> &str {
         &self.name
     }
 
     /// A score is the maximum over the phrase's tokens of the sigmoid of a query's logit; all phrases of a call are in
     /// one prompt, or in several where they have more tokens than the model takes.
-    fn scoring(&self) -> Scoring {
+    fn scoring(&self) -> DetectorScoring {
         let means = match self.family {
-            Family::Mm => {
+            DinoFamily::Mm => {
                 "MM Grounding DINO: a query's largest sigmoid over the tokens of the phrase, all phrases in one prompt"
             }
-            Family::Plain => {
+            DinoFamily::Plain => {
                 "Grounding DINO: a query's largest sigmoid over the tokens of the phrase, all phrases in one prompt"
             }
         };
-        Scoring { means, found_from: FOUND_FROM, phrases_meet: true }
+        DetectorScoring { means, found_from: FOUND_FROM, phrases_meet: true }
     }
 
-    fn detect(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<Vec<Found>>, ModelError>> {
-        let prompts = self.prompts(phrases).map_err(|error| self.failed(&error));
+    fn detect_phrases(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<Vec<DetectedBox>>, ModelError>> {
+        let prompts = self.encode_prompts(phrases).map_err(|error| self.to_model_error(&error));
         let one = |view: &&View| {
-            let image = of_view(view, &self.name)?;
+            let image = picture_of_view(view, &self.name)?;
             let prompts = prompts.as_ref().map_err(Clone::clone)?;
-            self.view(image, prompts, phrases.len()).map_err(|error| self.failed(&error))
+            self.find_in_prompts(image, prompts, phrases.len()).map_err(|error| self.to_model_error(&error))
         };
         views.iter().map(one).collect()
     }

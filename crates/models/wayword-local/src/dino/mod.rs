@@ -23,7 +23,7 @@ mod queries;
 mod text;
 
 pub(crate) use model::KEPT_BYTES;
-pub use model::{Dino, DinoOutputs};
+pub use model::{DinoOutputs, GroundingDino};
 
 #[cfg(test)]
 mod tests;

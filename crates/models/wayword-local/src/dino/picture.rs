@@ -1,29 +1,29 @@
 //! Prepares pictures for the family's models. The numbers are those of transformers' processor with Pillow.
 
 use crate::{
-    Device, LocalError, json,
-    picture::resample::{Axis, Filter, resample},
+    LocalError, ModelDevice, json,
+    picture::resample::{ResampleAxis, ResampleFilter, resample_picture},
 };
 use candle_core::Tensor;
 use serde::Deserialize;
 use std::path::Path;
 use wayword_core::Image;
 
-const FILE: &str = "preprocessor_config.json";
+const PREPROCESSOR_FILE: &str = "preprocessor_config.json";
 
 /// Longest edge of a picture for a model, pixels.
 const LONGEST_EDGE: usize = 2048;
 
 /// ImageNet's means and standard deviations of red, green and blue.
-const MEAN: [f64; 3] = [0.485, 0.456, 0.406];
-const DEVIATION: [f64; 3] = [0.229, 0.224, 0.225];
+const IMAGENET_MEANS_RGB: [f64; 3] = [0.485, 0.456, 0.406];
+const IMAGENET_DEVIATIONS_RGB: [f64; 3] = [0.229, 0.224, 0.225];
 
 /// `preprocessor_config.json`.
 #[derive(Debug, Deserialize)]
-struct Config {
+struct DinoPictureConfig {
     #[serde(alias = "feature_extractor_type")]
     image_processor_type: Option<String>,
-    size: Option<Edges>,
+    size: Option<DinoEdgeLimits>,
     max_size: Option<usize>,
     do_resize: Option<bool>,
     do_rescale: Option<bool>,
@@ -37,25 +37,26 @@ struct Config {
 /// A size, in the forms that files use.
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(untagged)]
-enum Edges {
+enum DinoEdgeLimits {
     Both { shortest_edge: usize, longest_edge: usize },
     One(usize),
 }
 
 /// Prepares pictures: the shorter edge gets one length, but the longer one at most another.
 #[derive(Debug)]
-pub(super) struct Shown {
+pub(super) struct DinoPictureProcessor {
     shortest: usize,
     longest: usize,
     /// The model's input for each value of a byte, for each colour.
     numbers: [[f32; 256]; 3],
 }
 
-impl Shown {
+impl DinoPictureProcessor {
     pub(super) fn load(folder: &Path) -> Result<Self, LocalError> {
-        let config: Config = json::read(folder, FILE, "the configuration of the pictures")?;
-        config.build().map_err(|problem| LocalError::File {
-            file: folder.join(FILE),
+        let config: DinoPictureConfig =
+            json::read_required(folder, PREPROCESSOR_FILE, "the configuration of the pictures")?;
+        config.build_processor().map_err(|problem| LocalError::File {
+            file: folder.join(PREPROCESSOR_FILE),
             problem,
             hint: "choose a model of Grounding DINO's architecture, such as hf/iSEE-Laboratory/llmdet_tiny; if this is one, its file is damaged: delete the folder models--ORG--NAME that holds it, and run `wayword models fetch hf/ORG/NAME`",
         })
@@ -67,15 +68,15 @@ impl Shown {
     }
 
     /// A picture as a tensor [1, 3, height, width] in 32 bits.
-    pub(super) fn tensor(&self, image: &Image, device: &Device) -> Result<Tensor, LocalError> {
+    pub(super) fn to_tensor(&self, image: &Image, device: &ModelDevice) -> Result<Tensor, LocalError> {
         let wrong = |problem: String| LocalError::Compute { model: "pictures".to_owned(), problem };
         let (from_height, from_width) = (image.height_px() as usize, image.width_px() as usize);
         if from_height == 0 || from_width == 0 {
             return Err(wrong(format!("{image:?} has no pixels")));
         }
         let (height, width) = self.size_of(from_height, from_width);
-        let axis = |from, to| Axis::middle(Filter::Bilinear, from, to, to);
-        let rgb = resample(image.rgb(), &axis(from_height, height), &axis(from_width, width));
+        let axis = |from, to| ResampleAxis::keep_middle(ResampleFilter::Bilinear, from, to, to);
+        let rgb = resample_picture(image.rgb_bytes(), &axis(from_height, height), &axis(from_width, width));
         let mut numbers = vec![0.0; 3 * height * width];
         for (colour, (numbers, table)) in numbers.chunks_mut(height * width).zip(&self.numbers).enumerate() {
             for (number, pixel) in numbers.iter_mut().zip(rgb.chunks_exact(3)) {
@@ -103,8 +104,8 @@ impl Shown {
     }
 }
 
-impl Config {
-    fn build(&self) -> Result<Shown, String> {
+impl DinoPictureConfig {
+    fn build_processor(&self) -> Result<DinoPictureProcessor, String> {
         if let Some(name) = self.image_processor_type.as_deref().filter(|name| !name.contains("GroundingDino")) {
             return Err(format!("image_processor_type: {name} is not Grounding DINO's"));
         }
@@ -116,21 +117,21 @@ impl Config {
         }
         let (shortest, longest) = match self.size {
             None => (800, 1333),
-            Some(Edges::One(edge)) => (edge, self.max_size.unwrap_or(1333)),
-            Some(Edges::Both { shortest_edge, longest_edge }) => (shortest_edge, longest_edge),
+            Some(DinoEdgeLimits::One(edge)) => (edge, self.max_size.unwrap_or(1333)),
+            Some(DinoEdgeLimits::Both { shortest_edge, longest_edge }) => (shortest_edge, longest_edge),
         };
         if shortest == 0 || shortest > longest || longest > LONGEST_EDGE {
             return Err(format!("size: edges of {shortest} and {longest} pixels are not between 1 and {LONGEST_EDGE}"));
         }
-        Ok(Shown { shortest, longest, numbers: self.numbers()? })
+        Ok(DinoPictureProcessor { shortest, longest, numbers: self.byte_values()? })
     }
 
     /// The model's input for each value of a byte, for each colour.
-    fn numbers(&self) -> Result<[[f32; 256]; 3], String> {
+    fn byte_values(&self) -> Result<[[f32; 256]; 3], String> {
         let factor = if self.do_rescale == Some(false) { 1.0 } else { self.rescale_factor.unwrap_or(1.0 / 255.0) };
         let (mean, deviation) = match self.do_normalize {
             Some(false) => ([0.0; 3], [1.0; 3]),
-            _ => (self.image_mean.unwrap_or(MEAN), self.image_std.unwrap_or(DEVIATION)),
+            _ => (self.image_mean.unwrap_or(IMAGENET_MEANS_RGB), self.image_std.unwrap_or(IMAGENET_DEVIATIONS_RGB)),
         };
         let is_finite = deviation.iter().chain(&mean).chain([&factor]).all(|number| number.is_finite());
         if deviation.contains(&0.0) || !is_finite {

@@ -3,15 +3,15 @@
 use std::f32::consts::TAU;
 
 /// The ratio of the longest to the shortest wave length, for tokens and boxes.
-const TEMPERATURE: f32 = 10_000.0;
+const TOKEN_TEMPERATURE: f32 = 10_000.0;
 
 /// The wave lengths of `count` numbers. Each is there twice: for a sine and a cosine.
-fn lengths(count: usize, temperature: f32) -> Vec<f32> {
+fn wave_lengths(count: usize, temperature: f32) -> Vec<f32> {
     (0..count).map(|at| temperature.powf(2.0 * (at / 2) as f32 / count as f32)).collect()
 }
 
 /// Writes the sine and the cosine of a phase for each pair of wave lengths.
-fn waves(phase: f32, lengths: &[f32], to: &mut [f32]) {
+fn write_waves(phase: f32, lengths: &[f32], to: &mut [f32]) {
     for (at, (number, length)) in to.iter_mut().zip(lengths).enumerate() {
         let angle = phase / length;
         *number = if at % 2 == 0 { libm::sinf(angle) } else { libm::cosf(angle) };
@@ -19,13 +19,13 @@ fn waves(phase: f32, lengths: &[f32], to: &mut [f32]) {
 }
 
 /// The positions of the cells of a map, row by row, `size` numbers each: first those of the row, then of the column.
-pub(super) fn of_map(height: usize, width: usize, size: usize, temperature: f32) -> Vec<f32> {
-    const EPSILON: f32 = 1e-6;
-    let lengths = lengths(size / 2, temperature);
+pub(super) fn map_positions(height: usize, width: usize, size: usize, temperature: f32) -> Vec<f32> {
+    const POSITION_EPSILON: f32 = 1e-6;
+    let lengths = wave_lengths(size / 2, temperature);
     let along = |count: usize| -> Vec<Vec<f32>> {
         let at = |at: usize| {
             let mut numbers = vec![0.0; size / 2];
-            waves((at + 1) as f32 / (count as f32 + EPSILON) * TAU, &lengths, &mut numbers);
+            write_waves((at + 1) as f32 / (count as f32 + POSITION_EPSILON) * TAU, &lengths, &mut numbers);
             numbers
         };
         (0..count).map(at).collect()
@@ -42,23 +42,23 @@ pub(super) fn of_map(height: usize, width: usize, size: usize, temperature: f32)
 }
 
 /// The positions of tokens within their phrases, `size` numbers each.
-pub(super) fn of_places(places: &[u32], size: usize) -> Vec<f32> {
-    let lengths = lengths(size, TEMPERATURE);
+pub(super) fn token_positions(places: &[u32], size: usize) -> Vec<f32> {
+    let lengths = wave_lengths(size, TOKEN_TEMPERATURE);
     let mut all = vec![0.0; places.len() * size];
     for (numbers, &place) in all.chunks_mut(size.max(1)).zip(places) {
-        waves(place as f32 * TAU, &lengths, numbers);
+        write_waves(place as f32 * TAU, &lengths, numbers);
     }
     all
 }
 
 /// The positions of boxes (middle, width and height), `2 * size` numbers each, in the order y, x, width, height.
-pub(super) fn of_boxes(boxes: &[[f32; 4]], size: usize) -> Vec<f32> {
+pub(super) fn box_positions(boxes: &[[f32; 4]], size: usize) -> Vec<f32> {
     let each = size / 2;
-    let lengths = lengths(each, TEMPERATURE);
+    let lengths = wave_lengths(each, TOKEN_TEMPERATURE);
     let mut all = vec![0.0; boxes.len() * 4 * each];
     for (numbers, &[x, y, width, height]) in all.chunks_mut(4 * each.max(1)).zip(boxes) {
         for (numbers, edge) in numbers.chunks_mut(each.max(1)).zip([y, x, width, height]) {
-            waves(edge * TAU, &lengths, numbers);
+            write_waves(edge * TAU, &lengths, numbers);
         }
     }
     all

@@ -4,49 +4,49 @@
 //! it, and positions count from 0 again after each dot. But all phrases change the picture's features, so the scores of
 //! a phrase depend on the other phrases of its prompt.
 
-use crate::{LocalError, text::Tokenizer};
+use crate::{LocalError, text::TextTokenizer};
 use candle_core::{Device, Result as Computed, Tensor};
 use std::ops::Range;
 
 /// BERT's ids of the first and the last token of a text, of a dot and of a question mark. The checkpoints of the family
 /// know them by number.
-const FIRST: u32 = 101;
-const LAST: u32 = 102;
-const DOT: u32 = 1012;
-const QUESTION: u32 = 1029;
+const CLS_TOKEN_ID: u32 = 101;
+const SEP_TOKEN_ID: u32 = 102;
+const DOT_TOKEN_ID: u32 = 1012;
+const QUESTION_MARK_TOKEN_ID: u32 = 1029;
 
 /// One text of one or more phrases.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Prompt {
+pub(super) struct DinoPrompt {
     pub(super) ids: Vec<u32>,
     /// For each phrase its number among all phrases, and the range of its tokens, without the dot.
     pub(super) phrases: Vec<(usize, Range<usize>)>,
 }
 
-impl Prompt {
+impl DinoPrompt {
     fn new() -> Self {
-        Self { ids: vec![FIRST], phrases: Vec::new() }
+        Self { ids: vec![CLS_TOKEN_ID], phrases: Vec::new() }
     }
 
-    fn push(&mut self, phrase: usize, ids: &[u32]) {
+    fn push_phrase(&mut self, phrase: usize, ids: &[u32]) {
         let begin = self.ids.len();
         self.ids.extend_from_slice(ids);
         self.phrases.push((phrase, begin..self.ids.len()));
-        self.ids.push(DOT);
+        self.ids.push(DOT_TOKEN_ID);
     }
 
     /// The length of the prompt, tokens, if a phrase of `more` tokens, its dot and the last token were added.
-    fn with(&self, more: usize) -> usize {
+    fn length_with(&self, more: usize) -> usize {
         self.ids.len() + more + 2
     }
 
-    fn closed(mut self) -> Self {
-        self.ids.push(LAST);
+    fn close_prompt(mut self) -> Self {
+        self.ids.push(SEP_TOKEN_ID);
         self
     }
 
     /// The position of each token within its phrase. The first and the last token of the prompt have position 0.
-    pub(super) fn places(&self) -> Vec<u32> {
+    pub(super) fn token_places(&self) -> Vec<u32> {
         let mut places = vec![0; self.ids.len()];
         for (_, tokens) in &self.phrases {
             for (place, at) in (tokens.start..=tokens.end).enumerate() {
@@ -57,7 +57,7 @@ impl Prompt {
     }
 
     /// The mask [tokens, tokens] that is added to attention scores: 0 where a token sees another one, else -inf.
-    pub(super) fn mask(&self, device: &Device) -> Computed<Tensor> {
+    pub(super) fn attention_mask(&self, device: &Device) -> Computed<Tensor> {
         let count = self.ids.len();
         let mut phrase_of: Vec<usize> = (0..count).collect();
         for (_, tokens) in &self.phrases {
@@ -74,21 +74,21 @@ impl Prompt {
 ///
 /// # Errors
 /// When a phrase alone is too long.
-pub(super) fn prompts(
+pub(super) fn build_prompts(
     name: &str,
-    tokenizer: &Tokenizer,
+    tokenizer: &TextTokenizer,
     phrases: &[&str],
     longest: usize,
-) -> Result<Vec<Prompt>, LocalError> {
+) -> Result<Vec<DinoPrompt>, LocalError> {
     let mut done = Vec::new();
-    let mut open = Prompt::new();
+    let mut open = DinoPrompt::new();
     for (at, phrase) in phrases.iter().enumerate() {
         let mut ids = tokenizer.inner_ids(&phrase.trim().to_lowercase())?;
-        ids.retain(|id| ![FIRST, LAST, DOT, QUESTION].contains(id));
+        ids.retain(|id| ![CLS_TOKEN_ID, SEP_TOKEN_ID, DOT_TOKEN_ID, QUESTION_MARK_TOKEN_ID].contains(id));
         if ids.is_empty() {
             continue;
         }
-        if Prompt::new().with(ids.len()) > longest {
+        if DinoPrompt::new().length_with(ids.len()) > longest {
             return Err(LocalError::Compute {
                 model: name.to_owned(),
                 problem: format!(
@@ -98,13 +98,13 @@ pub(super) fn prompts(
                 ),
             });
         }
-        if open.with(ids.len()) > longest {
-            done.push(std::mem::replace(&mut open, Prompt::new()).closed());
+        if open.length_with(ids.len()) > longest {
+            done.push(std::mem::replace(&mut open, DinoPrompt::new()).close_prompt());
         }
-        open.push(at, &ids);
+        open.push_phrase(at, &ids);
     }
     if !open.phrases.is_empty() {
-        done.push(open.closed());
+        done.push(open.close_prompt());
     }
     Ok(done)
 }

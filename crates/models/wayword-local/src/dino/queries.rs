@@ -3,32 +3,32 @@
 //! Every cell has an own box around its middle, with a size that depends on the level. The network moves this box a
 //! little.
 
-use super::{config::Config, features::Level, heads::Contrast, layers::Perceptron};
+use super::{config::DinoConfig, features::FeatureLevel, heads::TokenContrast, layers::ReluPerceptron};
 use crate::{
     LocalError,
-    ops::{LayerNorm, Linear},
-    weights::Scope,
+    ops::{LayerNorm, LinearLayer},
+    weights::WeightScope,
 };
 use candle_core::{Result, Tensor};
 
 /// The width and height of a cell's own box on the finest level, as a share of the picture. Each level doubles them.
-const SHARE: f32 = 0.05;
+const FINEST_BOX_SHARE: f32 = 0.05;
 
 /// A cell's own box counts if all its numbers lie within these.
-const LEAST: f32 = 0.01;
-const MOST: f32 = 0.99;
+const MIN_BOX_SHARE: f32 = 0.01;
+const MAX_BOX_SHARE: f32 = 0.99;
 
 /// Chooses the cells that become queries.
-pub(super) struct Chooser {
-    layer: Linear,
+pub(super) struct QueryChooser {
+    layer: LinearLayer,
     norm: LayerNorm,
-    boxes: Perceptron,
-    contrast: Contrast,
+    boxes: ReluPerceptron,
+    contrast: TokenContrast,
     queries: usize,
 }
 
 /// All cells as candidates.
-pub(super) struct Candidates {
+pub(super) struct QueryCandidates {
     /// [1, cells, size].
     states: Tensor,
     /// The logits of each cell's own box; infinite for a cell that cannot be chosen for lack of a valid box.
@@ -37,31 +37,36 @@ pub(super) struct Candidates {
     pub(super) scores: Vec<f32>,
 }
 
-impl Chooser {
-    pub(super) fn load(model: &Scope<'_>, config: &Config) -> std::result::Result<Self, LocalError> {
+impl QueryChooser {
+    pub(super) fn from_weights(model: &WeightScope<'_>, config: &DinoConfig) -> std::result::Result<Self, LocalError> {
         let size = config.size;
         Ok(Self {
-            layer: model.linear("enc_output", size, size)?,
+            layer: model.read_linear("enc_output", size, size)?,
             norm: model.layer_norm("enc_output_norm", size, config.epsilon)?,
-            boxes: Perceptron::load(&model.sub("encoder_output_bbox_embed"), &[size, size, size, 4])?,
-            contrast: Contrast::load(&model.sub("encoder_output_class_embed"), config)?,
+            boxes: ReluPerceptron::from_weights(&model.sub_scope("encoder_output_bbox_embed"), &[size, size, size, 4])?,
+            contrast: TokenContrast::from_weights(&model.sub_scope("encoder_output_class_embed"), config)?,
             queries: config.queries,
         })
     }
 
     /// Scores all cells [1, cells, size] by how well they fit the text [1, tokens, size].
-    pub(super) fn candidates(&self, cells: &Tensor, text: &Tensor, levels: &[Level]) -> Result<Candidates> {
+    pub(super) fn score_candidates(
+        &self,
+        cells: &Tensor,
+        text: &Tensor,
+        levels: &[FeatureLevel],
+    ) -> Result<QueryCandidates> {
         let own: Vec<[f32; 4]> = levels.iter().enumerate().flat_map(|(at, &level)| own_boxes(at, level)).collect();
         let counts = own.iter().map(|own| if own[0].is_finite() { 1.0_f32 } else { 0.0 }).collect();
         let counts = Tensor::from_vec(counts, (1, own.len(), 1), cells.device())?.to_dtype(cells.dtype())?;
-        let states = self.norm.of(&self.layer.of(&cells.broadcast_mul(&counts)?)?)?;
-        let logits = self.contrast.of(&states, text)?;
+        let states = self.norm.apply_to(&self.layer.apply_to(&cells.broadcast_mul(&counts)?)?)?;
+        let logits = self.contrast.token_logits(&states, text)?;
         let scores = logits.max(candle_core::D::Minus1)?.flatten_all()?.to_dtype(candle_core::DType::F32)?.to_vec1()?;
-        Ok(Candidates { states, own, scores })
+        Ok(QueryCandidates { states, own, scores })
     }
 
     /// The cells with the best scores, the best first. Cells with equal scores stay in their order.
-    pub(super) fn best(&self, candidates: &Candidates) -> Vec<u32> {
+    pub(super) fn best_candidates(&self, candidates: &QueryCandidates) -> Vec<u32> {
         let scores = &candidates.scores;
         let mut order: Vec<u32> = (0..scores.len() as u32).collect();
         order.sort_by(|&a, &b| scores[b as usize].total_cmp(&scores[a as usize]));
@@ -70,10 +75,10 @@ impl Chooser {
     }
 
     /// The boxes of the picked cells: middle, width and height, as shares of the picture's width and height.
-    pub(super) fn boxes(&self, candidates: &Candidates, picked: &[u32]) -> Result<Vec<[f32; 4]>> {
+    pub(super) fn candidate_boxes(&self, candidates: &QueryCandidates, picked: &[u32]) -> Result<Vec<[f32; 4]>> {
         let at = Tensor::from_slice(picked, picked.len(), candidates.states.device())?;
         let states = candidates.states.index_select(&at, 1)?;
-        let moved = rows(&self.boxes.of(&states)?)?;
+        let moved = rows_of_four(&self.boxes.apply_to(&states)?)?;
         let place = |(moved, &at): ([f32; 4], &u32)| {
             let own = candidates.own[at as usize];
             std::array::from_fn(|edge| sigmoid(moved[edge] + own[edge]))
@@ -83,17 +88,17 @@ impl Chooser {
 }
 
 /// The logits of the own boxes of a level's cells.
-fn own_boxes(at: usize, level: Level) -> impl Iterator<Item = [f32; 4]> {
-    let share = SHARE * (at as f32).exp2();
-    level.middles().map(move |[x, y]| {
+fn own_boxes(at: usize, level: FeatureLevel) -> impl Iterator<Item = [f32; 4]> {
+    let share = FINEST_BOX_SHARE * (at as f32).exp2();
+    level.cell_middles().map(move |[x, y]| {
         let own = [x, y, share, share];
-        let counts = own.iter().all(|edge| (LEAST..MOST).contains(edge) && *edge > LEAST);
+        let counts = own.iter().all(|edge| (MIN_BOX_SHARE..MAX_BOX_SHARE).contains(edge) && *edge > MIN_BOX_SHARE);
         if counts { own.map(|edge| (edge / (1.0 - edge)).ln()) } else { [f32::INFINITY; 4] }
     })
 }
 
 /// The rows of a tensor [1, rows, 4], four numbers each.
-pub(super) fn rows(x: &Tensor) -> Result<Vec<[f32; 4]>> {
+pub(super) fn rows_of_four(x: &Tensor) -> Result<Vec<[f32; 4]>> {
     let numbers: Vec<f32> = x.to_dtype(candle_core::DType::F32)?.flatten_all()?.to_vec1()?;
     Ok(numbers.chunks_exact(4).map(|row| [row[0], row[1], row[2], row[3]]).collect())
 }

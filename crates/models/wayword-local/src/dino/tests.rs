@@ -1,10 +1,10 @@
 //! Compares each stage with PyTorch (`fixtures/make_dino.py`), and the operators with each other.
 
 use super::{
-    model::Dino,
-    prompt::{Prompt, prompts},
+    model::GroundingDino,
+    prompt::{DinoPrompt, build_prompts},
 };
-use crate::{Device, Precision, text::Tokenizer};
+use crate::{ModelDevice, WeightPrecision, text::TextTokenizer};
 use candle_core::{DType, Tensor};
 use std::{
     collections::HashMap,
@@ -18,8 +18,8 @@ fn folder(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures").join(name)
 }
 
-fn load(folder: &Path) -> Dino {
-    Dino::load("hf/test/dino", folder, &Device::cpu(), Precision::F32).unwrap()
+fn load(folder: &Path) -> GroundingDino {
+    GroundingDino::load("hf/test/dino", folder, &ModelDevice::cpu(), WeightPrecision::F32).unwrap()
 }
 
 /// The same formula as in `fixtures/make_dino.py`.
@@ -52,23 +52,23 @@ fn every_stage_agrees_with_pytorch() {
         let dino = load(&folder(name));
         let file = folder(name).join("stages.safetensors");
         let stages: HashMap<String, Tensor> = candle_core::safetensors::load(file, &candle_core::Device::Cpu).unwrap();
-        let (_, text) = dino.prompts(&PHRASES).unwrap().remove(0);
+        let (_, text) = dino.encode_prompts(&PHRASES).unwrap().remove(0);
         near(&text.states, &stages["0.text"], 1e-5, "text");
         for (number, (width, height)) in [(0, (75, 50)), (1, (59, 70))] {
             let stage = |stage: &str| &stages[&format!("{number}.{stage}")];
             let image = drawn(width, height);
-            let features = dino.features(&image).unwrap();
+            let features = dino.picture_features(&image).unwrap();
             if number == 0 {
                 near(&dino.pixels(&image), stage("pixels"), 1e-6, "pixels");
                 near(&features.cells, stage("tokens"), 2e-5, "cells before fusion");
-                let (cells, read) = dino.encoded(&features, &text).unwrap();
+                let (cells, read) = dino.encode_states(&features, &text).unwrap();
                 near(&cells, stage("encoded"), 5e-5, "cells");
                 near(&read, stage("encoded_text"), 5e-5, "text after fusion");
             }
             let candidates = dino.candidates(&features, &text).unwrap();
             assert!(off(&candidates, &numbers(stage("candidates"))) < 1e-4, "candidates");
             let mut order = Vec::new();
-            let seen = dino.look(&features, &text, |best| {
+            let seen = dino.predict_with_candidates(&features, &text, |best| {
                 order.clone_from(&best);
                 best
             });
@@ -83,22 +83,23 @@ fn every_stage_agrees_with_pytorch() {
 
 #[test]
 fn phrases_are_put_into_as_few_prompts_as_possible() {
-    let tokenizer = Tokenizer::load(&folder("dino")).unwrap();
-    let made = prompts("hf/test/dino", &tokenizer, &["Red  door", " ?. ", "stairs. lamp", "sinks"], 9).unwrap();
+    let tokenizer = TextTokenizer::load(&folder("dino")).unwrap();
+    let made = build_prompts("hf/test/dino", &tokenizer, &["Red  door", " ?. ", "stairs. lamp", "sinks"], 9).unwrap();
     let expected = [
-        Prompt { ids: vec![101, 1, 2, 1012, 3, 8, 1012, 102], phrases: vec![(0, 1..3), (2, 4..6)] },
-        Prompt { ids: vec![101, 6, 48, 1012, 102], phrases: vec![(3, 1..3)] },
+        DinoPrompt { ids: vec![101, 1, 2, 1012, 3, 8, 1012, 102], phrases: vec![(0, 1..3), (2, 4..6)] },
+        DinoPrompt { ids: vec![101, 6, 48, 1012, 102], phrases: vec![(3, 1..3)] },
     ];
     assert_eq!(made, expected);
-    assert_eq!(made[0].places(), [0, 0, 1, 2, 0, 1, 2, 0]);
-    let mask = made[0].mask(&candle_core::Device::Cpu).unwrap().to_vec2::<f32>().unwrap();
+    assert_eq!(made[0].token_places(), [0, 0, 1, 2, 0, 1, 2, 0]);
+    let mask = made[0].attention_mask(&candle_core::Device::Cpu).unwrap().to_vec2::<f32>().unwrap();
     let seen = |at: usize| (0..8).filter(|&to| mask[at][to] == 0.0).collect::<Vec<_>>();
     assert_eq!(
         (seen(0), seen(1), seen(3), seen(6), seen(7)),
         (vec![0], vec![1, 2, 3], vec![1, 2, 3], vec![4, 5, 6], vec![7])
     );
-    assert!(prompts("hf/test/dino", &tokenizer, &[], 9).unwrap().is_empty());
-    let error = prompts("hf/test/dino", &tokenizer, &["a red door a red door a red door"], 9).unwrap_err().to_string();
+    assert!(build_prompts("hf/test/dino", &tokenizer, &[], 9).unwrap().is_empty());
+    let error =
+        build_prompts("hf/test/dino", &tokenizer, &["a red door a red door a red door"], 9).unwrap_err().to_string();
     assert!(error.contains("9 tokens") && error.contains("6 are the most"), "{error}");
 }
 

@@ -1,13 +1,13 @@
 //! Enlarges a map to the size of a finer one: bilinear, with corners aligned, so that the outermost positions of both
 //! maps coincide. Example: positions 0, 1, 2 become 0, 0.5, 1, 1.5, 2.
 
-use crate::ops::conv3::Map;
+use crate::ops::conv3::FeatureMap;
 
 /// The enlargement of one axis. For each new position: the old position before it, the old one after it, and the weight
 /// of the latter.
-pub(super) struct Axis(pub(super) Vec<(usize, usize, f32)>);
+pub(super) struct EnlargedAxis(pub(super) Vec<(usize, usize, f32)>);
 
-impl Axis {
+impl EnlargedAxis {
     pub(super) fn new(from: usize, to: usize) -> Self {
         let step = if to > 1 { (from.saturating_sub(1)) as f32 / (to - 1) as f32 } else { 0.0 };
         let last = from.saturating_sub(1);
@@ -20,7 +20,7 @@ impl Axis {
     }
 
     /// The weight of each old position in the mean of all new ones.
-    fn shares(&self, from: usize) -> Vec<f64> {
+    fn mean_shares(&self, from: usize) -> Vec<f64> {
         let mut shares = vec![0.0; from];
         for &(before, behind, share) in &self.0 {
             shares[before] += f64::from(1.0 - share) / self.0.len() as f64;
@@ -31,19 +31,23 @@ impl Axis {
 }
 
 /// The enlargement of a map.
-pub(super) struct Enlarged {
-    down: Axis,
-    across: Axis,
+pub(super) struct MapEnlargement {
+    down: EnlargedAxis,
+    across: EnlargedAxis,
     width: usize,
 }
 
-impl Enlarged {
-    pub(super) fn new(map: &Map, height: usize, width: usize) -> Self {
-        Self { down: Axis::new(map.height, height), across: Axis::new(map.width, width), width: map.width }
+impl MapEnlargement {
+    pub(super) fn new(map: &FeatureMap, height: usize, width: usize) -> Self {
+        Self {
+            down: EnlargedAxis::new(map.height, height),
+            across: EnlargedAxis::new(map.width, width),
+            width: map.width,
+        }
     }
 
     /// The four old positions around a new one, with their weights.
-    pub(super) fn corners(&self, position: usize) -> [(usize, f32); 4] {
+    pub(super) fn corner_shares(&self, position: usize) -> [(usize, f32); 4] {
         let (above, below, down) = self.down.0[position / self.across.0.len()];
         let (left, right, across) = self.across.0[position % self.across.0.len()];
         [
@@ -55,8 +59,8 @@ impl Enlarged {
     }
 
     /// The weight of each old position in the mean of all new ones.
-    pub(super) fn shares(&self, map: &Map) -> Vec<f32> {
-        let (down, across) = (self.down.shares(map.height), self.across.shares(map.width));
+    pub(super) fn mean_shares(&self, map: &FeatureMap) -> Vec<f32> {
+        let (down, across) = (self.down.mean_shares(map.height), self.across.mean_shares(map.width));
         down.iter().flat_map(|down| across.iter().map(move |across| (down * across) as f32)).collect()
     }
 }
@@ -67,10 +71,10 @@ mod tests {
 
     #[test]
     fn enlargement_aligns_the_corners_of_both_maps() {
-        assert_eq!(Axis::new(3, 5).0, [(0, 1, 0.0), (0, 1, 0.5), (1, 2, 0.0), (1, 2, 0.5), (2, 2, 0.0)]);
-        assert_eq!(Axis::new(1, 2).0, [(0, 0, 0.0), (0, 0, 0.0)]);
-        assert_eq!(Axis::new(4, 1).0, [(0, 1, 0.0)]);
-        let sum: f64 = Axis::new(3, 7).shares(3).iter().sum();
+        assert_eq!(EnlargedAxis::new(3, 5).0, [(0, 1, 0.0), (0, 1, 0.5), (1, 2, 0.0), (1, 2, 0.5), (2, 2, 0.0)]);
+        assert_eq!(EnlargedAxis::new(1, 2).0, [(0, 0, 0.0), (0, 0, 0.0)]);
+        assert_eq!(EnlargedAxis::new(4, 1).0, [(0, 1, 0.0)]);
+        let sum: f64 = EnlargedAxis::new(3, 7).mean_shares(3).iter().sum();
         assert!((sum - 1.0).abs() < 1e-6);
     }
 }

@@ -3,11 +3,11 @@
 //! Each position of each level has an anchor, a square around it. The head moves and resizes the anchor. Of boxes that
 //! overlap too much, the best one for each phrase stays.
 
-use super::{head::Said, prompt::Prompt};
-use wayword_core::{Found, MOST_BOXES};
+use super::{head::GlipLevelOutputs, prompt::GlipPrompt};
+use wayword_core::{DetectedBox, MOST_BOXES};
 
 /// A phrase with a lower probability at a position gets no box there.
-const LEAST: f64 = 0.05;
+const MIN_PHRASE_PROBABILITY: f64 = 0.05;
 
 /// The most candidates of a level. A candidate is a pair of position and phrase.
 const MOST_CANDIDATES: usize = 1000;
@@ -16,39 +16,43 @@ const MOST_CANDIDATES: usize = 1000;
 const MOST_OVERLAP: f64 = 0.6;
 
 /// The logarithm of how many times larger than its anchor a box may be: ln(1000 / 16).
-const LARGEST: f64 = 4.135_166_556_742_356;
+const MAX_LOG_BOX_GROWTH: f64 = 4.135_166_556_742_356;
 
 /// Width and height of a picture as the model gets it, without padding (`shown`), and of the picture itself.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Sizes {
+pub(super) struct GlipPictureSizes {
     pub(super) shown: (usize, usize),
     pub(super) picture: (usize, usize),
 }
 
 /// A box [x1, y1, x2, y2] in the picture as the model sees it, with its score and its phrase.
-struct Candidate {
+struct GlipCandidate {
     edges: [f64; 4],
     score: f64,
     phrase: usize,
 }
 
 /// For each phrase of a prompt, in their order, its boxes in the picture, the best first, at most [`MOST_BOXES`].
-pub(super) fn boxes(said: &[Said], prompt: &Prompt, sizes: Sizes) -> Vec<Vec<Found>> {
-    let mut found: Vec<Candidate> =
-        said.iter().enumerate().flat_map(|(level, said)| candidates(level, said, prompt, sizes)).collect();
+pub(super) fn phrase_boxes(
+    said: &[GlipLevelOutputs],
+    prompt: &GlipPrompt,
+    sizes: GlipPictureSizes,
+) -> Vec<Vec<DetectedBox>> {
+    let mut found: Vec<GlipCandidate> =
+        said.iter().enumerate().flat_map(|(level, said)| level_candidates(level, said, prompt, sizes)).collect();
     found.sort_by(|a, b| b.score.total_cmp(&a.score));
-    let mut kept: Vec<Vec<Candidate>> = prompt.phrases.iter().map(|_| Vec::new()).collect();
+    let mut kept: Vec<Vec<GlipCandidate>> = prompt.phrases.iter().map(|_| Vec::new()).collect();
     for candidate in found {
         let of_phrase = &mut kept[candidate.phrase];
         if of_phrase.len() < MOST_BOXES
-            && of_phrase.iter().all(|better| overlap(&better.edges, &candidate.edges) <= MOST_OVERLAP)
+            && of_phrase.iter().all(|better| box_overlap(&better.edges, &candidate.edges) <= MOST_OVERLAP)
         {
             of_phrase.push(candidate);
         }
     }
     let (across, down) =
         (sizes.picture.0 as f64 / sizes.shown.0.max(1) as f64, sizes.picture.1 as f64 / sizes.shown.1.max(1) as f64);
-    let back = |candidate: Candidate| Found {
+    let back = |candidate: GlipCandidate| DetectedBox {
         box_px: [(0, across), (1, down), (2, across), (3, down)].map(|(edge, by)| (candidate.edges[edge] * by) as f32),
         score: candidate.score as f32,
     };
@@ -56,7 +60,12 @@ pub(super) fn boxes(said: &[Said], prompt: &Prompt, sizes: Sizes) -> Vec<Vec<Fou
 }
 
 /// The best candidates of a level.
-fn candidates(level: usize, said: &Said, prompt: &Prompt, sizes: Sizes) -> Vec<Candidate> {
+fn level_candidates(
+    level: usize,
+    said: &GlipLevelOutputs,
+    prompt: &GlipPrompt,
+    sizes: GlipPictureSizes,
+) -> Vec<GlipCandidate> {
     let count = said.height * said.width;
     let tokens = said.logits.len() / count.max(1);
     let mut values = Vec::new();
@@ -67,7 +76,7 @@ fn candidates(level: usize, said: &Said, prompt: &Prompt, sizes: Sizes) -> Vec<C
         for (phrase, (_, of_phrase)) in prompt.phrases.iter().enumerate() {
             let sum: f64 = of_phrase.iter().filter_map(|&token| logits.get(token)).map(|&logit| sigmoid(logit)).sum();
             let p = sum / of_phrase.len().max(1) as f64;
-            if p > LEAST {
+            if p > MIN_PHRASE_PROBABILITY {
                 values.push((p * centre, position, phrase));
             }
         }
@@ -77,18 +86,18 @@ fn candidates(level: usize, said: &Said, prompt: &Prompt, sizes: Sizes) -> Vec<C
     values.truncate(MOST_CANDIDATES);
     let candidate = |(value, position, phrase): (f64, usize, usize)| {
         let deltas = &said.boxes[position * 5..position * 5 + 4];
-        let edges = edges(level, position % said.width, position / said.width, deltas, sizes.shown);
-        Candidate { edges, score: value.sqrt(), phrase }
+        let edges = box_edges(level, position % said.width, position / said.width, deltas, sizes.shown);
+        GlipCandidate { edges, score: value.sqrt(), phrase }
     };
     values.into_iter().map(candidate).collect()
 }
 
 /// The edges of the box at a column and row of a level, clamped to the picture as the model sees it.
-fn edges(level: usize, column: usize, row: usize, deltas: &[f32], (width, height): (usize, usize)) -> [f64; 4] {
+fn box_edges(level: usize, column: usize, row: usize, deltas: &[f32], (width, height): (usize, usize)) -> [f64; 4] {
     let (stride, side) = ((8_usize << level) as f64, (64_usize << level) as f64);
     let axis = |at: usize, moved: f32, grown: f32, length: usize| {
         let centre = f64::from(moved) / 10.0 * side + at as f64 * stride + (stride - 1.0) / 2.0;
-        let half = ((f64::from(grown) / 5.0).min(LARGEST).exp() * side - 1.0) / 2.0;
+        let half = ((f64::from(grown) / 5.0).min(MAX_LOG_BOX_GROWTH).exp() * side - 1.0) / 2.0;
         let most = length.saturating_sub(1) as f64;
         [(centre - half).clamp(0.0, most), (centre + half).clamp(0.0, most)]
     };
@@ -99,7 +108,7 @@ fn edges(level: usize, column: usize, row: usize, deltas: &[f32], (width, height
 
 /// The area that two boxes share, divided by the area that they cover together. Both edges of a box count as its
 /// pixels.
-fn overlap(a: &[f64; 4], b: &[f64; 4]) -> f64 {
+fn box_overlap(a: &[f64; 4], b: &[f64; 4]) -> f64 {
     let length = |from: f64, to: f64| (to - from + 1.0).max(0.0);
     let area = |edges: &[f64; 4]| length(edges[0], edges[2]) * length(edges[1], edges[3]);
     let shared = length(a[0].max(b[0]), a[2].min(b[2])) * length(a[1].max(b[1]), a[3].min(b[3]));
@@ -114,53 +123,54 @@ fn sigmoid(x: f32) -> f64 {
 mod tests {
     use super::*;
 
-    fn prompt(phrases: usize) -> Prompt {
-        Prompt { ids: Vec::new(), phrases: (0..phrases).map(|at| (at, vec![at])).collect() }
+    fn prompt(phrases: usize) -> GlipPrompt {
+        GlipPrompt { ids: Vec::new(), phrases: (0..phrases).map(|at| (at, vec![at])).collect() }
     }
 
     /// A level of `width` x 1 positions.
-    fn said(logits: Vec<f32>, boxes: Vec<f32>) -> Said {
-        Said { height: 1, width: boxes.len() / 5, logits, boxes }
+    fn said(logits: Vec<f32>, boxes: Vec<f32>) -> GlipLevelOutputs {
+        GlipLevelOutputs { height: 1, width: boxes.len() / 5, logits, boxes }
     }
 
-    const SIZES: Sizes = Sizes { shown: (100, 100), picture: (200, 100) };
+    const SIZES: GlipPictureSizes = GlipPictureSizes { shown: (100, 100), picture: (200, 100) };
 
     #[test]
     fn an_unmoved_box_is_its_anchor_in_picture_pixels() {
-        let found = boxes(&[said(vec![0.0], vec![0.0; 5])], &prompt(1), SIZES);
+        let found = phrase_boxes(&[said(vec![0.0], vec![0.0; 5])], &prompt(1), SIZES);
         // The anchor of 64 pixels around 3.5 goes to 35, twice as far in the picture; probability and centreness are
         // 0.5.
-        assert_eq!(found, [[Found { box_px: [0.0, 0.0, 70.0, 35.0], score: 0.5 }]]);
+        assert_eq!(found, [[DetectedBox { box_px: [0.0, 0.0, 70.0, 35.0], score: 0.5 }]]);
     }
 
     #[test]
     fn an_improbable_phrase_gets_no_box() {
         // 0.05 itself is not enough; centreness does not count here.
         let p = |p: f32| (p / (1.0 - p)).ln();
-        let found = boxes(&[said(vec![p(0.0499), p(0.0501)], [0.0, 0.0, 0.0, 0.0, -20.0].to_vec())], &prompt(2), SIZES);
+        let found =
+            phrase_boxes(&[said(vec![p(0.0499), p(0.0501)], [0.0, 0.0, 0.0, 0.0, -20.0].to_vec())], &prompt(2), SIZES);
         assert_eq!(found.iter().map(Vec::len).collect::<Vec<_>>(), [0, 1]);
     }
 
     #[test]
     fn a_phrase_is_the_mean_of_its_tokens() {
-        let prompt = Prompt { ids: Vec::new(), phrases: vec![(0, vec![0, 1])] };
-        let found = boxes(&[said(vec![50.0, -50.0], [0.0, 0.0, 0.0, 0.0, 50.0].to_vec())], &prompt, SIZES);
+        let prompt = GlipPrompt { ids: Vec::new(), phrases: vec![(0, vec![0, 1])] };
+        let found = phrase_boxes(&[said(vec![50.0, -50.0], [0.0, 0.0, 0.0, 0.0, 50.0].to_vec())], &prompt, SIZES);
         assert!((found[0][0].score - 0.5_f32.sqrt()).abs() < 1e-6);
     }
 
     #[test]
     fn of_overlapping_boxes_the_best_of_each_phrase_stays() {
         // Two neighbouring positions: the same box, moved by 8 pixels.
-        let found = boxes(&[said(vec![0.0, 1.0, 1.0, 0.0], vec![0.0; 10])], &prompt(2), SIZES);
+        let found = phrase_boxes(&[said(vec![0.0, 1.0, 1.0, 0.0], vec![0.0; 10])], &prompt(2), SIZES);
         assert_eq!(found.iter().map(Vec::len).collect::<Vec<_>>(), [1, 1]);
         assert!(found[0][0].box_px[2] > found[1][0].box_px[2]);
     }
 
     #[test]
     fn boxes_drop_numbers_that_are_not_finite() {
-        let found = boxes(&[said(vec![f32::NAN], vec![f32::NAN; 5])], &prompt(1), SIZES);
+        let found = phrase_boxes(&[said(vec![f32::NAN], vec![f32::NAN; 5])], &prompt(1), SIZES);
         assert!(found[0].is_empty());
-        let found = boxes(&[said(vec![f32::INFINITY], vec![f32::INFINITY; 5])], &prompt(1), SIZES);
+        let found = phrase_boxes(&[said(vec![f32::INFINITY], vec![f32::INFINITY; 5])], &prompt(1), SIZES);
         assert!(found[0].iter().flat_map(|found| found.box_px).all(|edge| (0.0..=200.0).contains(&edge)));
     }
 
@@ -169,8 +179,8 @@ mod tests {
         // 40 x 40 positions of a coarse level that shrink their boxes to points.
         let count = 1600;
         let boxes_px: Vec<f32> = (0..count).flat_map(|_| [0.0, 0.0, -40.0, -40.0, 0.0]).collect();
-        let said = Said { height: 40, width: 40, logits: vec![0.0; count], boxes: boxes_px };
-        let sizes = Sizes { shown: (10_000, 10_000), picture: (10_000, 10_000) };
-        assert_eq!(boxes(&[said], &prompt(1), sizes)[0].len(), MOST_BOXES);
+        let said = GlipLevelOutputs { height: 40, width: 40, logits: vec![0.0; count], boxes: boxes_px };
+        let sizes = GlipPictureSizes { shown: (10_000, 10_000), picture: (10_000, 10_000) };
+        assert_eq!(phrase_boxes(&[said], &prompt(1), sizes)[0].len(), MOST_BOXES);
     }
 }

@@ -5,9 +5,9 @@ use serde::Deserialize;
 use std::path::Path;
 
 /// The sizes of a model.
-pub(super) struct Config {
+pub(super) struct GlipConfig {
     pub(super) swin: SwinConfig,
-    pub(super) text: bert::Config,
+    pub(super) text: bert::BertConfig,
     pub(super) head: HeadConfig,
 }
 
@@ -29,16 +29,16 @@ pub(super) struct HeadConfig {
 /// `config.json`, which only small models for tests have.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Written {
+struct GlipConfigFile {
     model_type: String,
-    swin: WrittenSwin,
-    text: bert::Sizes,
+    swin: GlipSwinConfig,
+    text: bert::BertSizes,
     head: HeadConfig,
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct WrittenSwin {
+struct GlipSwinConfig {
     width: usize,
     depths: Vec<usize>,
     heads: Vec<usize>,
@@ -48,11 +48,13 @@ struct WrittenSwin {
 /// The most rounds. GLIP-L has 8.
 const MOST_ROUNDS: usize = 16;
 
-impl Config {
+impl GlipConfig {
     /// The sizes from `config.json` of a folder, or GLIP-T's.
-    pub(super) fn read(folder: &Path) -> Result<Self, LocalError> {
-        let Some(written) = json::read_if_there::<Written>(folder, "config.json")? else { return Ok(Self::tiny()) };
-        written.config().map_err(|problem| LocalError::File {
+    pub(super) fn from_folder(folder: &Path) -> Result<Self, LocalError> {
+        let Some(written) = json::read_if_there::<GlipConfigFile>(folder, "config.json")? else {
+            return Ok(Self::for_glip_tiny());
+        };
+        written.into_config().map_err(|problem| LocalError::File {
             file: folder.join("config.json"),
             problem,
             hint: "the original checkpoints of GLIP come without this file: take it away, or correct it",
@@ -60,8 +62,8 @@ impl Config {
     }
 
     /// The sizes of GLIP-T and of its variants A, B and C.
-    fn tiny() -> Self {
-        let sizes = bert::Sizes {
+    fn for_glip_tiny() -> Self {
+        let sizes = bert::BertSizes {
             vocab_size: 30522,
             hidden_size: 768,
             num_hidden_layers: 12,
@@ -71,24 +73,24 @@ impl Config {
             type_vocab_size: 2,
         };
         let head = HeadConfig { width: 256, groups: 16, rounds: 6, fusion_heads: 8, fusion_width: 256 };
-        Self { swin: SwinConfig::tiny(), text: bert::Config::uncased(&sizes), head }
+        Self { swin: SwinConfig::for_swin_tiny(), text: bert::BertConfig::for_sizes(&sizes), head }
     }
 }
 
-impl Written {
-    fn config(self) -> Result<Config, String> {
+impl GlipConfigFile {
+    fn into_config(self) -> Result<GlipConfig, String> {
         if self.model_type != "glip" {
             return Err(format!("model_type: {} is not glip", self.model_type));
         }
-        let WrittenSwin { width, depths, heads, window } = self.swin;
-        let swin = SwinConfig { width, depths, heads, window, ..SwinConfig::tiny() };
+        let GlipSwinConfig { width, depths, heads, window } = self.swin;
+        let swin = SwinConfig { width, depths, heads, window, ..SwinConfig::for_swin_tiny() };
         if swin.depths.len() != 4 {
             return Err("swin.depths: there must be 4 stages".to_owned());
         }
-        if let Some(problem) = swin.problem() {
+        if let Some(problem) = swin.find_problem() {
             return Err(format!("swin.{problem}"));
         }
-        if let Some(problem) = self.text.problem() {
+        if let Some(problem) = self.text.find_problem() {
             return Err(format!("text.{problem}"));
         }
         let head = &self.head;
@@ -107,6 +109,6 @@ impl Written {
         if !(1..=MOST_ROUNDS).contains(&head.rounds) {
             return Err(format!("head.rounds: {} is not from 1 to {MOST_ROUNDS}", head.rounds));
         }
-        Ok(Config { swin, text: bert::Config::uncased(&self.text), head: self.head })
+        Ok(GlipConfig { swin, text: bert::BertConfig::for_sizes(&self.text), head: self.head })
     }
 }

@@ -1,30 +1,30 @@
-//! A whole GLIP as a [`Detector`]: from a picture and phrases to boxes with scores.
+//! A whole GLIP as a [`ObjectDetector`]: from a picture and phrases to boxes with scores.
 
 use super::{
     GlipFiles,
-    boxes::{Sizes, boxes},
-    config::Config,
-    head::Said,
-    model::Model,
-    prompt::{MOST_TOKENS, Prompt, prompts},
+    boxes::{GlipPictureSizes, phrase_boxes},
+    config::GlipConfig,
+    head::GlipLevelOutputs,
+    model::GlipModel,
+    prompt::{GlipPrompt, MOST_TOKENS, build_prompts},
 };
 use crate::{
-    Device, LocalError, Precision,
-    ops::conv3::Map,
-    picture::{Edges, digest, of_view},
-    text::Tokenizer,
-    weights::Weights,
+    LocalError, ModelDevice, WeightPrecision,
+    ops::conv3::FeatureMap,
+    picture::{PaddedPictureProcessor, picture_digest, picture_of_view},
+    text::TextTokenizer,
+    weights::CheckpointWeights,
 };
 use candle_core::{Result as Computed, Tensor};
 use std::path::Path;
-use wayword_core::{Detector, Found, Image, ModelError, Recent, Scoring, View};
+use wayword_core::{DetectedBox, DetectorScoring, Image, ModelError, ObjectDetector, RecentCache, View};
 
 /// The most memory for the features of recent pictures, bytes.
 pub(crate) const FEATURES_BYTES: usize = 512 << 20;
 
 /// Means and standard deviations of the bytes of blue, green and red.
-const MEAN: [f32; 3] = [103.53, 116.28, 123.675];
-const DEVIATION: [f32; 3] = [57.375, 57.12, 58.395];
+const BYTE_MEANS_BGR: [f32; 3] = [103.53, 116.28, 123.675];
+const BYTE_DEVIATIONS_BGR: [f32; 3] = [57.375, 57.12, 58.395];
 
 /// The longest edge of a picture for the model, pixels.
 const LONGEST_EDGE: usize = 1333;
@@ -34,23 +34,23 @@ const LONGEST_EDGE: usize = 1333;
 ///
 /// The features of pictures are kept, in at most 512 MiB of memory, so that further phrases only cost the time of the
 /// head.
-pub struct Glip {
+pub struct GlipDetector {
     name: String,
-    model: Model,
-    tokenizer: Tokenizer,
-    edges: Edges,
+    model: GlipModel,
+    tokenizer: TextTokenizer,
+    edges: PaddedPictureProcessor,
     most_tokens: usize,
-    device: Device,
-    seen: Recent<[u8; 32], Seen>,
+    device: ModelDevice,
+    seen: RecentCache<[u8; 32], GlipFeatures>,
 }
 
 /// A picture's features, and its size as the model sees it.
-struct Seen {
-    levels: Vec<Map>,
+struct GlipFeatures {
+    levels: Vec<FeatureMap>,
     size: (usize, usize),
 }
 
-impl Glip {
+impl GlipDetector {
     /// The usual short edge of a picture for the model, pixels.
     pub const SHORT_EDGE_PX: usize = 800;
 
@@ -62,23 +62,30 @@ impl Glip {
         name: &str,
         files: &GlipFiles,
         short_edge_px: usize,
-        device: &Device,
-        precision: Precision,
+        device: &ModelDevice,
+        precision: WeightPrecision,
     ) -> Result<Self, LocalError> {
-        let config = Config::read(files.weights.parent().unwrap_or(Path::new(".")))?;
-        let edges = Edges::new(short_edge_px, LONGEST_EDGE, 32, [2, 1, 0], MEAN, DEVIATION)?;
-        let tokenizer = Tokenizer::load(&files.tokenizer)?;
+        let config = GlipConfig::from_folder(files.weights.parent().unwrap_or(Path::new(".")))?;
+        let edges = PaddedPictureProcessor::new(
+            short_edge_px,
+            LONGEST_EDGE,
+            32,
+            [2, 1, 0],
+            BYTE_MEANS_BGR,
+            BYTE_DEVIATIONS_BGR,
+        )?;
+        let tokenizer = TextTokenizer::load(&files.tokenizer)?;
         let most_words = config.text.vocab_size();
-        if tokenizer.size() > most_words {
+        if tokenizer.vocabulary_size() > most_words {
             return Err(LocalError::File {
                 file: files.tokenizer.join("tokenizer.json"),
-                problem: format!("it has {} words, but the model knows {most_words}", tokenizer.size()),
+                problem: format!("it has {} words, but the model knows {most_words}", tokenizer.vocabulary_size()),
                 hint: "GLIP needs the tokenizer of bert-base-uncased",
             });
         }
-        let weights = Weights::of_file(&files.weights, device, precision)?;
-        let model = Model::load(&weights, &config)?;
-        let kept = (FEATURES_BYTES / model.bytes(edges.most_pixels()).max(1)).max(1);
+        let weights = CheckpointWeights::of_file(&files.weights, device, precision)?;
+        let model = GlipModel::from_weights(&weights, &config)?;
+        let kept = (FEATURES_BYTES / model.feature_bytes(edges.most_pixels()).max(1)).max(1);
         Ok(Self {
             name: name.to_owned(),
             model,
@@ -86,7 +93,7 @@ impl Glip {
             edges,
             most_tokens: MOST_TOKENS.min(config.text.longest_text()),
             device: device.clone(),
-            seen: Recent::one_at_a_time(kept),
+            seen: RecentCache::one_at_a_time(kept),
         })
     }
 
@@ -95,11 +102,11 @@ impl Glip {
     ///
     /// # Errors
     /// When the phrases are too many for one prompt, or the computation fails.
-    pub fn raw(&self, image: &Image, phrases: &[&str]) -> Result<(Vec<f32>, Vec<f32>), LocalError> {
-        let prompts = prompts(&self.tokenizer, phrases, self.most_tokens)?;
-        let [prompt] = &prompts[..] else { return Err(self.wrong("these phrases are not one prompt")) };
-        let seen = self.seen(image)?;
-        let said = self.said(&seen, prompt)?;
+    pub fn raw_outputs(&self, image: &Image, phrases: &[&str]) -> Result<(Vec<f32>, Vec<f32>), LocalError> {
+        let prompts = build_prompts(&self.tokenizer, phrases, self.most_tokens)?;
+        let [prompt] = &prompts[..] else { return Err(self.input_error("these phrases are not one prompt")) };
+        let seen = self.picture_features(image)?;
+        let said = self.head_outputs(&seen, prompt)?;
         let logits = said.iter().flat_map(|said| said.logits.iter().copied()).collect();
         Ok((logits, said.iter().flat_map(|said| said.boxes.iter().copied()).collect()))
     }
@@ -108,9 +115,9 @@ impl Glip {
     ///
     /// # Errors
     /// When a phrase is too long, the picture has no pixels, or the computation fails.
-    pub fn find(&self, image: &Image, phrases: &[&str]) -> Result<Vec<Vec<Found>>, LocalError> {
-        let prompts = prompts(&self.tokenizer, phrases, self.most_tokens)?;
-        let texts = self.texts(&prompts)?;
+    pub fn find_phrases(&self, image: &Image, phrases: &[&str]) -> Result<Vec<Vec<DetectedBox>>, LocalError> {
+        let prompts = build_prompts(&self.tokenizer, phrases, self.most_tokens)?;
+        let texts = self.encode_prompts(&prompts)?;
         self.find_all(image, phrases.len(), &prompts, &texts)
     }
 
@@ -118,77 +125,78 @@ impl Glip {
         &self,
         image: &Image,
         phrases: usize,
-        prompts: &[Prompt],
+        prompts: &[GlipPrompt],
         texts: &[Tensor],
-    ) -> Result<Vec<Vec<Found>>, LocalError> {
+    ) -> Result<Vec<Vec<DetectedBox>>, LocalError> {
         let mut found = vec![Vec::new(); phrases];
         if prompts.is_empty() {
             return Ok(found);
         }
-        let seen = self.seen(image)?;
-        let sizes = Sizes { shown: seen.size, picture: (image.width_px() as usize, image.height_px() as usize) };
+        let seen = self.picture_features(image)?;
+        let sizes =
+            GlipPictureSizes { shown: seen.size, picture: (image.width_px() as usize, image.height_px() as usize) };
         for (prompt, text) in prompts.iter().zip(texts) {
-            let said = self.model.said(&seen.levels, text).map_err(|error| self.failed(&error))?;
-            for ((number, _), of_phrase) in prompt.phrases.iter().zip(boxes(&said, prompt, sizes)) {
+            let said = self.model.head_outputs(&seen.levels, text).map_err(|error| self.compute_error(&error))?;
+            for ((number, _), of_phrase) in prompt.phrases.iter().zip(phrase_boxes(&said, prompt, sizes)) {
                 found[*number] = of_phrase;
             }
         }
         Ok(found)
     }
 
-    fn said(&self, seen: &Seen, prompt: &Prompt) -> Result<Vec<Said>, LocalError> {
-        let texts = self.texts(std::slice::from_ref(prompt))?;
-        let text = texts.first().ok_or_else(|| self.wrong("there is no prompt"))?;
-        self.model.said(&seen.levels, text).map_err(|error| self.failed(&error))
+    fn head_outputs(&self, seen: &GlipFeatures, prompt: &GlipPrompt) -> Result<Vec<GlipLevelOutputs>, LocalError> {
+        let texts = self.encode_prompts(std::slice::from_ref(prompt))?;
+        let text = texts.first().ok_or_else(|| self.input_error("there is no prompt"))?;
+        self.model.head_outputs(&seen.levels, text).map_err(|error| self.compute_error(&error))
     }
 
     /// The states of the tokens of prompts.
-    fn texts(&self, prompts: &[Prompt]) -> Result<Vec<Tensor>, LocalError> {
-        let states = prompts.iter().map(|prompt| self.model.states(&prompt.ids, &self.device.0));
-        states.collect::<Computed<_>>().map_err(|error| self.failed(&error))
+    fn encode_prompts(&self, prompts: &[GlipPrompt]) -> Result<Vec<Tensor>, LocalError> {
+        let states = prompts.iter().map(|prompt| self.model.text_states(&prompt.ids, &self.device.0));
+        states.collect::<Computed<_>>().map_err(|error| self.compute_error(&error))
     }
 
     /// The features of a picture: kept ones, or else new ones, which are then kept.
-    fn seen(&self, image: &Image) -> Result<std::sync::Arc<Seen>, LocalError> {
-        self.seen.get_or_make(digest(image), || {
-            let (pixels, size) = self.edges.tensor(image, &self.device)?;
-            let levels = self.model.levels(&pixels).map_err(|error| self.failed(&error))?;
-            Ok(Seen { levels, size })
+    fn picture_features(&self, image: &Image) -> Result<std::sync::Arc<GlipFeatures>, LocalError> {
+        self.seen.get_or_make(picture_digest(image), || {
+            let (pixels, size) = self.edges.to_tensor(image, &self.device)?;
+            let levels = self.model.feature_levels(&pixels).map_err(|error| self.compute_error(&error))?;
+            Ok(GlipFeatures { levels, size })
         })
     }
 
-    fn failed(&self, error: &candle_core::Error) -> LocalError {
-        LocalError::compute(&self.name, error)
+    fn compute_error(&self, error: &candle_core::Error) -> LocalError {
+        LocalError::compute_failed(&self.name, error)
     }
 
-    fn wrong(&self, problem: &str) -> LocalError {
+    fn input_error(&self, problem: &str) -> LocalError {
         LocalError::Compute { model: self.name.clone(), problem: problem.to_owned() }
     }
 }
 
-impl Detector for Glip {
+impl ObjectDetector for GlipDetector {
     fn name(&self) -> &str {
         &self.name
     }
 
-    fn scoring(&self) -> Scoring {
-        Scoring {
+    fn scoring(&self) -> DetectorScoring {
+        DetectorScoring {
             means: "GLIP's: root of (mean probability of the phrase's tokens times centreness), phrases joined by \". \" into one prompt",
             found_from: 0.5,
             phrases_meet: true,
         }
     }
 
-    fn detect(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<Vec<Found>>, ModelError>> {
+    fn detect_phrases(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<Vec<DetectedBox>>, ModelError>> {
         let failed = |error: LocalError| ModelError::Failed { model: self.name.clone(), reason: error.to_string() };
         let read = || {
-            let prompts = prompts(&self.tokenizer, phrases, self.most_tokens)?;
-            let texts = self.texts(&prompts)?;
+            let prompts = build_prompts(&self.tokenizer, phrases, self.most_tokens)?;
+            let texts = self.encode_prompts(&prompts)?;
             Ok((prompts, texts))
         };
         let read = read().map_err(failed);
         let one = |view: &&View| {
-            let image = of_view(view, &self.name)?;
+            let image = picture_of_view(view, &self.name)?;
             let (prompts, texts) = read.as_ref().map_err(Clone::clone)?;
             self.find_all(image, phrases.len(), prompts, texts).map_err(failed)
         };

@@ -3,11 +3,11 @@
 use super::{GLIP_LICENCE, GLIP_TOKENIZER};
 use crate::{
     LocalError,
-    hub::{Hub, ModelName, Needs, Progress},
+    hub::{DownloadProgress, ModelHub, ModelName, NeededFiles},
 };
 use std::path::{Path, PathBuf};
 
-const TOKENIZER: &str = "tokenizer.json";
+const TOKENIZER_FILE: &str = "tokenizer.json";
 
 /// The paths of a GLIP's files.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -27,20 +27,25 @@ impl GlipFiles {
     ///
     /// # Errors
     /// When the name is not that of one file, or a file cannot be had or is not the one that it should be.
-    pub fn find(hub: &Hub, name: &ModelName, progress: &dyn Progress) -> Result<Self, LocalError> {
+    pub fn find_files(hub: &ModelHub, name: &ModelName, progress: &dyn DownloadProgress) -> Result<Self, LocalError> {
         let wrong = |problem: &str| LocalError::Name { name: name.to_string(), problem: problem.to_owned() };
         if !name.is_trained() {
             return Err(wrong("GLIP is one file: hf/GLIPModel/GLIP:glip_tiny_model_o365_goldg_cc_sbu.pth"));
         }
-        let found = hub.folder(name, &Needs::default(), progress)?;
+        let found = hub.model_folder(name, &NeededFiles::default(), progress)?;
         let weights = found.file.ok_or_else(|| wrong("it names no file"))?;
         let beside = weights.parent().unwrap_or(Path::new("."));
-        let tokenizer = if beside.join(TOKENIZER).is_file() {
+        let tokenizer = if beside.join(TOKENIZER_FILE).is_file() {
             beside.to_owned()
         } else {
-            hub.folder(&ModelName::parse(GLIP_TOKENIZER)?, &Needs::default().required(&[TOKENIZER]), progress)?.path
+            hub.model_folder(
+                &ModelName::parse(GLIP_TOKENIZER)?,
+                &NeededFiles::default().with_required(&[TOKENIZER_FILE]),
+                progress,
+            )?
+            .path
         };
-        progress.told(GLIP_LICENCE);
+        progress.show_note(GLIP_LICENCE);
         Ok(Self { weights, tokenizer, identity: found.identity })
     }
 }

@@ -8,79 +8,83 @@ use super::config::HeadConfig;
 use crate::{
     LocalError,
     ops::{
-        LayerNorm, Linear,
-        matrix::{plus_times, softmax, times},
+        LayerNorm, LinearLayer,
+        matrix::{multiply_matrices, plus_times, softmax_rows},
     },
-    weights::Scope,
+    weights::WeightScope,
 };
 use candle_core::{D, Result, Tensor};
 
-const EPSILON: f64 = 1e-5;
+const NORM_EPSILON: f64 = 1e-5;
 
 /// The most columns of scores at a time. With a long text these are the columns of a few heads.
 const MOST_COLUMNS: usize = 512;
 
-pub(super) struct Fusion {
+pub(super) struct GlipFusion {
     norm_v: LayerNorm,
     norm_l: LayerNorm,
     gamma_v: Tensor,
     gamma_l: Tensor,
     /// [heads, size, width] and [heads, size, 1].
     query: (Tensor, Tensor),
-    key: Linear,
-    values_l: Linear,
+    key: LinearLayer,
+    values_l: LinearLayer,
     /// [heads, size, width] and [heads, 1, size]: the layer of the picture's values, transposed for each head.
     values_v: (Tensor, Tensor),
     /// [heads, size, width] and [width]: the output of each head, transposed.
     out_v: (Tensor, Tensor),
-    out_l: Linear,
+    out_l: LinearLayer,
     heads: usize,
     size: usize,
 }
 
-impl Fusion {
-    pub(super) fn load(weights: &Scope<'_>, config: &HeadConfig, text: usize) -> std::result::Result<Self, LocalError> {
+impl GlipFusion {
+    pub(super) fn from_weights(
+        weights: &WeightScope<'_>,
+        config: &HeadConfig,
+        text: usize,
+    ) -> std::result::Result<Self, LocalError> {
         let (heads, size, width) = (config.fusion_heads, config.fusion_width, config.width);
-        let (inner, attn) = (heads * size, weights.sub("attn"));
+        let (inner, attn) = (heads * size, weights.sub_scope("attn"));
         let pair = |name: &str, shape: [usize; 2]| {
-            let part = attn.sub(name);
-            Ok::<_, LocalError>((part.state("weight", &shape)?, part.state("bias", &shape[..1])?))
+            let part = attn.sub_scope(name);
+            Ok::<_, LocalError>((part.read_state("weight", &shape)?, part.read_state("bias", &shape[..1])?))
         };
-        let wrong = |error: candle_core::Error| attn.wrong("", &error);
+        let wrong = |error: candle_core::Error| attn.tensor_error("", &error);
         let (query, query_bias) = pair("v_proj", [inner, width])?;
         let (values, values_bias) = pair("values_v_proj", [inner, width])?;
         let (out, out_bias) = pair("out_v_proj", [width, inner])?;
         let by_head = |weight: &Tensor| weight.reshape((heads, size, width)).map_err(wrong);
         Ok(Self {
-            norm_v: weights.layer_norm("layer_norm_v", width, EPSILON)?,
-            norm_l: weights.layer_norm("layer_norm_l", text, EPSILON)?,
-            gamma_v: weights.state("gamma_v", &[width])?,
-            gamma_l: weights.state("gamma_l", &[text])?,
+            norm_v: weights.layer_norm("layer_norm_v", width, NORM_EPSILON)?,
+            norm_l: weights.layer_norm("layer_norm_l", text, NORM_EPSILON)?,
+            gamma_v: weights.read_state("gamma_v", &[width])?,
+            gamma_l: weights.read_state("gamma_l", &[text])?,
             query: (by_head(&query)?, query_bias.reshape((heads, size, 1)).map_err(wrong)?),
-            key: attn.linear("l_proj", text, inner)?,
-            values_l: attn.linear("values_l_proj", text, inner)?,
+            key: attn.read_linear("l_proj", text, inner)?,
+            values_l: attn.read_linear("values_l_proj", text, inner)?,
             values_v: (by_head(&values)?, values_bias.reshape((heads, 1, size)).map_err(wrong)?),
             out_v: (by_head(&out.t().and_then(|out| out.contiguous()).map_err(wrong)?)?, out_bias),
-            out_l: attn.linear("out_l_proj", inner, text)?,
+            out_l: attn.read_linear("out_l_proj", inner, text)?,
             heads,
             size,
         })
     }
 
     /// The new features of positions [positions, width] and of tokens [tokens, text].
-    pub(super) fn of(&self, vision: &Tensor, text: &Tensor) -> Result<(Tensor, Tensor)> {
-        let (v, l) = (self.norm_v.of(vision)?, self.norm_l.of(text)?);
+    pub(super) fn fuse_states(&self, vision: &Tensor, text: &Tensor) -> Result<(Tensor, Tensor)> {
+        let (v, l) = (self.norm_v.apply_to(vision)?, self.norm_l.apply_to(text)?);
         let tokens = l.dim(0)?;
         let split = |x: Tensor| x.reshape((tokens, self.heads, self.size))?.transpose(0, 1)?.contiguous();
         let scale = 1.0 / (self.size as f64).sqrt();
         // [heads, tokens, size]
-        let keys = (split(self.key.of(&l)?)? * scale)?;
+        let keys = (split(self.key.apply_to(&l)?)? * scale)?;
         // The features of a position are multiplied with `folded` [heads, tokens, width], then `added` [heads, tokens,
         // 1] is added.
         let folded = keys.matmul(&self.query.0)?;
         let added = keys.matmul(&self.query.1)?;
         // The values of the tokens, already multiplied by the output layer and by `gamma_v`.
-        let outputs = split(self.values_l.of(&l)?)?.matmul(&self.out_v.0)?.broadcast_mul(&self.gamma_v)?;
+        let outputs = split(self.values_l.apply_to(&l)?)?.matmul(&self.out_v.0)?.broadcast_mul(&self.gamma_v)?;
         let bias = (&self.out_v.1 * &self.gamma_v)?;
         // The residuals begin from the normed features.
         let mut new_v = v.clone();
@@ -91,16 +95,16 @@ impl Fusion {
             let of_heads = |x: &Tensor| x.narrow(0, begin, heads)?.flatten_to(1);
             let folded = of_heads(&folded)?;
             // A number that is the same for all positions does not change a softmax over them, so `added` is left out.
-            let to_text = softmax(&times(&folded, &v.t()?)?)?;
-            pooled.push(times(&to_text, &v)?.reshape((heads, tokens, v.dim(1)?))?);
+            let to_text = softmax_rows(&multiply_matrices(&folded, &v.t()?)?)?;
+            pooled.push(multiply_matrices(&to_text, &v)?.reshape((heads, tokens, v.dim(1)?))?);
             let added = of_heads(&added)?.reshape((1, heads * tokens))?;
-            let scores = times(&v, &folded.t()?)?.broadcast_add(&added)?;
-            let to_vision = softmax(&scores.reshape((v.dim(0)?, heads, tokens))?)?.flatten_from(1)?;
+            let scores = multiply_matrices(&v, &folded.t()?)?.broadcast_add(&added)?;
+            let to_vision = softmax_rows(&scores.reshape((v.dim(0)?, heads, tokens))?)?.flatten_from(1)?;
             new_v = plus_times(&new_v, &to_vision, &of_heads(&outputs)?, (begin == 0).then_some(&bias))?;
         }
         let mixed = Tensor::cat(&pooled, 0)?.matmul(&self.values_v.0.transpose(1, D::Minus1)?.contiguous()?)?;
         let mixed = mixed.broadcast_add(&self.values_v.1)?.transpose(0, 1)?.contiguous()?.flatten_from(1)?;
-        let to_l = self.out_l.of(&mixed)?;
+        let to_l = self.out_l.apply_to(&mixed)?;
         Ok((new_v, (l + to_l.broadcast_mul(&self.gamma_l)?)?))
     }
 }

@@ -1,23 +1,23 @@
 //! Means over a map for each channel. The norms, the weights of levels, and the activation depend on them.
 
 use crate::ops::{
-    conv3::Map,
+    conv3::FeatureMap,
     kernels::{is_ours, with_numbers},
-    tiles::TILE,
+    tiles::TILE_ROWS,
 };
 use candle_core::{Result, Tensor};
 use rayon::prelude::*;
 
 /// Means over the positions of a map, for each channel.
-pub(super) struct Means {
+pub(super) struct ChannelMeans {
     pub(super) plain: Vec<f64>,
     pub(super) square: Vec<f64>,
     /// The mean with the given weight for each position.
     pub(super) shared: Vec<f64>,
 }
 
-impl Means {
-    pub(super) fn of(map: &Map, shares: Option<&[f32]>) -> Result<Self> {
+impl ChannelMeans {
+    pub(super) fn from_map(map: &FeatureMap, shares: Option<&[f32]>) -> Result<Self> {
         let (count, width) = map.x.dims2()?;
         if !is_ours(&map.x) {
             let x = map.x.to_dtype(candle_core::DType::F32)?;
@@ -34,7 +34,8 @@ impl Means {
             return Ok(Self { plain, square: numbers(x.sqr()?.mean(0)?)?, shared });
         }
         with_numbers(&map.x, |x| {
-            let tiles = x.par_chunks(width * TILE).enumerate().map(|(tile, x)| Self::of_tile(tile, x, width, shares));
+            let tiles =
+                x.par_chunks(width * TILE_ROWS).enumerate().map(|(tile, x)| Self::sum_tile(tile, x, width, shares));
             let zero = || vec![0.0; 3 * width];
             let sums = tiles.reduce(zero, |mut a, b| {
                 a.iter_mut().zip(b).for_each(|(a, b)| *a += b);
@@ -48,7 +49,7 @@ impl Means {
     }
 
     /// The sums over a tile: of the numbers, of their squares, and of the weighted numbers, for each channel.
-    fn of_tile(tile: usize, x: &[f32], width: usize, shares: Option<&[f32]>) -> Vec<f64> {
+    fn sum_tile(tile: usize, x: &[f32], width: usize, shares: Option<&[f32]>) -> Vec<f64> {
         let mut sums = vec![0.0_f32; 3 * width];
         let (plain, rest) = sums.split_at_mut(width);
         let (square, shared) = rest.split_at_mut(width);
@@ -57,7 +58,7 @@ impl Means {
                 *plain += x;
                 *square += x * x;
             }
-            if let Some(share) = shares.and_then(|shares| shares.get(tile * TILE + at)) {
+            if let Some(share) = shares.and_then(|shares| shares.get(tile * TILE_ROWS + at)) {
                 shared.iter_mut().zip(row).for_each(|(shared, x)| *shared += x * share);
             }
         }

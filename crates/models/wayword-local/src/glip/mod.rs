@@ -15,7 +15,7 @@ mod pyramid;
 mod tower;
 
 pub(crate) use detector::FEATURES_BYTES;
-pub use detector::Glip;
+pub use detector::GlipDetector;
 pub use files::GlipFiles;
 
 /// The repository with the `tokenizer.json` for GLIP's texts. GLIP's checkpoints come without a tokenizer.
@@ -24,10 +24,10 @@ pub const GLIP_TOKENIZER: &str = "hf/google-bert/bert-base-uncased";
 /// A note on the licence, which a user of the weights gets once.
 pub const GLIP_LICENCE: &str = "GLIP's code has the MIT licence, but its makers state no licence for the weights: find out whether you may use them for your purpose, and do not pass them on";
 
-use crate::{LocalError, weights::Scope};
+use crate::{LocalError, weights::WeightScope};
 
 /// A small tensor as numbers on the CPU.
-fn numbers(weights: &Scope<'_>, name: &str, shape: &[usize]) -> Result<Vec<f32>, LocalError> {
+fn read_numbers(weights: &WeightScope<'_>, name: &str, shape: &[usize]) -> Result<Vec<f32>, LocalError> {
     let read = |tensor: candle_core::Tensor| tensor.to_dtype(candle_core::DType::F32)?.flatten_all()?.to_vec1();
-    read(weights.tensor(name, shape)?).map_err(|error| weights.wrong(name, &error))
+    read(weights.read_tensor(name, shape)?).map_err(|error| weights.tensor_error(name, &error))
 }

@@ -2,57 +2,64 @@
 //! joins both.
 
 use super::{
-    config::Config,
-    head::{Head, Said},
-    pyramid::{LEVELS, Pyramid},
+    config::GlipConfig,
+    head::{GlipHead, GlipLevelOutputs},
+    pyramid::{FeaturePyramid, LEVEL_COUNT},
 };
 use crate::{
     LocalError, bert,
-    ops::conv3::Map,
-    swin::{Names, Swin},
-    weights::Weights,
+    ops::conv3::FeatureMap,
+    swin::{SwinBackbone, SwinTensorNames},
+    weights::CheckpointWeights,
 };
 use candle_core::{Result, Tensor};
 
-pub(super) struct Model {
-    backbone: Swin,
-    pyramid: Pyramid,
-    text: bert::Encoder,
-    head: Head,
+pub(super) struct GlipModel {
+    backbone: SwinBackbone,
+    pyramid: FeaturePyramid,
+    text: bert::BertEncoder,
+    head: GlipHead,
     width: usize,
 }
 
-impl Model {
-    pub(super) fn load(weights: &Weights, config: &Config) -> std::result::Result<Self, LocalError> {
-        let all = weights.scope("");
+impl GlipModel {
+    pub(super) fn from_weights(
+        weights: &CheckpointWeights,
+        config: &GlipConfig,
+    ) -> std::result::Result<Self, LocalError> {
+        let all = weights.scope_under("");
         let from = [1, 2, 3].map(|stage| config.swin.width_of(stage));
         Ok(Self {
-            backbone: Swin::load(&all.sub("backbone.body"), &Names::ORIGINAL, &config.swin)?,
-            pyramid: Pyramid::load(&all.sub("backbone.fpn"), from, config.head.width)?,
-            text: bert::Encoder::load(&all.sub("language_backbone.body.model"), &config.text)?,
-            head: Head::load(&all.sub("rpn.head"), config)?,
+            backbone: SwinBackbone::from_weights(
+                &all.sub_scope("backbone.body"),
+                &SwinTensorNames::ORIGINAL,
+                &config.swin,
+            )?,
+            pyramid: FeaturePyramid::from_weights(&all.sub_scope("backbone.fpn"), from, config.head.width)?,
+            text: bert::BertEncoder::from_weights(&all.sub_scope("language_backbone.body.model"), &config.text)?,
+            head: GlipHead::from_weights(&all.sub_scope("rpn.head"), config)?,
             width: config.head.width,
         })
     }
 
     /// The levels of a picture [1, 3, height, width]. Height and width are multiples of 32.
-    pub(super) fn levels(&self, pixels: &Tensor) -> Result<Vec<Map>> {
-        self.pyramid.of(&self.backbone.of(pixels)?)
+    pub(super) fn feature_levels(&self, pixels: &Tensor) -> Result<Vec<FeatureMap>> {
+        self.pyramid.build_levels(&self.backbone.extract_features(pixels)?)
     }
 
     /// The states [tokens, size] of a text.
-    pub(super) fn states(&self, ids: &[u32], device: &candle_core::Device) -> Result<Tensor> {
-        self.text.of(&Tensor::new(ids, device)?.unsqueeze(0)?, None)?.squeeze(0)
+    pub(super) fn text_states(&self, ids: &[u32], device: &candle_core::Device) -> Result<Tensor> {
+        self.text.encode_tokens(&Tensor::new(ids, device)?.unsqueeze(0)?, None)?.squeeze(0)
     }
 
     /// The head's outputs for the levels of a picture and the states of a text.
-    pub(super) fn said(&self, levels: &[Map], text: &Tensor) -> Result<Vec<Said>> {
-        self.head.of(levels, text)
+    pub(super) fn head_outputs(&self, levels: &[FeatureMap], text: &Tensor) -> Result<Vec<GlipLevelOutputs>> {
+        self.head.run_rounds(levels, text)
     }
 
     /// Bytes of the levels of a picture of this many pixels, in 32 bits.
-    pub(super) fn bytes(&self, pixels: usize) -> usize {
-        let positions: usize = (0..LEVELS).map(|level| pixels.div_ceil(64 << (2 * level))).sum();
+    pub(super) fn feature_bytes(&self, pixels: usize) -> usize {
+        let positions: usize = (0..LEVEL_COUNT).map(|level| pixels.div_ceil(64 << (2 * level))).sum();
         positions * self.width * 4
     }
 }

@@ -1,20 +1,20 @@
 //! Puts phrases into prompts: joined by dots, as many as fit into one prompt. Example: `sink. wooden door`.
 
-use crate::{LocalError, text::Tokenizer};
+use crate::{LocalError, text::TextTokenizer};
 
 /// The most tokens of a prompt.
 pub(super) const MOST_TOKENS: usize = 256;
 
 /// A prompt of one or more phrases.
 #[derive(Debug, PartialEq, Eq)]
-pub(super) struct Prompt {
+pub(super) struct GlipPrompt {
     pub(super) ids: Vec<u32>,
     /// The number of each phrase, and the positions of its tokens. A phrase without tokens is in no prompt.
     pub(super) phrases: Vec<(usize, Vec<usize>)>,
 }
 
 /// Cleans a phrase as the original does: underscores become spaces, and words in brackets are left out.
-fn cleaned(phrase: &str) -> String {
+fn clean_phrase(phrase: &str) -> String {
     let mut depth = 0_usize;
     let kept = phrase.chars().filter(|&c| {
         match c {
@@ -35,13 +35,17 @@ fn cleaned(phrase: &str) -> String {
 ///
 /// # Errors
 /// When a phrase alone is too long for a prompt.
-pub(super) fn prompts(tokenizer: &Tokenizer, phrases: &[&str], most: usize) -> Result<Vec<Prompt>, LocalError> {
-    let cleaned: Vec<String> = phrases.iter().map(|phrase| cleaned(phrase)).collect();
-    let mut made: Vec<Prompt> = Vec::new();
+pub(super) fn build_prompts(
+    tokenizer: &TextTokenizer,
+    phrases: &[&str],
+    most: usize,
+) -> Result<Vec<GlipPrompt>, LocalError> {
+    let cleaned: Vec<String> = phrases.iter().map(|phrase| clean_phrase(phrase)).collect();
+    let mut made: Vec<GlipPrompt> = Vec::new();
     let mut begin = 0;
     while begin < cleaned.len() {
         let mut end = begin + 1;
-        let mut prompt = joined(tokenizer, &cleaned, begin, end)?;
+        let mut prompt = join_phrases(tokenizer, &cleaned, begin, end)?;
         if prompt.ids.len() > most {
             let problem = format!("the phrase {:?} has more than the {most} tokens of a prompt", phrases[begin]);
             return Err(LocalError::Compute { model: "GLIP".to_owned(), problem });
@@ -49,7 +53,7 @@ pub(super) fn prompts(tokenizer: &Tokenizer, phrases: &[&str], most: usize) -> R
         // The end is searched by bisection, because each try cuts the whole text into tokens.
         let mut step = cleaned.len() - end;
         while step > 0 {
-            let next = joined(tokenizer, &cleaned, begin, (end + step).min(cleaned.len()))?;
+            let next = join_phrases(tokenizer, &cleaned, begin, (end + step).min(cleaned.len()))?;
             if next.ids.len() <= most {
                 end = (end + step).min(cleaned.len());
                 prompt = next;
@@ -67,9 +71,14 @@ pub(super) fn prompts(tokenizer: &Tokenizer, phrases: &[&str], most: usize) -> R
 }
 
 /// Joins the phrases from `begin` to `end` to one prompt, and finds the tokens of each.
-fn joined(tokenizer: &Tokenizer, phrases: &[String], begin: usize, end: usize) -> Result<Prompt, LocalError> {
+fn join_phrases(
+    tokenizer: &TextTokenizer,
+    phrases: &[String],
+    begin: usize,
+    end: usize,
+) -> Result<GlipPrompt, LocalError> {
     let text = phrases[begin..end].join(". ");
-    let (ids, spans) = tokenizer.spans(&text)?;
+    let (ids, spans) = tokenizer.ids_and_spans(&text)?;
     let mut at = 0;
     let mut of_phrases = Vec::new();
     for (number, phrase) in phrases.iter().enumerate().take(end).skip(begin) {
@@ -81,7 +90,7 @@ fn joined(tokenizer: &Tokenizer, phrases: &[String], begin: usize, end: usize) -
         }
         at = to + 2;
     }
-    Ok(Prompt { ids, phrases: of_phrases })
+    Ok(GlipPrompt { ids, phrases: of_phrases })
 }
 
 #[cfg(test)]
@@ -89,8 +98,8 @@ mod tests {
     use super::*;
     use std::path::PathBuf;
 
-    fn tokenizer() -> Tokenizer {
-        Tokenizer::load(&PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("fixtures/glip")).unwrap()
+    fn tokenizer() -> TextTokenizer {
+        TextTokenizer::load(&PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("fixtures/glip")).unwrap()
     }
 
     #[test]
@@ -98,13 +107,13 @@ mod tests {
         for (phrase, kept) in
             [("wooden_door", "wooden door"), ("rug (small)", "rug"), (" a  lamp ", "a lamp"), ("(x)", "")]
         {
-            assert_eq!(cleaned(phrase), kept);
+            assert_eq!(clean_phrase(phrase), kept);
         }
     }
 
     #[test]
     fn a_phrase_has_the_tokens_of_its_letters() {
-        let made = prompts(&tokenizer(), &["fireplace", "", "Blue_chair"], 256).unwrap();
+        let made = build_prompts(&tokenizer(), &["fireplace", "", "Blue_chair"], 256).unwrap();
         // [CLS] fire ##place . . blue chair [SEP]
         assert_eq!(made.len(), 1);
         assert_eq!(made[0].ids.len(), 8);
@@ -118,15 +127,15 @@ mod tests {
         for (most, sizes) in
             [(3, vec![1, 1, 1, 1, 1]), (5, vec![2, 2, 1]), (7, vec![3, 2]), (10, vec![4, 1]), (11, vec![5])]
         {
-            let made = prompts(&tokenizer(), &phrases, most).unwrap();
+            let made = build_prompts(&tokenizer(), &phrases, most).unwrap();
             assert_eq!(made.iter().map(|prompt| prompt.phrases.len()).collect::<Vec<_>>(), sizes, "{most}");
             let numbers: Vec<usize> = made.iter().flat_map(|prompt| prompt.phrases.iter().map(|(at, _)| *at)).collect();
             assert_eq!(numbers, [0, 1, 2, 3, 4]);
             assert!(made.iter().all(|prompt| prompt.ids.len() <= most));
         }
-        let error = prompts(&tokenizer(), &["sink", "a wooden door"], 4).unwrap_err().to_string();
+        let error = build_prompts(&tokenizer(), &["sink", "a wooden door"], 4).unwrap_err().to_string();
         assert!(error.contains("a wooden door"), "{error}");
-        assert!(prompts(&tokenizer(), &[], 256).unwrap().is_empty());
-        assert!(prompts(&tokenizer(), &["", "()"], 256).unwrap().is_empty());
+        assert!(build_prompts(&tokenizer(), &[], 256).unwrap().is_empty());
+        assert!(build_prompts(&tokenizer(), &["", "()"], 256).unwrap().is_empty());
     }
 }

@@ -7,29 +7,29 @@
 //! lines. All these numbers follow from means over the map. So a map is read only twice: for its means, and to write
 //! the result.
 
-use super::{bend::Enlarged, config::HeadConfig, means::Means, numbers};
+use super::{bend::MapEnlargement, config::HeadConfig, means::ChannelMeans, read_numbers};
 use crate::{
     LocalError,
     ops::{
-        conv3::{BENDS, Bends, Conv3, Map, mix, rows_between},
+        conv3::{Conv3Layer, FeatureMap, OFFSET_NUMBERS_PER_POSITION, TapOffsets, mix_rows, rows_between},
         kernels::{is_ours, with_numbers},
-        tiles::{TILE, each_tile, room},
+        tiles::{TILE_ROWS, each_tile, split_memory},
     },
-    weights::Scope,
+    weights::WeightScope,
 };
 use candle_core::{Result, Tensor};
 use rayon::prelude::*;
 
-const EPSILON: f64 = 1e-5;
+const GROUP_NORM_EPSILON: f64 = 1e-5;
 
 /// The index of the convolution by where its input comes from: the next coarser level, the same, or the next finer one.
-const ABOVE: usize = 0;
-const SAME: usize = 1;
-const BELOW: usize = 2;
+const CONV_FROM_COARSER: usize = 0;
+const CONV_FROM_SAME: usize = 1;
+const CONV_FROM_FINER: usize = 2;
 
-pub(super) struct Tower {
-    convs: [Normed; 3],
-    bends: Conv3,
+pub(super) struct GlipTower {
+    convs: [NormedConvolution; 3],
+    bends: Conv3Layer,
     /// The layer that computes the weight of a result from the means of its channels.
     weighs: (Vec<f32>, f32),
     /// The two layers that compute the activation's coefficients: rows of weights, and a bias.
@@ -40,17 +40,17 @@ pub(super) struct Tower {
 }
 
 /// A convolution, and the norm over groups of channels that follows it.
-struct Normed {
-    conv: Conv3,
+struct NormedConvolution {
+    conv: Conv3Layer,
     weight: Vec<f32>,
     bias: Vec<f32>,
 }
 
 /// The result of one convolution, with the coefficients of its norm.
-struct Seen {
-    map: Map,
+struct ConvolvedLevel {
+    map: FeatureMap,
     /// How the map is enlarged to the size of the level, if it comes from a coarser one.
-    enlarged: Option<Enlarged>,
+    enlarged: Option<MapEnlargement>,
     /// For each channel: the norm's factor, the number that it adds, and the mean after the norm.
     scale: Vec<f32>,
     shift: Vec<f32>,
@@ -58,29 +58,35 @@ struct Seen {
 }
 
 /// The activation's coefficients for each channel: slope and height of two lines. The larger of both lines counts.
-struct Lines([Vec<f32>; 4]);
+struct ActivationLines([Vec<f32>; 4]);
 
-impl Tower {
-    pub(super) fn load(weights: &Scope<'_>, config: &HeadConfig) -> std::result::Result<Self, LocalError> {
+impl GlipTower {
+    pub(super) fn from_weights(
+        weights: &WeightScope<'_>,
+        config: &HeadConfig,
+    ) -> std::result::Result<Self, LocalError> {
         let width = config.width;
         let conv = |at: usize| {
-            let part = weights.sub("DyConv").sub(at);
-            Ok::<_, LocalError>(Normed {
-                conv: Conv3::load(&part.sub("conv"), width, width)?,
-                weight: numbers(&part, "bn.weight", &[width])?,
-                bias: numbers(&part, "bn.bias", &[width])?,
+            let part = weights.sub_scope("DyConv").sub_scope(at);
+            Ok::<_, LocalError>(NormedConvolution {
+                conv: Conv3Layer::from_weights(&part.sub_scope("conv"), width, width)?,
+                weight: read_numbers(&part, "bn.weight", &[width])?,
+                bias: read_numbers(&part, "bn.bias", &[width])?,
             })
         };
-        let bias = numbers(weights, "AttnConv.1.bias", &[1])?;
-        let relu = weights.sub("relu.fc");
+        let bias = read_numbers(weights, "AttnConv.1.bias", &[1])?;
+        let relu = weights.sub_scope("relu.fc");
         let layer = |name: &str, inputs: usize, outputs: usize| {
-            let part = relu.sub(name);
-            Ok::<_, LocalError>((numbers(&part, "weight", &[outputs, inputs])?, numbers(&part, "bias", &[outputs])?))
+            let part = relu.sub_scope(name);
+            Ok::<_, LocalError>((
+                read_numbers(&part, "weight", &[outputs, inputs])?,
+                read_numbers(&part, "bias", &[outputs])?,
+            ))
         };
         Ok(Self {
-            convs: [conv(ABOVE)?, conv(SAME)?, conv(BELOW)?],
-            bends: Conv3::load(&weights.sub("offset"), width, BENDS)?,
-            weighs: (numbers(weights, "AttnConv.1.weight", &[1, width, 1, 1])?, bias[0]),
+            convs: [conv(CONV_FROM_COARSER)?, conv(CONV_FROM_SAME)?, conv(CONV_FROM_FINER)?],
+            bends: Conv3Layer::from_weights(&weights.sub_scope("offset"), width, OFFSET_NUMBERS_PER_POSITION)?,
+            weighs: (read_numbers(weights, "AttnConv.1.weight", &[1, width, 1, 1])?, bias[0]),
             squeeze: layer("0", width, width / 4)?,
             widen: layer("2", width / 4, 4 * width)?,
             groups: config.groups,
@@ -89,70 +95,77 @@ impl Tower {
     }
 
     /// Computes the next levels from levels, the finest first.
-    pub(super) fn of(&self, levels: &[Map]) -> Result<Vec<Map>> {
-        (0..levels.len()).map(|at| self.level(levels, at)).collect()
+    pub(super) fn update_levels(&self, levels: &[FeatureMap]) -> Result<Vec<FeatureMap>> {
+        (0..levels.len()).map(|at| self.update_level(levels, at)).collect()
     }
 
-    fn level(&self, levels: &[Map], at: usize) -> Result<Map> {
+    fn update_level(&self, levels: &[FeatureMap], at: usize) -> Result<FeatureMap> {
         let level = &levels[at];
-        let bends = Bends::new(&self.bends.plain(level, 1)?)?;
-        let mut seen = vec![self.see(SAME, level, 1, &bends, None)?];
+        let bends = TapOffsets::new(&self.bends.convolve_plain(level, 1)?)?;
+        let mut seen = vec![self.convolve_map(CONV_FROM_SAME, level, 1, &bends, None)?];
         if let Some(finer) = at.checked_sub(1).and_then(|below| levels.get(below)) {
-            seen.push(self.see(BELOW, finer, 2, &bends, None)?);
+            seen.push(self.convolve_map(CONV_FROM_FINER, finer, 2, &bends, None)?);
         }
         if let Some(coarser) = levels.get(at + 1) {
-            seen.push(self.see(ABOVE, coarser, 1, &bends, Some(level))?);
+            seen.push(self.convolve_map(CONV_FROM_COARSER, coarser, 1, &bends, Some(level))?);
         }
         // The weighted mean of the results. It is a sum of maps, each with a factor, plus one number for each channel.
         let mut height = vec![0.0; self.width];
         let mut mean = vec![0.0; self.width];
         let count = seen.len() as f32;
         for seen in &mut seen {
-            let weight = self.weight(&seen.mean) / count;
+            let weight = self.result_weight(&seen.mean) / count;
             seen.scale.iter_mut().for_each(|scale| *scale *= weight);
             height.iter_mut().zip(&seen.shift).for_each(|(height, shift)| *height += shift * weight);
             mean.iter_mut().zip(&seen.mean).for_each(|(sum, mean)| *sum += mean * weight);
         }
-        let lines = self.lines(&mean);
+        let lines = self.activation_lines(&mean);
         let x = if is_ours(&level.x) {
-            self.joined(&seen, &height, &lines, level)?
+            self.join_results(&seen, &height, &lines, level)?
         } else {
             on_device(&seen, &height, &lines, level)?
         };
-        Ok(Map { x, ..*level })
+        Ok(FeatureMap { x, ..*level })
     }
 
     /// Convolves a map, and computes the coefficients of the norm that follows.
-    fn see(&self, which: usize, map: &Map, stride: usize, bends: &Bends, like: Option<&Map>) -> Result<Seen> {
-        let Normed { conv, weight, bias } = &self.convs[which];
-        let map = conv.deformed(map, stride, bends)?;
-        let enlarged = like.map(|like| Enlarged::new(&map, like.height, like.width));
-        let shares = enlarged.as_ref().map(|enlarged| enlarged.shares(&map));
-        let Means { plain, square, shared } = Means::of(&map, shares.as_deref())?;
+    fn convolve_map(
+        &self,
+        which: usize,
+        map: &FeatureMap,
+        stride: usize,
+        bends: &TapOffsets,
+        like: Option<&FeatureMap>,
+    ) -> Result<ConvolvedLevel> {
+        let NormedConvolution { conv, weight, bias } = &self.convs[which];
+        let map = conv.convolve_deformed(map, stride, bends)?;
+        let enlarged = like.map(|like| MapEnlargement::new(&map, like.height, like.width));
+        let shares = enlarged.as_ref().map(|enlarged| enlarged.mean_shares(&map));
+        let ChannelMeans { plain, square, shared } = ChannelMeans::from_map(&map, shares.as_deref())?;
         let size = self.width / self.groups;
         let (mut scale, mut shift, mut mean) = (weight.clone(), bias.clone(), vec![0.0; self.width]);
         for group in 0..self.groups {
             let channels = group * size..(group + 1) * size;
             let of_group = |means: &[f64]| means[channels.clone()].iter().sum::<f64>() / size as f64;
             let (centre, square) = (of_group(&plain), of_group(&square));
-            let by = 1.0 / ((square - centre * centre).max(0.0) + EPSILON).sqrt();
+            let by = 1.0 / ((square - centre * centre).max(0.0) + GROUP_NORM_EPSILON).sqrt();
             for channel in channels.clone() {
                 scale[channel] *= by as f32;
                 shift[channel] -= (centre * f64::from(scale[channel])) as f32;
                 mean[channel] = (shared[channel] * f64::from(scale[channel])) as f32 + shift[channel];
             }
         }
-        Ok(Seen { map, enlarged, scale, shift, mean })
+        Ok(ConvolvedLevel { map, enlarged, scale, shift, mean })
     }
 
     /// The weight of a result, from the means of its channels.
-    fn weight(&self, mean: &[f32]) -> f32 {
+    fn result_weight(&self, mean: &[f32]) -> f32 {
         let sum: f32 = self.weighs.0.iter().zip(mean).map(|(weight, mean)| weight * mean).sum();
         hard_sigmoid((sum + self.weighs.1).max(0.0))
     }
 
     /// The activation's coefficients, from the means of the channels.
-    fn lines(&self, mean: &[f32]) -> Lines {
+    fn activation_lines(&self, mean: &[f32]) -> ActivationLines {
         let layer = |(weight, bias): &(Vec<f32>, Vec<f32>), x: &[f32]| -> Vec<f32> {
             let row = |(row, bias): (&[f32], &f32)| row.iter().zip(x).map(|(a, b)| a * b).sum::<f32>() + bias;
             weight.chunks_exact(x.len()).zip(bias).map(row).collect()
@@ -162,22 +175,28 @@ impl Tower {
         let part = |at: usize, by: f32, and: f32| {
             made[at * self.width..(at + 1) * self.width].iter().map(|number| number * by + and).collect()
         };
-        Lines([part(0, 2.0, 1.0), part(1, 1.0, 0.0), part(2, 2.0, 0.0), part(3, 1.0, 0.0)])
+        ActivationLines([part(0, 2.0, 1.0), part(1, 1.0, 0.0), part(2, 2.0, 0.0), part(3, 1.0, 0.0)])
     }
 
     /// The sum of the results after the activation, in one pass on the processor.
-    fn joined(&self, seen: &[Seen], height: &[f32], lines: &Lines, level: &Map) -> Result<Tensor> {
+    fn join_results(
+        &self,
+        seen: &[ConvolvedLevel],
+        height: &[f32],
+        lines: &ActivationLines,
+        level: &FeatureMap,
+    ) -> Result<Tensor> {
         let width = self.width;
-        let mut y = vec![0.0; level.count() * width];
+        let mut y = vec![0.0; level.position_count() * width];
         for (at, seen) in seen.iter().enumerate() {
             with_numbers(&seen.map.x, |x| {
                 each_tile(&mut y, width, |from, y, memory| {
-                    let [between] = room(memory, [width]);
+                    let [between] = split_memory(memory, [width]);
                     for (at_row, y) in y.chunks_exact_mut(width).enumerate() {
                         let row = match &seen.enlarged {
                             None => &x[(from + at_row) * width..(from + at_row + 1) * width],
                             Some(enlarged) => {
-                                mix(x, width, &enlarged.corners(from + at_row), between);
+                                mix_rows(x, width, &enlarged.corner_shares(from + at_row), between);
                                 &*between
                             }
                         };
@@ -192,18 +211,18 @@ impl Tower {
             })?;
         }
         let [slope, at, other_slope, other_at] = &lines.0;
-        y.par_chunks_mut(width * TILE).flat_map_iter(|rows| rows.chunks_exact_mut(width)).for_each(|row| {
+        y.par_chunks_mut(width * TILE_ROWS).flat_map_iter(|rows| rows.chunks_exact_mut(width)).for_each(|row| {
             let lines = slope.iter().zip(at).zip(other_slope.iter().zip(other_at));
             for (y, ((slope, at), (other_slope, other_at))) in row.iter_mut().zip(lines) {
                 *y = (*y * slope + at).max(*y * other_slope + other_at);
             }
         });
-        Tensor::from_vec(y, (level.count(), width), level.x.device())
+        Tensor::from_vec(y, (level.position_count(), width), level.x.device())
     }
 }
 
 /// The sum of the results after the activation, with candle's operators.
-fn on_device(seen: &[Seen], height: &[f32], lines: &Lines, level: &Map) -> Result<Tensor> {
+fn on_device(seen: &[ConvolvedLevel], height: &[f32], lines: &ActivationLines, level: &FeatureMap) -> Result<Tensor> {
     let (device, dtype) = (level.x.device(), level.x.dtype());
     let row = |numbers: &[f32]| Tensor::from_slice(numbers, (1, numbers.len()), device)?.to_dtype(dtype);
     let mut sum = row(height)?;
@@ -211,7 +230,8 @@ fn on_device(seen: &[Seen], height: &[f32], lines: &Lines, level: &Map) -> Resul
         let x = match &seen.enlarged {
             None => seen.map.x.clone(),
             Some(enlarged) => {
-                let points: Vec<_> = (0..level.count()).map(|position| enlarged.corners(position)).collect();
+                let points: Vec<_> =
+                    (0..level.position_count()).map(|position| enlarged.corner_shares(position)).collect();
                 rows_between(&seen.map.x, &points, 4, device)?
             }
         };

@@ -13,13 +13,13 @@ use std::{
 };
 
 /// The most levels of folders that are searched. Snapshots and references have few.
-const DEEPEST: usize = 8;
+const MAX_FOLDER_DEPTH: usize = 8;
 
 /// The hash of a commit: 40 hex digits in lower case. It is checked strictly, because it names a folder.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Commit(String);
+pub(super) struct CommitHash(String);
 
-impl Commit {
+impl CommitHash {
     pub(super) fn parse(text: &str) -> Option<Self> {
         is_hex(text, 40).then(|| Self(text.to_owned()))
     }
@@ -56,7 +56,7 @@ impl BlobHash {
     }
 
     /// Whether a file has this hash.
-    pub(super) fn fits(&self, path: &Path) -> io::Result<bool> {
+    pub(super) fn matches_file(&self, path: &Path) -> io::Result<bool> {
         let file = File::open(path)?;
         let length = file.metadata()?.len();
         let mut file = BufReader::with_capacity(1 << 20, file);
@@ -95,22 +95,22 @@ impl RepoFolder {
     }
 
     /// The folder of a commit's files.
-    pub(super) fn snapshot(&self, commit: &str) -> PathBuf {
+    pub(super) fn snapshot_folder(&self, commit: &str) -> PathBuf {
         self.root.join("snapshots").join(commit)
     }
 
     /// The path of the file with this hash.
-    pub(super) fn blob(&self, hash: &BlobHash) -> PathBuf {
+    pub(super) fn blob_path(&self, hash: &BlobHash) -> PathBuf {
         self.root.join("blobs").join(hash.as_str())
     }
 
     /// The commit that a revision (a branch, tag or commit) pointed to when it was fetched.
-    pub(super) fn commit_of(&self, revision: &str) -> Option<Commit> {
-        Commit::parse(revision).or_else(|| read_ref(&self.root.join("refs").join(revision)))
+    pub(super) fn commit_of(&self, revision: &str) -> Option<CommitHash> {
+        CommitHash::parse(revision).or_else(|| read_ref(&self.root.join("refs").join(revision)))
     }
 
     /// Records the commit that a revision points to.
-    pub(super) fn keep_ref(&self, revision: &str, commit: &Commit) -> Result<(), LocalError> {
+    pub(super) fn keep_ref(&self, revision: &str, commit: &CommitHash) -> Result<(), LocalError> {
         if self.commit_of(revision).as_ref() == Some(commit) {
             return Ok(());
         }
@@ -118,31 +118,31 @@ impl RepoFolder {
         make_parent(&path)?;
         // The file is replaced as a whole, because another process may read it at the same time.
         let fresh = fresh_beside(&path);
-        fs::write(&fresh, commit.as_str()).map_err(|error| LocalError::io(&fresh, "write", error))?;
-        fs::rename(&fresh, &path).map_err(|error| LocalError::io(&path, "write", error))
+        fs::write(&fresh, commit.as_str()).map_err(|error| LocalError::from_io(&fresh, "write", error))?;
+        fs::rename(&fresh, &path).map_err(|error| LocalError::from_io(&path, "write", error))
     }
 
     /// Whether a commit is known to lack a file.
-    pub(super) fn is_absent(&self, commit: &Commit, file: &str) -> bool {
-        self.absent(commit, file).exists()
+    pub(super) fn is_absent(&self, commit: &CommitHash, file: &str) -> bool {
+        self.absence_path(commit, file).exists()
     }
 
     /// Records that a commit lacks a file, so that the hub is not asked again.
-    pub(super) fn keep_absent(&self, commit: &Commit, file: &str) -> Result<(), LocalError> {
-        let path = self.absent(commit, file);
+    pub(super) fn keep_absent(&self, commit: &CommitHash, file: &str) -> Result<(), LocalError> {
+        let path = self.absence_path(commit, file);
         make_parent(&path)?;
-        File::create(&path).map(drop).map_err(|error| LocalError::io(&path, "write", error))
+        File::create(&path).map(drop).map_err(|error| LocalError::from_io(&path, "write", error))
     }
 
-    fn absent(&self, commit: &Commit, file: &str) -> PathBuf {
+    fn absence_path(&self, commit: &CommitHash, file: &str) -> PathBuf {
         self.root.join(".no_exist").join(commit.as_str()).join(file)
     }
 
     /// Waits until no other process fetches the file of a hash. Others wait until the returned file is closed.
-    pub(super) fn lock(&self, hash: &BlobHash, waiting: impl FnOnce()) -> Result<File, LocalError> {
+    pub(super) fn lock_blob(&self, hash: &BlobHash, waiting: impl FnOnce()) -> Result<File, LocalError> {
         let path = self.locks.join(format!("{}.lock", hash.as_str()));
         make_parent(&path)?;
-        let wrong = |error| LocalError::io(&path, "lock", error);
+        let wrong = |error| LocalError::from_io(&path, "lock", error);
         let file = OpenOptions::new().create(true).append(true).open(&path).map_err(wrong)?;
         let locked = match file.try_lock() {
             Err(TryLockError::WouldBlock) => {
@@ -161,24 +161,25 @@ impl RepoFolder {
     }
 
     /// Puts a blob into a snapshot under a file's name.
-    pub(super) fn link(
+    pub(super) fn link_blob(
         &self,
         hash: &BlobHash,
-        commit: &Commit,
+        commit: &CommitHash,
         file: &str,
         symlinks: bool,
     ) -> Result<PathBuf, LocalError> {
-        let (blob, path) = (self.blob(hash), self.snapshot(commit.as_str()).join(file));
+        let (blob, path) = (self.blob_path(hash), self.snapshot_folder(commit.as_str()).join(file));
         if path.is_file() {
             return Ok(path);
         }
         make_parent(&path)?;
-        let io = |error| LocalError::io(&path, "write", error);
+        let io = |error| LocalError::from_io(&path, "write", error);
         // The link is made under another name and then moved, because another process may make it at the same time.
         let fresh = fresh_beside(&path);
         // From snapshots/COMMIT/FILE, the link goes up two folders, and one more for each folder in FILE.
         let up = "../".repeat(2 + file.matches('/').count());
-        let links = || symlink(Path::new(&format!("{up}blobs/{}", hash.as_str())), &fresh).is_ok() && fresh.is_file();
+        let links =
+            || make_symlink(Path::new(&format!("{up}blobs/{}", hash.as_str())), &fresh).is_ok() && fresh.is_file();
         if !(symlinks && links()) {
             // A broken link is removed first, because the copy would be written through it.
             let _ = fs::remove_file(&fresh);
@@ -190,20 +191,23 @@ impl RepoFolder {
 }
 
 /// The commit that a file of `refs` names.
-fn read_ref(path: &Path) -> Option<Commit> {
+fn read_ref(path: &Path) -> Option<CommitHash> {
     let mut text = String::new();
     File::open(path).ok()?.take(100).read_to_string(&mut text).ok()?;
-    Commit::parse(text.trim())
+    CommitHash::parse(text.trim())
 }
 
 /// A new path in the same folder, which no other thread or process uses.
 fn fresh_beside(path: &Path) -> PathBuf {
-    static MADE: AtomicU64 = AtomicU64::new(0);
-    beside(path, &format!(".{}-{}.tmp", std::process::id(), MADE.fetch_add(1, Ordering::Relaxed)))
+    static TEMPORARY_FILE_COUNT: AtomicU64 = AtomicU64::new(0);
+    path_with_suffix(
+        path,
+        &format!(".{}-{}.tmp", std::process::id(), TEMPORARY_FILE_COUNT.fetch_add(1, Ordering::Relaxed)),
+    )
 }
 
 /// The path with `end` added to its file name.
-pub(super) fn beside(path: &Path, end: &str) -> PathBuf {
+pub(super) fn path_with_suffix(path: &Path, end: &str) -> PathBuf {
     let mut text = path.as_os_str().to_owned();
     text.push(end);
     PathBuf::from(text)
@@ -212,16 +216,16 @@ pub(super) fn beside(path: &Path, end: &str) -> PathBuf {
 /// Makes the folder that a path is in.
 pub(super) fn make_parent(path: &Path) -> Result<(), LocalError> {
     let Some(folder) = path.parent() else { return Ok(()) };
-    fs::create_dir_all(folder).map_err(|error| LocalError::io(folder, "make the folder", error))
+    fs::create_dir_all(folder).map_err(|error| LocalError::from_io(folder, "make the folder", error))
 }
 
 #[cfg(unix)]
-fn symlink(to: &Path, at: &Path) -> io::Result<()> {
+fn make_symlink(to: &Path, at: &Path) -> io::Result<()> {
     std::os::unix::fs::symlink(to, at)
 }
 
 #[cfg(windows)]
-fn symlink(to: &Path, at: &Path) -> io::Result<()> {
+fn make_symlink(to: &Path, at: &Path) -> io::Result<()> {
     std::os::windows::fs::symlink_file(to, at)
 }
 
@@ -243,15 +247,19 @@ pub struct CachedModel {
 }
 
 /// All models with a valid name. Models without an organisation, datasets and spaces are left out.
-pub(super) fn list(cache: &Path) -> Result<Vec<CachedModel>, LocalError> {
+pub(super) fn list_models(cache: &Path) -> Result<Vec<CachedModel>, LocalError> {
     let mut models = Vec::new();
-    for folder in entries(cache)? {
-        let Some((org, name)) = folder.file_name().and_then(|name| name.to_str()).and_then(repo) else { continue };
-        let refs = refs(&folder.join("refs"))?;
-        for snapshot in entries(&folder.join("snapshots"))? {
+    for folder in list_entries(cache)? {
+        let Some((org, name)) = folder.file_name().and_then(|name| name.to_str()).and_then(parse_repo_folder) else {
+            continue;
+        };
+        let refs = read_refs(&folder.join("refs"))?;
+        for snapshot in list_entries(&folder.join("snapshots"))? {
             let commit = snapshot.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-            let lengths: Vec<u64> =
-                files(&snapshot, DEEPEST)?.iter().filter_map(|file| Some(fs::metadata(file).ok()?.len())).collect();
+            let lengths: Vec<u64> = list_files(&snapshot, MAX_FOLDER_DEPTH)?
+                .iter()
+                .filter_map(|file| Some(fs::metadata(file).ok()?.len()))
+                .collect();
             if lengths.is_empty() {
                 continue;
             }
@@ -270,34 +278,34 @@ pub(super) fn list(cache: &Path) -> Result<Vec<CachedModel>, LocalError> {
 }
 
 /// The organisation and name of a model's folder.
-fn repo(folder: &str) -> Option<(&str, &str)> {
+fn parse_repo_folder(folder: &str) -> Option<(&str, &str)> {
     let (org, name) = folder.strip_prefix("models--")?.split_once("--")?;
     (is_part(org) && is_part(name)).then_some((org, name))
 }
 
 /// Branches and tags with their commits, in the order of their names.
-fn refs(folder: &Path) -> Result<Vec<(String, String)>, LocalError> {
+fn read_refs(folder: &Path) -> Result<Vec<(String, String)>, LocalError> {
     let name = |file: &Path| Some(file.strip_prefix(folder).ok()?.to_str()?.replace('\\', "/"));
     let entry = |file: PathBuf| Some((name(&file)?, read_ref(&file)?.0));
-    Ok(files(folder, DEEPEST)?.into_iter().filter_map(entry).collect())
+    Ok(list_files(folder, MAX_FOLDER_DEPTH)?.into_iter().filter_map(entry).collect())
 }
 
 /// Every file below a folder, in the order of their paths.
-fn files(folder: &Path, deepest: usize) -> Result<Vec<PathBuf>, LocalError> {
+fn list_files(folder: &Path, deepest: usize) -> Result<Vec<PathBuf>, LocalError> {
     let mut found = Vec::new();
-    for path in entries(folder)? {
+    for path in list_entries(folder)? {
         if !path.is_dir() {
             found.push(path);
         } else if deepest > 0 {
-            found.extend(files(&path, deepest - 1)?);
+            found.extend(list_files(&path, deepest - 1)?);
         }
     }
     Ok(found)
 }
 
 /// The entries of a folder, sorted; none if the folder does not exist.
-fn entries(folder: &Path) -> Result<Vec<PathBuf>, LocalError> {
-    let wrong = |error| LocalError::io(folder, "read", error);
+fn list_entries(folder: &Path) -> Result<Vec<PathBuf>, LocalError> {
+    let wrong = |error| LocalError::from_io(folder, "read", error);
     let read = match fs::read_dir(folder) {
         Ok(read) => read,
         Err(error) if matches!(error.kind(), io::ErrorKind::NotFound | io::ErrorKind::NotADirectory) => {

@@ -5,10 +5,10 @@
 
 use super::{
     HubConfig,
-    cache::{BlobHash, Commit},
-    config::Token,
+    cache::{BlobHash, CommitHash},
+    config::HubToken,
     name::OnHub,
-    trouble::{Patience, SEE_WHO_ANSWERS, TRY_LATER, Trouble, is_absence, text},
+    trouble::{RequestFailure, RetryPatience, SEE_WHO_ANSWERS, TRY_LATER, header_text, is_absence},
 };
 use crate::LocalError;
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
@@ -22,35 +22,35 @@ use ureq::{
 const MOST_REDIRECTS: usize = 10;
 
 /// Longest wait for a connection.
-const CONNECT: Duration = Duration::from_secs(10);
+const CONNECT_TIMEOUT: Duration = Duration::from_secs(10);
 
 /// Longest silence of a server. There is no limit on a whole download, because a model may be large.
-const SILENCE: Duration = Duration::from_secs(60);
+const SILENCE_TIMEOUT: Duration = Duration::from_secs(60);
 
 /// The characters that are percent-encoded in one segment of a path: all except those that any address may contain.
 const IN_A_SEGMENT: &AsciiSet = &NON_ALPHANUMERIC.remove(b'-').remove(b'_').remove(b'.').remove(b'~');
 
 /// The hub's connections.
 #[derive(Debug)]
-pub(super) struct Client {
+pub(super) struct HubClient {
     agent: Agent,
-    endpoint: Address,
-    token: Option<Token>,
+    endpoint: WebAddress,
+    token: Option<HubToken>,
     first_wait: Duration,
 }
 
 /// The hub's answer about a file.
 #[derive(Debug)]
-pub(super) enum Answer {
-    There(Facts),
+pub(super) enum HubFileAnswer {
+    There(HubFileFacts),
     /// The model lacks the file at this commit, if the hub names a commit.
-    Absent(Option<Commit>),
+    Absent(Option<CommitHash>),
 }
 
 /// The facts about a file before it is fetched.
 #[derive(Debug)]
-pub(super) struct Facts {
-    pub(super) commit: Commit,
+pub(super) struct HubFileFacts {
+    pub(super) commit: CommitHash,
     pub(super) hash: BlobHash,
     /// Bytes.
     pub(super) size: Option<u64>,
@@ -58,30 +58,31 @@ pub(super) struct Facts {
 
 /// The facts that the answers along a chain of redirects have given so far.
 #[derive(Default)]
-struct Heard {
-    commit: Option<Commit>,
+struct RedirectFacts {
+    commit: Option<CommitHash>,
     /// The etag and the size of the file that a redirect leads to.
     linked: Option<(String, Option<u64>)>,
 }
 
 #[derive(Clone, Copy)]
-enum Method {
+enum HubMethod {
     Head,
     Get { from: u64 },
 }
 
-impl Client {
+impl HubClient {
     pub(super) fn new(config: &HubConfig) -> Result<Self, LocalError> {
-        let endpoint = Address::endpoint(&config.endpoint)
-            .map_err(|problem| LocalError::download("HF_ENDPOINT", problem, "write it like https://huggingface.co"))?;
+        let endpoint = WebAddress::parse_endpoint(&config.endpoint).map_err(|problem| {
+            LocalError::download_failed("HF_ENDPOINT", problem, "write it like https://huggingface.co")
+        })?;
         let settings = Config::builder()
             .http_status_as_error(false)
             // Redirects are followed here, because the token must not go to another server, and a redirect's headers
             // are needed.
             .max_redirects(0)
-            .timeout_connect(Some(CONNECT))
-            .timeout_recv_response(Some(SILENCE))
-            .timeout_per_read(Some(SILENCE))
+            .timeout_connect(Some(CONNECT_TIMEOUT))
+            .timeout_recv_response(Some(SILENCE_TIMEOUT))
+            .timeout_per_read(Some(SILENCE_TIMEOUT))
             .user_agent(concat!("wayword/", env!("CARGO_PKG_VERSION")))
             // No compression, because the hash is that of the uncompressed file.
             .accept_encoding("identity")
@@ -93,47 +94,53 @@ impl Client {
         Ok(Self { agent: Agent::new_with_config(settings), endpoint, token, first_wait: config.first_wait })
     }
 
-    pub(super) fn patience(&self) -> Patience {
-        Patience::new(self.first_wait)
+    pub(super) fn new_patience(&self) -> RetryPatience {
+        RetryPatience::new(self.first_wait)
     }
 
     /// The address of a file at a revision.
-    pub(super) fn address(&self, model: &OnHub, revision: &str, file: &str) -> String {
-        self.endpoint.resolve(model, revision, file)
+    pub(super) fn file_address(&self, model: &OnHub, revision: &str, file: &str) -> String {
+        self.endpoint.file_address(model, revision, file)
     }
 
     /// Asks the hub about a file at a revision.
     ///
     /// # Errors
     /// When the hub refuses or cannot be reached.
-    pub(super) fn ask(&self, model: &OnHub, revision: &str, file: &str) -> Result<Answer, LocalError> {
-        let address = self.address(model, revision, file);
-        let mut patience = self.patience();
+    pub(super) fn ask_about_file(
+        &self,
+        model: &OnHub,
+        revision: &str,
+        file: &str,
+    ) -> Result<HubFileAnswer, LocalError> {
+        let address = self.file_address(model, revision, file);
+        let mut patience = self.new_patience();
         loop {
             match self.ask_once(model, &address) {
                 Ok(answer) => return Ok(answer),
-                Err(trouble) => patience.again(trouble, &address)?,
+                Err(trouble) => patience.wait_or_give_up(trouble, &address)?,
             }
         }
     }
 
-    fn ask_once(&self, model: &OnHub, address: &str) -> Result<Answer, Trouble> {
-        let mut heard = Heard::default();
-        let response = self.follow(Method::Head, address, |headers| heard.hear(headers))?;
+    fn ask_once(&self, model: &OnHub, address: &str) -> Result<HubFileAnswer, RequestFailure> {
+        let mut heard = RedirectFacts::default();
+        let response = self.follow_redirects(HubMethod::Head, address, |headers| heard.read_headers(headers))?;
         let (status, headers) = (response.status().as_u16(), response.headers());
         if is_absence(status, headers) {
-            return Ok(Answer::Absent(heard.commit));
+            return Ok(HubFileAnswer::Absent(heard.commit));
         }
         if status >= 400 {
-            return Err(self.refused(&response, address, model));
+            return Err(self.describe_refusal(&response, address, model));
         }
-        let incomplete = |problem: &str| Trouble::Lasting(LocalError::download(address, problem, SEE_WHO_ANSWERS));
+        let incomplete =
+            |problem: &str| RequestFailure::Lasting(LocalError::download_failed(address, problem, SEE_WHO_ANSWERS));
         let (etag, size) = heard.linked.unwrap_or_else(|| {
-            (text(headers, "etag").unwrap_or_default().to_owned(), number(headers, "content-length"))
+            (header_text(headers, "etag").unwrap_or_default().to_owned(), header_number(headers, "content-length"))
         });
         let hash = BlobHash::from_etag(&etag).ok_or_else(|| incomplete("the answer has no hash of the file"))?;
         let commit = heard.commit.ok_or_else(|| incomplete("the answer has no commit"))?;
-        Ok(Answer::There(Facts { commit, hash, size }))
+        Ok(HubFileAnswer::There(HubFileFacts { commit, hash, size }))
     }
 
     /// Requests the bytes at an address, from byte `from` on. Also returns the position of the first byte that comes,
@@ -141,10 +148,15 @@ impl Client {
     ///
     /// # Errors
     /// When the request is refused or not answered.
-    pub(super) fn open(&self, model: &OnHub, address: &str, from: u64) -> Result<(u64, impl Read + use<>), Trouble> {
+    pub(super) fn open_download(
+        &self,
+        model: &OnHub,
+        address: &str,
+        from: u64,
+    ) -> Result<(u64, impl Read + use<>), RequestFailure> {
         let mut from = from;
         loop {
-            let response = self.follow(Method::Get { from }, address, |_| false)?;
+            let response = self.follow_redirects(HubMethod::Get { from }, address, |_| false)?;
             match response.status().as_u16() {
                 200 => from = 0,
                 206 if begins_at(response.headers()) == Some(from) => {}
@@ -153,85 +165,94 @@ impl Client {
                     from = 0;
                     continue;
                 }
-                _ => return Err(self.refused(&response, address, model)),
+                _ => return Err(self.describe_refusal(&response, address, model)),
             }
             return Ok((from, response.into_body().into_reader()));
         }
     }
 
     /// Sends a request and follows its redirects, until `enough` returns true or an answer is not a redirect.
-    fn follow(
+    fn follow_redirects(
         &self,
-        method: Method,
+        method: HubMethod,
         address: &str,
         mut enough: impl FnMut(&HeaderMap) -> bool,
-    ) -> Result<Response<Body>, Trouble> {
-        let lasting = |problem: &str| Trouble::Lasting(LocalError::download(address, problem, TRY_LATER));
-        let mut at = Address::parse(address).map_err(lasting)?;
+    ) -> Result<Response<Body>, RequestFailure> {
+        let lasting = |problem: &str| RequestFailure::Lasting(LocalError::download_failed(address, problem, TRY_LATER));
+        let mut at = WebAddress::parse(address).map_err(lasting)?;
         for _ in 0..MOST_REDIRECTS {
-            let response = self.send(method, &at).map_err(|error| Trouble::unanswered(&error, address, at.host()))?;
+            let response = self
+                .send_request(method, &at)
+                .map_err(|error| RequestFailure::from_transport_error(&error, address, at.host()))?;
             if enough(response.headers()) || !response.status().is_redirection() {
                 return Ok(response);
             }
-            let location = text(response.headers(), "location").ok_or_else(|| lasting("a redirect has no address"))?;
+            let location =
+                header_text(response.headers(), "location").ok_or_else(|| lasting("a redirect has no address"))?;
             at = at
-                .redirected(location)
+                .follow_location(location)
                 .map_err(|problem| lasting(&format!("a redirect cannot be followed: {problem}")))?;
         }
         Err(lasting("there are too many redirects"))
     }
 
-    fn send(&self, method: Method, at: &Address) -> Result<Response<Body>, ureq::Error> {
+    fn send_request(&self, method: HubMethod, at: &WebAddress) -> Result<Response<Body>, ureq::Error> {
         let mut request = match method {
-            Method::Head => self.agent.head(&at.text),
-            Method::Get { .. } => self.agent.get(&at.text),
+            HubMethod::Head => self.agent.head(&at.text),
+            HubMethod::Get { .. } => self.agent.get(&at.text),
         };
-        if let Method::Get { from: from @ 1.. } = method {
+        if let HubMethod::Get { from: from @ 1.. } = method {
             request = request.header("range", format!("bytes={from}-"));
         }
-        if let Some(token) = self.token.as_ref().filter(|_| at.origin() == self.endpoint.origin()) {
-            request = request.header("authorization", token.header());
+        if let Some(token) = self.token.as_ref().filter(|_| at.server_origin() == self.endpoint.server_origin()) {
+            request = request.header("authorization", token.header_value());
         }
         request.call()
     }
 
-    fn refused(&self, response: &Response<Body>, address: &str, model: &OnHub) -> Trouble {
-        Trouble::refused(response.status().as_u16(), response.headers(), address, model, self.token.is_some())
+    fn describe_refusal(&self, response: &Response<Body>, address: &str, model: &OnHub) -> RequestFailure {
+        RequestFailure::from_status(
+            response.status().as_u16(),
+            response.headers(),
+            address,
+            model,
+            self.token.is_some(),
+        )
     }
 }
 
-impl Heard {
+impl RedirectFacts {
     /// Reads the headers of an answer, and returns whether all facts are known. Then the last redirect is not followed:
     /// the storage server does not know the commit, and its address may be signed for GET requests only.
-    fn hear(&mut self, headers: &HeaderMap) -> bool {
+    fn read_headers(&mut self, headers: &HeaderMap) -> bool {
         if self.commit.is_none() {
-            self.commit = text(headers, "x-repo-commit").and_then(Commit::parse);
+            self.commit = header_text(headers, "x-repo-commit").and_then(CommitHash::parse);
         }
         if self.linked.is_none() {
-            let etag = text(headers, "x-linked-etag");
-            self.linked = etag.map(|etag| (etag.to_owned(), number(headers, "x-linked-size")));
+            let etag = header_text(headers, "x-linked-etag");
+            self.linked = etag.map(|etag| (etag.to_owned(), header_number(headers, "x-linked-size")));
         }
         self.commit.is_some() && self.linked.is_some()
     }
 }
 
-fn number(headers: &HeaderMap, name: &str) -> Option<u64> {
-    text(headers, name)?.trim().parse().ok()
+fn header_number(headers: &HeaderMap, name: &str) -> Option<u64> {
+    header_text(headers, name)?.trim().parse().ok()
 }
 
 /// The position of a partial answer's first byte.
 fn begins_at(headers: &HeaderMap) -> Option<u64> {
-    text(headers, "content-range")?.strip_prefix("bytes ")?.split('-').next()?.parse().ok()
+    header_text(headers, "content-range")?.strip_prefix("bytes ")?.split('-').next()?.parse().ok()
 }
 
 /// A web address: `http` or `https`, a host, a path.
 #[derive(Debug, Clone)]
-pub(super) struct Address {
+pub(super) struct WebAddress {
     pub(super) text: String,
     uri: Uri,
 }
 
-impl Address {
+impl WebAddress {
     /// Reads an address.
     ///
     /// # Errors
@@ -249,7 +270,7 @@ impl Address {
     }
 
     /// Reads the hub's address, to which the path of a file is added.
-    pub(super) fn endpoint(text: &str) -> Result<Self, &'static str> {
+    pub(super) fn parse_endpoint(text: &str) -> Result<Self, &'static str> {
         let address = Self::parse(text.trim().trim_end_matches('/'))?;
         if address.uri.query().is_some() || text.contains('#') {
             return Err("it contains more than a host and a path");
@@ -258,7 +279,7 @@ impl Address {
     }
 
     /// The address of a file below the hub's.
-    pub(super) fn resolve(&self, model: &OnHub, revision: &str, file: &str) -> String {
+    pub(super) fn file_address(&self, model: &OnHub, revision: &str, file: &str) -> String {
         const IN_A_PATH: &AsciiSet = &IN_A_SEGMENT.remove(b'/');
         // A revision is one segment of the path, a file may be several.
         let (revision, file) = (utf8_percent_encode(revision, IN_A_SEGMENT), utf8_percent_encode(file, IN_A_PATH));
@@ -266,8 +287,8 @@ impl Address {
     }
 
     /// The address that a redirect leads to. A redirect from https to http is refused.
-    pub(super) fn redirected(&self, location: &str) -> Result<Self, &'static str> {
-        let (scheme, host, port) = self.origin();
+    pub(super) fn follow_location(&self, location: &str) -> Result<Self, &'static str> {
+        let (scheme, host, port) = self.server_origin();
         let to = if location.starts_with("//") {
             Self::parse(&format!("{scheme}:{location}"))?
         } else if location.starts_with('/') {
@@ -283,7 +304,7 @@ impl Address {
     }
 
     /// Scheme, host and port, which together identify a server.
-    pub(super) fn origin(&self) -> (&str, String, u16) {
+    pub(super) fn server_origin(&self) -> (&str, String, u16) {
         let scheme = self.uri.scheme_str().unwrap_or_default();
         let port = self.uri.port_u16().unwrap_or(if self.is_plain() { 80 } else { 443 });
         (scheme, self.host().to_ascii_lowercase(), port)

@@ -8,7 +8,7 @@ use std::{
     time::Duration,
 };
 
-const ENDPOINT: &str = "https://huggingface.co";
+const PUBLIC_ENDPOINT: &str = "https://huggingface.co";
 
 /// The wait before a second attempt.
 const FIRST_WAIT: Duration = Duration::from_millis(300);
@@ -27,13 +27,13 @@ pub struct HubConfig {
     /// The SHA-256 that a checkpoint of the form `hf/ORG/NAME:FILE.pth` must have. If it is not set, the file must have
     /// the published hash, or the one that it had when it was first used.
     pub trust: Option<String>,
-    pub(super) token: Option<Token>,
+    pub(super) token: Option<HubToken>,
     pub(super) first_wait: Duration,
 }
 
 /// A token for the hub. Debug output shows `***` instead of it.
 #[derive(Clone)]
-pub(super) struct Token(String);
+pub(super) struct HubToken(String);
 
 impl HubConfig {
     /// Settings with this cache, and the public hub without a token.
@@ -41,7 +41,7 @@ impl HubConfig {
     pub fn new(cache: PathBuf) -> Self {
         Self {
             cache,
-            endpoint: ENDPOINT.to_owned(),
+            endpoint: PUBLIC_ENDPOINT.to_owned(),
             offline: false,
             symlinks: true,
             trust: None,
@@ -58,10 +58,13 @@ impl HubConfig {
     /// # Errors
     /// When there is neither a variable nor a home folder, or the token is not valid.
     pub fn from_env() -> Result<Self, LocalError> {
-        Self::read(&|name| std::env::var_os(name), std::env::home_dir().as_deref())
+        Self::from_variables(&|name| std::env::var_os(name), std::env::home_dir().as_deref())
     }
 
-    pub(super) fn read(variable: &dyn Fn(&str) -> Option<OsString>, home: Option<&Path>) -> Result<Self, LocalError> {
+    pub(super) fn from_variables(
+        variable: &dyn Fn(&str) -> Option<OsString>,
+        home: Option<&Path>,
+    ) -> Result<Self, LocalError> {
         let path = |name: &str| {
             let path = PathBuf::from(variable(name).filter(|value| !value.is_empty())?);
             // `~/` at the beginning is the home folder.
@@ -87,19 +90,19 @@ impl HubConfig {
             hint: "put the path of a folder for models into the variable HF_HUB_CACHE".to_owned(),
         })?;
         Ok(Self {
-            endpoint: text("HF_ENDPOINT").unwrap_or_else(|| ENDPOINT.to_owned()),
+            endpoint: text("HF_ENDPOINT").unwrap_or_else(|| PUBLIC_ENDPOINT.to_owned()),
             offline: ["WAYWORD_OFFLINE", "HF_HUB_OFFLINE", "TRANSFORMERS_OFFLINE"].iter().any(|name| is_set(name)),
             symlinks: !is_set("HF_HUB_DISABLE_SYMLINKS"),
-            token: text("HF_TOKEN").map(|token| Token::new(&token)).transpose()?,
+            token: text("HF_TOKEN").map(|token| HubToken::new(&token)).transpose()?,
             ..Self::new(cache)
         })
     }
 }
 
-impl Token {
+impl HubToken {
     pub(super) fn new(token: &str) -> Result<Self, LocalError> {
         if !token.bytes().all(|byte| (0x21..0x7f).contains(&byte)) {
-            return Err(LocalError::download(
+            return Err(LocalError::download_failed(
                 "HF_TOKEN",
                 "the variable contains spaces or characters that no token has",
                 "copy the token again from the settings page of the hub, or unset the variable",
@@ -109,12 +112,12 @@ impl Token {
     }
 
     /// The value of the header with the token.
-    pub(super) fn header(&self) -> String {
+    pub(super) fn header_value(&self) -> String {
         format!("Bearer {}", self.0)
     }
 }
 
-impl fmt::Debug for Token {
+impl fmt::Debug for HubToken {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("***")
     }
@@ -130,7 +133,7 @@ mod tests {
         let variable = |name: &str| {
             variables.iter().find(|(known, _)| known == name).map(|(_, value)| OsString::from(value.clone()))
         };
-        HubConfig::read(&variable, Some(Path::new("/home/me"))).unwrap()
+        HubConfig::from_variables(&variable, Some(Path::new("/home/me"))).unwrap()
     }
 
     #[test]
@@ -158,10 +161,10 @@ mod tests {
     #[test]
     fn debug_output_and_errors_hide_the_token() {
         let config = read(&[("HF_TOKEN", " hf_0123456789\n"), ("HF_ENDPOINT", "https://mirror.example")]);
-        assert_eq!(config.token.as_ref().unwrap().header(), "Bearer hf_0123456789");
+        assert_eq!(config.token.as_ref().unwrap().header_value(), "Bearer hf_0123456789");
         let shown = format!("{config:?}");
         assert!(shown.contains("mirror.example") && shown.contains("***") && !shown.contains("0123456789"), "{shown}");
-        let error = Token::new("hf_012 345").unwrap_err().to_string();
+        let error = HubToken::new("hf_012 345").unwrap_err().to_string();
         assert!(error.contains("HF_TOKEN") && !error.contains("hf_012"), "{error}");
     }
 }

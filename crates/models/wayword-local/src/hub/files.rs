@@ -9,14 +9,14 @@ use std::{
     path::{Path, PathBuf},
 };
 
-const WHOLE: &str = "model.safetensors";
-const INDEX: &str = "model.safetensors.index.json";
-const TOKENIZER: &str = "tokenizer.json";
-const PICKLED: &str = "pytorch_model.bin";
+const WHOLE_WEIGHTS_FILE: &str = "model.safetensors";
+const WEIGHTS_INDEX_FILE: &str = "model.safetensors.index.json";
+const TOKENIZER_FILE: &str = "tokenizer.json";
+const PICKLED_WEIGHTS_FILE: &str = "pytorch_model.bin";
 
 /// Files that the models of this crate read if they exist.
 const READ_WHERE_THERE: [&str; 8] = [
-    TOKENIZER,
+    TOKENIZER_FILE,
     "tokenizer_config.json",
     "preprocessor_config.json",
     "processor_config.json",
@@ -29,36 +29,36 @@ const READ_WHERE_THERE: [&str; 8] = [
 /// Files up to this length, bytes, are hashed as a whole for a model's identity. Longer ones are sampled.
 const COUNTS_WHOLE: u64 = 1 << 20;
 /// The number of samples of a longer file, evenly from its beginning to its end.
-const SAMPLES: u64 = 256;
+const SAMPLE_COUNT: u64 = 256;
 /// Bytes of each sample.
-const SAMPLE: u64 = 4096;
+const SAMPLE_BYTES: u64 = 4096;
 
 /// Which files of a model are needed. A file that is part of the model's name is always needed.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Needs {
+pub struct NeededFiles {
     weights: bool,
     required: Vec<&'static str>,
     optional: Vec<&'static str>,
 }
 
 /// Access to the files of a model, on disk or on the hub.
-pub(super) trait Files {
+pub(super) trait ModelFiles {
     /// The folder that the files are in.
-    fn folder(&self) -> PathBuf;
+    fn folder_path(&self) -> PathBuf;
 
     /// The path of a file, if it is on this machine.
-    fn here(&self, file: &str) -> Option<PathBuf>;
+    fn local_path(&self, file: &str) -> Option<PathBuf>;
 
     /// The path of a file, which is fetched if necessary. `None` if the model lacks the file.
-    fn get(&mut self, file: &str) -> Result<Option<PathBuf>, LocalError>;
+    fn get_file(&mut self, file: &str) -> Result<Option<PathBuf>, LocalError>;
 
     /// The error for a needed file that does not exist.
-    fn missing(&self, file: &str, what: &'static str) -> LocalError;
+    fn missing_error(&self, file: &str, what: &'static str) -> LocalError;
 }
 
 /// The files of a model after they were found or fetched.
 #[derive(Debug)]
-pub(super) struct Gathered {
+pub(super) struct GatheredFiles {
     pub(super) folder: PathBuf,
     /// Required and optional files, by their names.
     pub(super) small: Vec<(String, PathBuf)>,
@@ -66,94 +66,102 @@ pub(super) struct Gathered {
     pub(super) weights: Vec<PathBuf>,
 }
 
-impl Needs {
+impl NeededFiles {
     /// Adds the weights: `model.safetensors`, or its parts and their index, or `pytorch_model.bin`. For the name of a
     /// file, the weights are in that file.
     #[must_use]
-    pub fn weights(mut self) -> Self {
+    pub fn with_weights(mut self) -> Self {
         self.weights = true;
         self
     }
 
     /// Adds these files.
     #[must_use]
-    pub fn required(mut self, files: &[&'static str]) -> Self {
+    pub fn with_required(mut self, files: &[&'static str]) -> Self {
         self.required.extend(files);
         self
     }
 
     /// Adds these files, if the model has them.
     #[must_use]
-    pub fn optional(mut self, files: &[&'static str]) -> Self {
+    pub fn with_optional(mut self, files: &[&'static str]) -> Self {
         self.optional.extend(files);
         self
     }
 
     /// The files that a model of any architecture needs.
     #[must_use]
-    pub fn of_any(name: &ModelName) -> Self {
+    pub fn for_any_architecture(name: &ModelName) -> Self {
         if name.is_file() {
             return Self::default();
         }
-        Self::default().weights().required(&["config.json"]).optional(&READ_WHERE_THERE)
+        Self::default().with_weights().with_required(&["config.json"]).with_optional(&READ_WHERE_THERE)
     }
 
     /// The tokenizer alone, without the model's weights.
     #[must_use]
-    pub fn tokenizer() -> Self {
-        Self::default().required(&[TOKENIZER])
+    pub fn for_tokenizer() -> Self {
+        Self::default().with_required(&[TOKENIZER_FILE])
     }
 
     /// The flags for `wayword models fetch` that make it fetch these files and not many more. They come before the
     /// name.
-    pub(super) fn flags(&self) -> &'static str {
-        if *self == Self::tokenizer() { "--tokenizer " } else { "" }
+    pub(super) fn fetch_flags(&self) -> &'static str {
+        if *self == Self::for_tokenizer() { "--tokenizer " } else { "" }
     }
 
     /// Gets all files. Small files come first, so that an error appears before gigabytes are fetched.
-    pub(super) fn gather(&self, files: &mut dyn Files, named: Option<&str>) -> Result<Gathered, LocalError> {
+    pub(super) fn gather_files(
+        &self,
+        files: &mut dyn ModelFiles,
+        named: Option<&str>,
+    ) -> Result<GatheredFiles, LocalError> {
         let mut small = Vec::new();
         for file in &self.required {
-            let path = files.get(file)?.ok_or_else(|| files.missing(file, "a file of the model"))?;
+            let path = files.get_file(file)?.ok_or_else(|| files.missing_error(file, "a file of the model"))?;
             small.push(((*file).to_owned(), path));
         }
         for file in &self.optional {
-            small.extend(files.get(file)?.map(|path| ((*file).to_owned(), path)));
+            small.extend(files.get_file(file)?.map(|path| ((*file).to_owned(), path)));
         }
         let weights = match named {
-            Some(file) => vec![files.get(file)?.ok_or_else(|| files.missing(file, "the model"))?],
+            Some(file) => vec![files.get_file(file)?.ok_or_else(|| files.missing_error(file, "the model"))?],
             None if self.weights => weights_of(files)?,
             None => Vec::new(),
         };
-        Ok(Gathered { folder: files.folder(), small, weights })
+        Ok(GatheredFiles { folder: files.folder_path(), small, weights })
     }
 }
 
-fn weights_of(files: &mut dyn Files) -> Result<Vec<PathBuf>, LocalError> {
-    let forms = [WHOLE, INDEX, PICKLED];
+fn weights_of(files: &mut dyn ModelFiles) -> Result<Vec<PathBuf>, LocalError> {
+    let forms = [WHOLE_WEIGHTS_FILE, WEIGHTS_INDEX_FILE, PICKLED_WEIGHTS_FILE];
     // If one form of the weights is on this machine, no other form is fetched.
-    let here = forms.into_iter().find(|form| files.here(form).is_some());
+    let here = forms.into_iter().find(|form| files.local_path(form).is_some());
     for form in here.map_or(forms.to_vec(), |form| vec![form]) {
-        if let Some(path) = files.get(form)? {
-            return if form == INDEX { parts(files, &path) } else { Ok(vec![path]) };
+        if let Some(path) = files.get_file(form)? {
+            return if form == WEIGHTS_INDEX_FILE { weight_parts(files, &path) } else { Ok(vec![path]) };
         }
     }
-    Err(files.missing(WHOLE, "the checkpoint"))
+    Err(files.missing_error(WHOLE_WEIGHTS_FILE, "the checkpoint"))
 }
 
-fn parts(files: &mut dyn Files, index: &Path) -> Result<Vec<PathBuf>, LocalError> {
+fn weight_parts(files: &mut dyn ModelFiles, index: &Path) -> Result<Vec<PathBuf>, LocalError> {
     let names = weights::part_names(index)?;
-    names.iter().map(|name| files.get(name)?.ok_or_else(|| files.missing(name, "a part of the weights"))).collect()
+    names
+        .iter()
+        .map(|name| files.get_file(name)?.ok_or_else(|| files.missing_error(name, "a part of the weights")))
+        .collect()
 }
 
-impl Gathered {
+impl GatheredFiles {
     /// A hash over the names, lengths and contents of the small files, and over lengths and samples of the weights. The
     /// samples include the beginning, where safetensors and GGUF files have their header, and the end, where a pickled
     /// file has its checksums.
-    pub(super) fn identity(&self) -> Result<String, LocalError> {
+    pub(super) fn hash_identity(&self) -> Result<String, LocalError> {
         let mut hasher = Sha256::new();
-        let mut add =
-            |name: &str, path: &Path| add(&mut hasher, name, path).map_err(|error| LocalError::io(path, "read", error));
+        let mut add = |name: &str, path: &Path| {
+            hash_file(&mut hasher, name, path).map_err(|error| LocalError::from_io(path, "read", error))
+        };
         for (name, path) in &self.small {
             add(name, path)?;
         }
@@ -164,7 +172,7 @@ impl Gathered {
     }
 }
 
-fn add(hasher: &mut Sha256, name: &str, path: &Path) -> io::Result<()> {
+fn hash_file(hasher: &mut Sha256, name: &str, path: &Path) -> io::Result<()> {
     let mut file = File::open(path)?;
     let length = file.metadata()?.len();
     // Lengths come before contents, so that two different sets of files never give the same bytes.
@@ -174,12 +182,12 @@ fn add(hasher: &mut Sha256, name: &str, path: &Path) -> io::Result<()> {
     if length <= COUNTS_WHOLE {
         return io::copy(&mut file.take(COUNTS_WHOLE), hasher).map(drop);
     }
-    let last = length - SAMPLE;
-    for sample in 0..SAMPLES {
+    let last = length - SAMPLE_BYTES;
+    for sample in 0..SAMPLE_COUNT {
         // From 0 for the first sample to `last` for the last one, at equal distances.
-        let at = u128::from(last) * u128::from(sample) / u128::from(SAMPLES - 1);
+        let at = u128::from(last) * u128::from(sample) / u128::from(SAMPLE_COUNT - 1);
         file.seek(SeekFrom::Start(u64::try_from(at).unwrap_or(last)))?;
-        io::copy(&mut file.by_ref().take(SAMPLE), hasher)?;
+        io::copy(&mut file.by_ref().take(SAMPLE_BYTES), hasher)?;
     }
     Ok(())
 }
@@ -198,27 +206,27 @@ impl<'a> OnDisk<'a> {
 
 impl OnDisk<'static> {
     /// The user's own folder.
-    pub(super) fn local(folder: &Path) -> Self {
+    pub(super) fn for_user_folder(folder: &Path) -> Self {
         let hint = &|file: &str| format!("put the model's {file} there, or check the path");
         Self { folder: folder.to_owned(), hint }
     }
 }
 
-impl Files for OnDisk<'_> {
-    fn folder(&self) -> PathBuf {
+impl ModelFiles for OnDisk<'_> {
+    fn folder_path(&self) -> PathBuf {
         self.folder.clone()
     }
 
-    fn here(&self, file: &str) -> Option<PathBuf> {
+    fn local_path(&self, file: &str) -> Option<PathBuf> {
         let path = self.folder.join(file);
         path.is_file().then_some(path)
     }
 
-    fn get(&mut self, file: &str) -> Result<Option<PathBuf>, LocalError> {
-        Ok(self.here(file))
+    fn get_file(&mut self, file: &str) -> Result<Option<PathBuf>, LocalError> {
+        Ok(self.local_path(file))
     }
 
-    fn missing(&self, file: &str, what: &'static str) -> LocalError {
+    fn missing_error(&self, file: &str, what: &'static str) -> LocalError {
         LocalError::Missing { file: self.folder.join(file), what, hint: (self.hint)(file) }
     }
 }

@@ -24,23 +24,23 @@ mod trust;
 
 pub use cache::CachedModel;
 pub use config::HubConfig;
-pub use fetching::Progress;
-pub use files::Needs;
+pub use fetching::DownloadProgress;
+pub use files::NeededFiles;
 pub use name::ModelName;
 
 use crate::LocalError;
-use cache::{Commit, RepoFolder};
-use client::Client;
-use fetching::Fetching;
-use files::{Gathered, OnDisk};
+use cache::{CommitHash, RepoFolder};
+use client::HubClient;
+use fetching::CommitDownload;
+use files::{GatheredFiles, OnDisk};
 use name::{ModelSource, OnHub};
 use std::path::{Path, PathBuf};
 
 /// Gives access to models on disk and on the hub.
 #[derive(Debug)]
-pub struct Hub {
+pub struct ModelHub {
     config: HubConfig,
-    client: Client,
+    client: HubClient,
 }
 
 /// The files of a model on this machine.
@@ -57,113 +57,123 @@ pub struct ModelFolder {
     pub identity: String,
 }
 
-impl Hub {
+impl ModelHub {
     /// Gives access to models with these settings. Does not use the network.
     ///
     /// # Errors
     /// When the endpoint is not a web address.
     pub fn new(config: HubConfig) -> Result<Self, LocalError> {
-        let client = Client::new(&config)?;
+        let client = HubClient::new(&config)?;
         Ok(Self { config, client })
     }
 
     /// A model's folder with the needed files. Files in the cache are used as they are, even if the branch has moved,
-    /// so that a model stays the same until [`Hub::fetch`] is called. Missing files are fetched.
+    /// so that a model stays the same until [`ModelHub::fetch_model`] is called. Missing files are fetched.
     ///
     /// # Errors
     /// When a needed file is missing and cannot be fetched. The message names the file and its place.
-    pub fn folder(&self, name: &ModelName, needs: &Needs, progress: &dyn Progress) -> Result<ModelFolder, LocalError> {
-        self.have(name, needs, progress, false)
+    pub fn model_folder(
+        &self,
+        name: &ModelName,
+        needs: &NeededFiles,
+        progress: &dyn DownloadProgress,
+    ) -> Result<ModelFolder, LocalError> {
+        self.find_trusted(name, needs, progress, false)
     }
 
-    /// Like [`Hub::folder`], but asks the hub which commit the revision points to now. Offline both do the same.
+    /// Like [`ModelHub::folder`], but asks the hub which commit the revision points to now. Offline both do the same.
     ///
     /// # Errors
-    /// As for [`Hub::folder`].
-    pub fn fetch(&self, name: &ModelName, needs: &Needs, progress: &dyn Progress) -> Result<ModelFolder, LocalError> {
-        self.have(name, needs, progress, true)
+    /// As for [`ModelHub::folder`].
+    pub fn fetch_model(
+        &self,
+        name: &ModelName,
+        needs: &NeededFiles,
+        progress: &dyn DownloadProgress,
+    ) -> Result<ModelFolder, LocalError> {
+        self.find_trusted(name, needs, progress, true)
     }
 
     /// The models in the cache, by name and commit.
     ///
     /// # Errors
     /// When a folder cannot be read.
-    pub fn list(&self) -> Result<Vec<CachedModel>, LocalError> {
-        cache::list(&self.config.cache)
+    pub fn list_models(&self) -> Result<Vec<CachedModel>, LocalError> {
+        cache::list_models(&self.config.cache)
     }
 
     /// The cache's folder.
     #[must_use]
-    pub fn cache(&self) -> &Path {
+    pub fn cache_folder(&self) -> &Path {
         &self.config.cache
     }
 
-    fn have(
+    fn find_trusted(
         &self,
         name: &ModelName,
-        needs: &Needs,
-        progress: &dyn Progress,
+        needs: &NeededFiles,
+        progress: &dyn DownloadProgress,
         anew: bool,
     ) -> Result<ModelFolder, LocalError> {
-        let found = self.found(name, needs, progress, anew)?;
+        let found = self.find_model(name, needs, progress, anew)?;
         if let Some(file) = found.file.as_deref().filter(|_| name.is_trained()) {
-            trust::check(&self.config, name, file, progress)?;
+            trust::check_file(&self.config, name, file, progress)?;
         }
         Ok(found)
     }
 
-    fn found(
+    fn find_model(
         &self,
         name: &ModelName,
-        needs: &Needs,
-        progress: &dyn Progress,
+        needs: &NeededFiles,
+        progress: &dyn DownloadProgress,
         anew: bool,
     ) -> Result<ModelFolder, LocalError> {
         let model = match &name.source {
             ModelSource::Hub(model) => model,
-            ModelSource::Folder(path) => return on_disk(&mut OnDisk::local(path), needs, None, None),
+            ModelSource::Folder(path) => return on_disk(&mut OnDisk::for_user_folder(path), needs, None, None),
             ModelSource::File(path) => {
                 let folder = path.parent().unwrap_or(Path::new("."));
                 let file = path.file_name().map(|file| file.to_string_lossy());
-                return on_disk(&mut OnDisk::local(folder), needs, file.as_deref(), None);
+                return on_disk(&mut OnDisk::for_user_folder(folder), needs, file.as_deref(), None);
             }
         };
         let repo = RepoFolder::new(&self.config.cache, model);
         let known = repo.commit_of(&model.revision);
         if self.config.offline {
-            return self.cached(name, model, &repo, known.as_ref(), needs);
+            return self.find_cached(name, model, &repo, known.as_ref(), needs);
         }
-        if known.is_none() && !anew && repo.snapshot(&model.revision).is_dir() {
+        if known.is_none() && !anew && repo.snapshot_folder(&model.revision).is_dir() {
             // The user put files there. If they are not enough, the hub is asked.
-            if let Ok(found) = self.cached(name, model, &repo, None, needs) {
+            if let Ok(found) = self.find_cached(name, model, &repo, None, needs) {
                 return Ok(found);
             }
         }
-        let commit = if anew { Commit::parse(&model.revision) } else { known };
+        let commit = if anew { CommitHash::parse(&model.revision) } else { known };
         let symlinks = self.config.symlinks;
-        let mut files = Fetching { client: &self.client, model, repo, commit, symlinks, progress };
-        let gathered = needs.gather(&mut files, model.file.as_deref())?;
-        Ok(folder(gathered, model.file.is_some(), files.finish()?))
+        let mut files = CommitDownload { client: &self.client, model, repo, commit, symlinks, progress };
+        let gathered = needs.gather_files(&mut files, model.file.as_deref())?;
+        Ok(to_model_folder(gathered, model.file.is_some(), files.finish()?))
     }
 
     /// Finds a model without the network. If no commit is known, uses a snapshot with the revision's name.
-    fn cached(
+    fn find_cached(
         &self,
         name: &ModelName,
         model: &OnHub,
         repo: &RepoFolder,
-        known: Option<&Commit>,
-        needs: &Needs,
+        known: Option<&CommitHash>,
+        needs: &NeededFiles,
     ) -> Result<ModelFolder, LocalError> {
         let identity = known.map(|commit| commit.as_str().to_owned());
-        let folder = repo.snapshot(known.map_or(model.revision.as_str(), Commit::as_str));
-        let is_all = needs.flags().is_empty();
+        let folder = repo.snapshot_folder(known.map_or(model.revision.as_str(), CommitHash::as_str));
+        let is_all = needs.fetch_flags().is_empty();
         let (others, them) = if is_all { (" and the others of the model", "them") } else { ("", "it") };
         let hint = |file: &str| {
             format!(
                 "unset WAYWORD_OFFLINE, HF_HUB_OFFLINE and TRANSFORMERS_OFFLINE and run `wayword models fetch {}{name}`; without a network, download this file ({}){others} elsewhere, and put {them} there",
-                needs.flags(),
-                self.client.address(model, &model.revision, file)
+                needs.fetch_flags(),
+                self.client.file_address(model, &model.revision, file)
             )
         };
         on_disk(&mut OnDisk::new(folder, &hint), needs, model.file.as_deref(), identity)
@@ -173,16 +183,16 @@ impl Hub {
 /// A model on this machine. If no identity is given, it is computed from the files.
 fn on_disk(
     files: &mut OnDisk<'_>,
-    needs: &Needs,
+    needs: &NeededFiles,
     file: Option<&str>,
     identity: Option<String>,
 ) -> Result<ModelFolder, LocalError> {
-    let gathered = needs.gather(files, file)?;
-    let identity = identity.map_or_else(|| gathered.identity(), Ok)?;
-    Ok(folder(gathered, file.is_some(), identity))
+    let gathered = needs.gather_files(files, file)?;
+    let identity = identity.map_or_else(|| gathered.hash_identity(), Ok)?;
+    Ok(to_model_folder(gathered, file.is_some(), identity))
 }
 
-fn folder(gathered: Gathered, is_file: bool, identity: String) -> ModelFolder {
+fn to_model_folder(gathered: GatheredFiles, is_file: bool, identity: String) -> ModelFolder {
     let file = gathered.weights.into_iter().next().filter(|_| is_file);
     ModelFolder { path: gathered.folder, file, identity }
 }

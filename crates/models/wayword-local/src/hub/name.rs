@@ -7,10 +7,10 @@ use std::{
 };
 
 /// The beginning of every name.
-const PREFIX: &str = "hf/";
+const NAME_PREFIX: &str = "hf/";
 
 /// The revision for a name without one.
-const MAIN: &str = "main";
+const DEFAULT_REVISION: &str = "main";
 
 const LONGEST_PART: usize = 96;
 const LONGEST_REVISION: usize = 200;
@@ -56,7 +56,7 @@ impl ModelName {
     /// # Errors
     /// When the name is not valid.
     pub fn parse(text: &str) -> Result<Self, LocalError> {
-        let source = source(text).map_err(|problem| LocalError::Name {
+        let source = parse_source(text).map_err(|problem| LocalError::Name {
             name: text.chars().take(LONGEST_REVISION).collect(),
             problem: problem.to_owned(),
         })?;
@@ -66,22 +66,22 @@ impl ModelName {
     /// Whether the name is that of one GGUF file.
     #[must_use]
     pub fn is_gguf(&self) -> bool {
-        self.file().is_some_and(|file| ends_in(file, "gguf"))
+        self.file_path().is_some_and(|file| ends_in(file, "gguf"))
     }
 
     /// Whether the name is that of one checkpoint as training leaves it, `.pth`.
     #[must_use]
     pub fn is_trained(&self) -> bool {
-        self.file().is_some_and(|file| ends_in(file, "pth"))
+        self.file_path().is_some_and(|file| ends_in(file, "pth"))
     }
 
     /// Whether the name is that of one file.
     #[must_use]
     pub fn is_file(&self) -> bool {
-        self.file().is_some()
+        self.file_path().is_some()
     }
 
-    fn file(&self) -> Option<&Path> {
+    fn file_path(&self) -> Option<&Path> {
         match &self.source {
             ModelSource::Hub(model) => model.file.as_deref().map(Path::new),
             ModelSource::Folder(_) => None,
@@ -96,13 +96,13 @@ impl fmt::Display for ModelName {
     }
 }
 
-fn source(text: &str) -> Result<ModelSource, &'static str> {
-    let rest = text.strip_prefix(PREFIX).ok_or("it does not begin with hf/")?;
+fn parse_source(text: &str) -> Result<ModelSource, &'static str> {
+    let rest = text.strip_prefix(NAME_PREFIX).ok_or("it does not begin with hf/")?;
     if ["/", "./", "../"].iter().any(|begin| rest.starts_with(begin)) {
-        return local(rest);
+        return parse_local(rest);
     }
     let (repo, file) = rest.split_once(':').map_or((rest, None), |(repo, file)| (repo, Some(file)));
-    let (repo, revision) = repo.split_once('@').unwrap_or((repo, MAIN));
+    let (repo, revision) = repo.split_once('@').unwrap_or((repo, DEFAULT_REVISION));
     let (org, name) = repo.split_once('/').ok_or("it has no organisation before the model's name")?;
     if !is_part(org) || !is_part(name) {
         return Err(
@@ -123,7 +123,7 @@ fn source(text: &str) -> Result<ModelSource, &'static str> {
     }))
 }
 
-fn local(path: &str) -> Result<ModelSource, &'static str> {
+fn parse_local(path: &str) -> Result<ModelSource, &'static str> {
     if path.chars().any(char::is_control) || path.len() > LONGEST_PATH {
         return Err("its path contains control characters or is too long");
     }

@@ -20,21 +20,21 @@ pub(super) const SEE_WHO_ANSWERS: &str =
 
 /// Why a request failed.
 #[derive(Debug)]
-pub(super) enum Trouble {
+pub(super) enum RequestFailure {
     /// Another attempt may succeed in a moment, or after the wait that the server asks for.
     Passing { problem: String, wait: Option<Duration> },
     /// No other attempt will succeed.
     Lasting(LocalError),
 }
 
-impl Trouble {
-    pub(super) fn passing(problem: String) -> Self {
+impl RequestFailure {
+    pub(super) fn from_problem(problem: String) -> Self {
         Self::Passing { problem, wait: None }
     }
 
     /// The failure of a request that got no answer with a status. The message names `host` instead of the address,
     /// which may contain a signature.
-    pub(super) fn unanswered(error: &ureq::Error, address: &str, host: &str) -> Self {
+    pub(super) fn from_transport_error(error: &ureq::Error, address: &str, host: &str) -> Self {
         let problem = format!("{host}: {error}");
         let passes = match error {
             ureq::Error::Timeout(_) | ureq::Error::Protocol(_) => true,
@@ -49,21 +49,22 @@ impl Trouble {
             _ => false,
         };
         if passes {
-            return Self::passing(problem);
+            return Self::from_problem(problem);
         }
         let hint = "check that this machine is online (HTTPS_PROXY, HF_ENDPOINT); with WAYWORD_OFFLINE=1 the program downloads nothing and says where to put the file";
-        Self::Lasting(LocalError::download(address, problem, hint))
+        Self::Lasting(LocalError::download_failed(address, problem, hint))
     }
 
     /// The failure for a status that is no success, with a hint.
-    pub(super) fn refused(status: u16, headers: &HeaderMap, address: &str, model: &OnHub, had_token: bool) -> Self {
+    pub(super) fn from_status(status: u16, headers: &HeaderMap, address: &str, model: &OnHub, had_token: bool) -> Self {
         let unexpected = format!("the server answers with status {status}");
         if matches!(status, 408 | 429 | 500..=599) {
-            let wait = text(headers, "retry-after").and_then(|wait| wait.trim().parse().ok()).map(Duration::from_secs);
+            let wait =
+                header_text(headers, "retry-after").and_then(|wait| wait.trim().parse().ok()).map(Duration::from_secs);
             return Self::Passing { problem: unexpected, wait };
         }
         let name = format!("{}/{}", model.org, model.name);
-        let (problem, hint) = match (status, code(headers)) {
+        let (problem, hint) = match (status, error_code(headers)) {
             (401 | 403, "GatedRepo") => (
                 format!("{name} is gated: its authors decide who may download it"),
                 format!("accept its terms on the page of {name}, and put a token that may read it into HF_TOKEN"),
@@ -83,40 +84,40 @@ impl Trouble {
             ),
             _ => (unexpected, SEE_WHO_ANSWERS.to_owned()),
         };
-        Self::Lasting(LocalError::download(address, problem, hint))
+        Self::Lasting(LocalError::download_failed(address, problem, hint))
     }
 }
 
 /// Whether the answer means that the model exists but lacks the file. This is no error for an optional file.
 pub(super) fn is_absence(status: u16, headers: &HeaderMap) -> bool {
-    status == 404 && !["RepoNotFound", "RevisionNotFound"].contains(&code(headers))
+    status == 404 && !["RepoNotFound", "RevisionNotFound"].contains(&error_code(headers))
 }
 
 /// The hub's own error code.
-fn code(headers: &HeaderMap) -> &str {
-    text(headers, "x-error-code").unwrap_or_default()
+fn error_code(headers: &HeaderMap) -> &str {
+    header_text(headers, "x-error-code").unwrap_or_default()
 }
 
 /// The text of a header.
-pub(super) fn text<'a>(headers: &'a HeaderMap, name: &str) -> Option<&'a str> {
+pub(super) fn header_text<'a>(headers: &'a HeaderMap, name: &str) -> Option<&'a str> {
     headers.get(name)?.to_str().ok()
 }
 
 /// Counts failures, and decides whether another attempt is made and how long to wait before it.
 #[derive(Debug)]
-pub(super) struct Patience {
+pub(super) struct RetryPatience {
     failures: u32,
     first_wait: Duration,
 }
 
-impl Patience {
+impl RetryPatience {
     /// Begins with this wait. Each later wait is twice as long as the one before.
     pub(super) fn new(first_wait: Duration) -> Self {
         Self { failures: 0, first_wait }
     }
 
     /// Forgets earlier failures, because there was progress.
-    pub(super) fn restored(&mut self) {
+    pub(super) fn forget_failures(&mut self) {
         self.failures = 0;
     }
 
@@ -124,16 +125,16 @@ impl Patience {
     ///
     /// # Errors
     /// When no other attempt will succeed, or there were too many failures.
-    pub(super) fn again(&mut self, trouble: Trouble, address: &str) -> Result<(), LocalError> {
+    pub(super) fn wait_or_give_up(&mut self, trouble: RequestFailure, address: &str) -> Result<(), LocalError> {
         let (problem, wait) = match trouble {
-            Trouble::Passing { problem, wait } => (problem, wait),
-            Trouble::Lasting(error) => return Err(error),
+            RequestFailure::Passing { problem, wait } => (problem, wait),
+            RequestFailure::Lasting(error) => return Err(error),
         };
         self.failures += 1;
         if self.failures >= MOST_FAILURES {
             let problem = format!("{problem} ({MOST_FAILURES} times in a row)");
             let hint = "try again later; the received part is kept, and the next try continues from there";
-            return Err(LocalError::download(address, problem, hint));
+            return Err(LocalError::download_failed(address, problem, hint));
         }
         let own = self.first_wait.saturating_mul(1 << (self.failures - 1));
         thread::sleep(wait.unwrap_or(own).min(LONGEST_WAIT));

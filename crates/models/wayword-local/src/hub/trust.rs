@@ -6,8 +6,8 @@
 //! hash of the first use is kept, and later uses are compared with it.
 
 use super::{
-    HubConfig, Progress,
-    cache::{beside, make_parent},
+    DownloadProgress, HubConfig,
+    cache::{make_parent, path_with_suffix},
     name::{ModelName, ModelSource},
 };
 use crate::LocalError;
@@ -19,7 +19,7 @@ use std::{
 };
 
 /// SHA-256 of published checkpoints, by the names of their files.
-const PUBLISHED: [(&str, &str); 3] = [
+const PUBLISHED_SHA256: [(&str, &str); 3] = [
     ("glip_tiny_model_o365_goldg_cc_sbu.pth", "3bec0a3dea804fcb278d7106c5438de5116ee888e49dfae46270e7ad7bc4ccbf"),
     (
         "glip_tiny_model_o365_goldg_cc_sbu_lvisbest.pth",
@@ -35,13 +35,13 @@ const LONGEST_KEPT: u64 = 100;
 ///
 /// # Errors
 /// When the hash is not the expected one, or a file cannot be read or written.
-pub(super) fn check(
+pub(super) fn check_file(
     config: &HubConfig,
     name: &ModelName,
     path: &Path,
-    progress: &dyn Progress,
+    progress: &dyn DownloadProgress,
 ) -> Result<(), LocalError> {
-    let found = sha256(path).map_err(|error| LocalError::io(path, "read", error))?;
+    let found = file_sha256(path).map_err(|error| LocalError::from_io(path, "read", error))?;
     let other = |expected: &str, what: &str| LocalError::File {
         file: path.to_owned(),
         problem: format!("its SHA-256 is {found}, not {expected}, {what}"),
@@ -52,16 +52,16 @@ pub(super) fn check(
         return if is_given { Ok(()) } else { Err(other(given, "which was given")) };
     }
     let file = path_name(name).unwrap_or_default();
-    if let Some((_, published)) = PUBLISHED.iter().find(|(published, _)| *published == file) {
+    if let Some((_, published)) = PUBLISHED_SHA256.iter().find(|(published, _)| *published == file) {
         return if *published == found { Ok(()) } else { Err(other(published, "which is the published one")) };
     }
-    let kept = place(config, name, path);
-    match read(&kept) {
+    let kept = hash_path(config, name, path);
+    match read_hash(&kept) {
         Some(first) if first == found => Ok(()),
         Some(first) => Err(other(&first, &format!("as it was when it was first used (kept in {})", kept.display()))),
         None => {
-            keep(&kept, &found)?;
-            progress.told(&format!(
+            keep_hash(&kept, &found)?;
+            progress.show_note(&format!(
                 "{name}: nobody is known to have published the SHA-256 of this file. It is {found}; from now on no other is taken ({})",
                 kept.display()
             ));
@@ -80,11 +80,11 @@ fn path_name(name: &ModelName) -> Option<&str> {
 }
 
 /// The path of a kept hash: in the model's folder of the cache, or, for the user's own file, by the hash of its path.
-fn place(config: &HubConfig, name: &ModelName, path: &Path) -> PathBuf {
+fn hash_path(config: &HubConfig, name: &ModelName, path: &Path) -> PathBuf {
     match &name.source {
         ModelSource::Hub(model) => {
             let folder = config.cache.join(format!("models--{}--{}", model.org, model.name)).join(".trust");
-            beside(&folder.join(&model.revision).join(model.file.as_deref().unwrap_or_default()), ".sha256")
+            path_with_suffix(&folder.join(&model.revision).join(model.file.as_deref().unwrap_or_default()), ".sha256")
         }
         _ => {
             let whole = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
@@ -94,17 +94,17 @@ fn place(config: &HubConfig, name: &ModelName, path: &Path) -> PathBuf {
     }
 }
 
-fn read(kept: &Path) -> Option<String> {
+fn read_hash(kept: &Path) -> Option<String> {
     let is_short = fs::metadata(kept).ok()?.len() <= LONGEST_KEPT;
     is_short.then(|| fs::read_to_string(kept).ok())?.map(|text| text.trim().to_owned())
 }
 
-fn keep(kept: &Path, hash: &str) -> Result<(), LocalError> {
+fn keep_hash(kept: &Path, hash: &str) -> Result<(), LocalError> {
     make_parent(kept)?;
-    fs::write(kept, format!("{hash}\n")).map_err(|error| LocalError::io(kept, "write", error))
+    fs::write(kept, format!("{hash}\n")).map_err(|error| LocalError::from_io(kept, "write", error))
 }
 
-fn sha256(path: &Path) -> io::Result<String> {
+fn file_sha256(path: &Path) -> io::Result<String> {
     let mut hasher = Sha256::new();
     io::copy(&mut io::BufReader::with_capacity(1 << 20, File::open(path)?), &mut hasher)?;
     Ok(format!("{:x}", hasher.finalize()))

@@ -1,6 +1,6 @@
 //! Activation functions, on the CPU in parallel.
 
-use super::kernels::{PIECE, is_ours, slice};
+use super::kernels::{PIECE_NUMBERS, contiguous_slice, is_ours};
 use candle_core::{CpuStorage, CustomOp1, Layout, Result, Shape, Tensor};
 use rayon::prelude::*;
 use rten_simd::SimdUnaryOp;
@@ -32,7 +32,7 @@ pub(crate) enum Activation {
 
 impl Activation {
     /// Applies the function to each number of a tensor.
-    pub(crate) fn of(self, x: &Tensor) -> Result<Tensor> {
+    pub(crate) fn apply_to(self, x: &Tensor) -> Result<Tensor> {
         if is_ours(x) {
             return x.contiguous()?.apply_op1_no_bwd(&self);
         }
@@ -47,12 +47,12 @@ impl Activation {
     }
 
     /// Applies the function to each number, on all threads.
-    pub(super) fn map(self, numbers: &mut [f32]) {
-        numbers.par_chunks_mut(PIECE).for_each(|piece| self.map_here(piece));
+    pub(super) fn map_on_threads(self, numbers: &mut [f32]) {
+        numbers.par_chunks_mut(PIECE_NUMBERS).for_each(|piece| self.map_on_this_thread(piece));
     }
 
     /// Applies the function to each number, on this thread.
-    pub(crate) fn map_here(self, numbers: &mut [f32]) {
+    pub(crate) fn map_on_this_thread(self, numbers: &mut [f32]) {
         match self {
             Self::Gelu => Gelu {}.map_mut(numbers),
             Self::GeluTanh => ApproxGelu {}.map_mut(numbers),
@@ -70,8 +70,8 @@ impl CustomOp1 for Activation {
     }
 
     fn cpu_fwd(&self, storage: &CpuStorage, layout: &Layout) -> Result<(CpuStorage, Shape)> {
-        let mut numbers = slice::<f32>(storage, layout)?.to_vec();
-        self.map(&mut numbers);
+        let mut numbers = contiguous_slice::<f32>(storage, layout)?.to_vec();
+        self.map_on_threads(&mut numbers);
         Ok((CpuStorage::F32(numbers), layout.shape().clone()))
     }
 }

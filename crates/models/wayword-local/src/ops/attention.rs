@@ -5,9 +5,9 @@
 //! never stored.
 
 use super::{
-    kernels::{Options, is_ours, pack, product, slice},
+    kernels::{ProductOptions, contiguous_slice, is_ours, pack_matrix, write_product},
     rows::with_spare,
-    softmax::exponentials,
+    softmax::replace_by_exponentials,
 };
 use candle_core::{CpuStorage, CustomOp3, Device, Layout, Result, Shape, Tensor, bail};
 use rayon::prelude::*;
@@ -16,7 +16,7 @@ use rten_tensor::NdTensorView;
 use std::ops::Range;
 
 /// The most scores that a thread computes at a time: about as many as fit into a core's cache.
-const SCORES: usize = 384 << 10;
+const MAX_SCORES_AT_A_TIME: usize = 384 << 10;
 
 /// The most queries that a thread takes at a time.
 const MOST_QUERIES: usize = 96;
@@ -25,28 +25,28 @@ const MOST_QUERIES: usize = 96;
 const LEAST_PACKED: usize = 24;
 
 /// softmax(q kᵀ * scale + bias) v, for each head.
-pub(crate) struct Attention<'a> {
+pub(crate) struct MultiHeadAttention<'a> {
     pub(crate) heads: usize,
     pub(crate) scale: f32,
     /// Added to the scores, broadcast to [batch, heads, queries, keys]: a mask of 0 and -inf, or a bias by position.
     pub(crate) bias: Option<&'a Tensor>,
 }
 
-impl Attention<'_> {
+impl MultiHeadAttention<'_> {
     /// The states [batch, queries, heads * size] for queries of the same shape, and keys and values [batch, keys, heads
     /// * size]. The inputs may be parts of a wider tensor along its last axis.
-    pub(crate) fn of(&self, q: &Tensor, k: &Tensor, v: &Tensor) -> Result<Tensor> {
+    pub(crate) fn attend_to(&self, q: &Tensor, k: &Tensor, v: &Tensor) -> Result<Tensor> {
         if is_ours(q) {
             return match self.bias {
-                None => q.apply_op3_no_bwd(k, v, &Heads { heads: self.heads, scale: self.scale, bias: None }),
+                None => q.apply_op3_no_bwd(k, v, &CpuAttention { heads: self.heads, scale: self.scale, bias: None }),
                 Some(bias) => {
                     let (batch, queries, _) = q.dims3()?;
                     let shape = (batch, self.heads, queries, k.dim(1)?);
                     let bias = bias.broadcast_as(shape)?.contiguous()?;
                     let (storage, layout) = bias.storage_and_layout();
                     let candle_core::Storage::Cpu(storage) = &*storage else { bail!("a mask is on another device") };
-                    let bias = Some(slice::<f32>(storage, layout)?);
-                    q.apply_op3_no_bwd(k, v, &Heads { heads: self.heads, scale: self.scale, bias })
+                    let bias = Some(contiguous_slice::<f32>(storage, layout)?);
+                    q.apply_op3_no_bwd(k, v, &CpuAttention { heads: self.heads, scale: self.scale, bias })
                 }
             };
         }
@@ -67,16 +67,16 @@ impl Attention<'_> {
 /// The keys and values [batch, tokens, width] of one layer, for the tokens so far. A decoder that writes token by token
 /// keeps them, so that each is computed once.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Past(Option<(Tensor, Tensor)>);
+pub(crate) struct KeyValueCache(Option<(Tensor, Tensor)>);
 
-impl Past {
+impl KeyValueCache {
     /// The number of tokens so far.
     pub(crate) fn len(&self) -> Result<usize> {
         self.0.as_ref().map_or(Ok(0), |(keys, _)| keys.dim(1))
     }
 
     /// Adds the keys and values of the next tokens, and returns those of all tokens so far.
-    pub(crate) fn grow(&mut self, keys: Tensor, values: Tensor) -> Result<(Tensor, Tensor)> {
+    pub(crate) fn append_tokens(&mut self, keys: Tensor, values: Tensor) -> Result<(Tensor, Tensor)> {
         let grown = match self.0.take() {
             None => (keys, values),
             Some((old_keys, old_values)) => {
@@ -89,13 +89,13 @@ impl Past {
 }
 
 /// A mask [queries, keys] that hides all later keys from a query. The last query belongs to the last key.
-pub(crate) fn causal(queries: usize, keys: usize, device: &Device) -> Result<Tensor> {
+pub(crate) fn causal_mask(queries: usize, keys: usize, device: &Device) -> Result<Tensor> {
     let before = keys - queries.min(keys);
     let sees = |at: usize| if at % keys <= at / keys + before { 0.0 } else { f32::NEG_INFINITY };
     Tensor::from_vec((0..queries * keys).map(sees).collect(), (queries, keys), device)
 }
 
-struct Heads<'a> {
+struct CpuAttention<'a> {
     heads: usize,
     scale: f32,
     /// [batch, heads, queries, keys].
@@ -104,7 +104,7 @@ struct Heads<'a> {
 
 /// A view of a tensor [batch, count, width], which may be a part of a wider one. The steps are numbers from one batch
 /// or row to the next.
-struct Rows<'a> {
+struct StridedRows<'a> {
     numbers: &'a [f32],
     batch: usize,
     count: usize,
@@ -113,7 +113,7 @@ struct Rows<'a> {
     row_step: usize,
 }
 
-impl<'a> Rows<'a> {
+impl<'a> StridedRows<'a> {
     fn new(storage: &'a CpuStorage, layout: &Layout) -> Result<Self> {
         let (batch, count, width) = layout.shape().dims3()?;
         let &[batch_step, row_step, 1] = layout.stride() else { bail!("the last axis is not contiguous") };
@@ -122,7 +122,13 @@ impl<'a> Rows<'a> {
     }
 
     /// Some rows of one head of one batch, [rows, size].
-    fn head(&self, batch: usize, head: usize, heads: usize, rows: Range<usize>) -> Result<NdTensorView<'a, f32, 2>> {
+    fn head_rows(
+        &self,
+        batch: usize,
+        head: usize,
+        heads: usize,
+        rows: Range<usize>,
+    ) -> Result<NdTensorView<'a, f32, 2>> {
         let size = self.width / heads;
         let from = batch * self.batch_step + rows.start * self.row_step + head * size;
         let to = from + rows.len().saturating_sub(1) * self.row_step + size;
@@ -134,34 +140,41 @@ impl<'a> Rows<'a> {
 
 /// The keys, transposed, and the values of a head, packed once for all queries. Where there are none, each product
 /// packs them itself.
-type Packed = (PackedBMatrix<f32>, PackedBMatrix<f32>);
+type PackedKeysValues = (PackedBMatrix<f32>, PackedBMatrix<f32>);
 
-impl Heads<'_> {
+impl CpuAttention<'_> {
     /// Writes the states of some queries, from query `from` of a batch on, into `mixed` [queries, width].
-    fn some(&self, of: &Inputs<'_>, packed: &[Packed], batch: usize, from: usize, mixed: &mut [f32]) -> Result<()> {
+    fn attend_piece(
+        &self,
+        of: &AttentionInputs<'_>,
+        packed: &[PackedKeysValues],
+        batch: usize,
+        from: usize,
+        mixed: &mut [f32],
+    ) -> Result<()> {
         let (width, keys) = (of.v.width, of.k.count);
         let (size, queries) = (width / self.heads, mixed.len() / width.max(1));
         with_spare(queries * keys, |scores| {
             with_spare(queries * size, |states| {
                 for head in 0..self.heads {
                     let at = batch * self.heads + head;
-                    let q = GemmInputA::Unpacked(of.q.head(batch, head, self.heads, from..from + queries)?);
+                    let q = GemmInputA::Unpacked(of.q.head_rows(batch, head, self.heads, from..from + queries)?);
                     let (k, v) = match packed.get(at) {
                         Some((k, v)) => (GemmInputB::Packed(k), GemmInputB::Packed(v)),
                         None => (
-                            GemmInputB::Unpacked(of.k.head(batch, head, self.heads, 0..keys)?.transposed()),
-                            GemmInputB::Unpacked(of.v.head(batch, head, self.heads, 0..keys)?),
+                            GemmInputB::Unpacked(of.k.head_rows(batch, head, self.heads, 0..keys)?.transposed()),
+                            GemmInputB::Unpacked(of.v.head_rows(batch, head, self.heads, 0..keys)?),
                         ),
                     };
-                    product(scores, q, k, Options { alpha: self.scale, ..Options::default() })?;
+                    write_product(scores, q, k, ProductOptions { alpha: self.scale, ..ProductOptions::default() })?;
                     if let Some(bias) = self.bias {
                         let bias = &bias[(at * of.q.count + from) * keys..];
                         scores.iter_mut().zip(bias).for_each(|(score, bias)| *score += bias);
                     }
                     // The division by the sum comes after the product with the values, where there are fewer numbers.
-                    let sums: Vec<f32> = scores.chunks_mut(keys).map(exponentials).collect();
+                    let sums: Vec<f32> = scores.chunks_mut(keys).map(replace_by_exponentials).collect();
                     let scores = GemmInputA::Unpacked(NdTensorView::from_data([queries, keys], &*scores));
-                    product(states, scores, v, Options::default())?;
+                    write_product(states, scores, v, ProductOptions::default())?;
                     for ((to, state), sum) in mixed.chunks_mut(width).zip(states.chunks(size)).zip(sums) {
                         let to = &mut to[head * size..(head + 1) * size];
                         to.iter_mut().zip(state).for_each(|(to, state)| *to = state / sum);
@@ -174,36 +187,39 @@ impl Heads<'_> {
 
     /// Packs the keys and values of all heads, if several pieces of the queries use them. Otherwise returns an empty
     /// list.
-    fn packed(&self, of: &Inputs<'_>, queries: usize) -> Result<Vec<Packed>> {
+    fn pack_heads(&self, of: &AttentionInputs<'_>, queries: usize) -> Result<Vec<PackedKeysValues>> {
         if queries >= of.q.count || queries < LEAST_PACKED {
             return Ok(Vec::new());
         }
         let one = |at: usize| {
             let (batch, head) = (at / self.heads, at % self.heads);
-            let k = of.k.head(batch, head, self.heads, 0..of.k.count)?;
-            Ok((pack(k.transposed()), pack(of.v.head(batch, head, self.heads, 0..of.v.count)?)))
+            let k = of.k.head_rows(batch, head, self.heads, 0..of.k.count)?;
+            Ok((pack_matrix(k.transposed()), pack_matrix(of.v.head_rows(batch, head, self.heads, 0..of.v.count)?)))
         };
         (0..of.q.batch * self.heads).into_par_iter().map(one).collect()
     }
 }
 
 /// Queries, keys and values.
-struct Inputs<'a> {
-    q: Rows<'a>,
-    k: Rows<'a>,
-    v: Rows<'a>,
+struct AttentionInputs<'a> {
+    q: StridedRows<'a>,
+    k: StridedRows<'a>,
+    v: StridedRows<'a>,
 }
 
-impl Inputs<'_> {
+impl AttentionInputs<'_> {
     /// The number of queries of a batch that a thread takes at a time: so few that their scores stay in the cache, and
     /// that every thread has work.
     fn at_a_time(&self) -> usize {
         let least = rayon::current_num_threads().div_ceil(self.q.batch.max(1));
-        (SCORES / self.k.count.max(1)).clamp(LEAST_PACKED, MOST_QUERIES).min(self.q.count.div_ceil(least)).max(1)
+        (MAX_SCORES_AT_A_TIME / self.k.count.max(1))
+            .clamp(LEAST_PACKED, MOST_QUERIES)
+            .min(self.q.count.div_ceil(least))
+            .max(1)
     }
 }
 
-impl CustomOp3 for Heads<'_> {
+impl CustomOp3 for CpuAttention<'_> {
     fn name(&self) -> &'static str {
         "attention"
     }
@@ -217,21 +233,25 @@ impl CustomOp3 for Heads<'_> {
         v: &CpuStorage,
         v_layout: &Layout,
     ) -> Result<(CpuStorage, Shape)> {
-        let of = Inputs { q: Rows::new(q, q_layout)?, k: Rows::new(k, k_layout)?, v: Rows::new(v, v_layout)? };
-        let Inputs { q, k, v } = &of;
+        let of = AttentionInputs {
+            q: StridedRows::new(q, q_layout)?,
+            k: StridedRows::new(k, k_layout)?,
+            v: StridedRows::new(v, v_layout)?,
+        };
+        let AttentionInputs { q, k, v } = &of;
         let fit = k.batch == q.batch && v.batch == q.batch && v.count == k.count && k.width == q.width;
         if !fit || k.count == 0 || v.width < self.heads {
             bail!("queries {:?}, keys {:?} and values {:?} do not fit together", q_layout, k_layout, v_layout);
         }
         let mut mixed = vec![0.0; q.batch * q.count * v.width];
         let queries = of.at_a_time();
-        let packed = self.packed(&of, queries)?;
+        let packed = self.pack_heads(&of, queries)?;
         let batches = mixed.par_chunks_mut((q.count * v.width).max(1)).enumerate();
         let pieces = batches.flat_map(|(batch, mixed)| {
             let pieces = mixed.par_chunks_mut(queries * v.width).with_max_len(1).enumerate();
             pieces.map(move |(at, mixed)| (batch, at * queries, mixed))
         });
-        pieces.try_for_each(|(batch, from, mixed)| self.some(&of, &packed, batch, from, mixed))?;
+        pieces.try_for_each(|(batch, from, mixed)| self.attend_piece(&of, &packed, batch, from, mixed))?;
         Ok((CpuStorage::F32(mixed), (q.batch, q.count, v.width).into()))
     }
 }

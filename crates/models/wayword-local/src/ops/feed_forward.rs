@@ -1,9 +1,9 @@
 //! The second half of a transformer's layer: two linear layers with an activation between them, a residual, and a norm.
 
 use super::{
-    Activation, LayerNorm, Linear,
-    kernels::{is_ours, rows, slice},
-    packed::Packed,
+    Activation, LayerNorm, LinearLayer,
+    kernels::{contiguous_slice, is_ours, row_shape},
+    packed::PackedMatrix,
     rows::{by_rows, with_spare},
 };
 use candle_core::{CpuStorage, CustomOp1, Layout, Result, Shape, Tensor, bail};
@@ -12,45 +12,45 @@ use candle_core::{CpuStorage, CustomOp1, Layout, Result, Shape, Tensor, bail};
 /// the sum is.
 pub(crate) struct FeedForward<'a> {
     pub(crate) before: Option<&'a LayerNorm>,
-    pub(crate) wide: &'a Linear,
+    pub(crate) wide: &'a LinearLayer,
     pub(crate) activation: Activation,
-    pub(crate) narrow: &'a Linear,
+    pub(crate) narrow: &'a LinearLayer,
     pub(crate) after: Option<&'a LayerNorm>,
 }
 
 impl FeedForward<'_> {
-    pub(crate) fn of(&self, x: &Tensor) -> Result<Tensor> {
-        match (self.wide.packed(), self.narrow.packed()) {
+    pub(crate) fn apply_to(&self, x: &Tensor) -> Result<Tensor> {
+        match (self.wide.packed_matrix(), self.narrow.packed_matrix()) {
             (Some(_), Some(_)) if is_ours(x) => x.contiguous()?.apply_op1_no_bwd(self),
             _ => {
-                let normed = self.before.map_or(Ok(x.clone()), |before| before.of(x))?;
-                let y = self.narrow.onto(&self.wide.of_then(&normed, self.activation)?, x)?;
-                self.after.map_or(Ok(y.clone()), |after| after.of(&y))
+                let normed = self.before.map_or(Ok(x.clone()), |before| before.apply_to(x))?;
+                let y = self.narrow.apply_onto(&self.wide.apply_then(&normed, self.activation)?, x)?;
+                self.after.map_or(Ok(y.clone()), |after| after.apply_to(&y))
             }
         }
     }
 
     /// Computes some rows on the CPU: adds the output of the layers to y, which already contains x.
-    fn some(
+    fn add_to_rows(
         &self,
-        (wide, narrow): (&Packed, &Packed),
+        (wide, narrow): (&PackedMatrix, &PackedMatrix),
         biases: [Option<&[f32]>; 2],
         x: &[f32],
         y: &mut [f32],
     ) -> Result<()> {
-        let inner = y.len() / self.narrow.outputs().max(1) * self.wide.outputs();
+        let inner = y.len() / self.narrow.output_count().max(1) * self.wide.output_count();
         with_spare(inner, |thought| {
             match self.before {
-                None => wide.product(x, biases[0], thought, false)?,
+                None => wide.multiply_rows(x, biases[0], thought, false)?,
                 Some(before) => with_spare(x.len(), |normed| {
-                    before.rows(x, normed)?;
-                    wide.product(normed, biases[0], thought, false)
+                    before.write_rows(x, normed)?;
+                    wide.multiply_rows(normed, biases[0], thought, false)
                 })?,
             }
-            self.activation.map(thought);
-            narrow.product(thought, biases[1], y, true)
+            self.activation.map_on_threads(thought);
+            narrow.multiply_rows(thought, biases[1], y, true)
         })?;
-        self.after.map_or(Ok(()), |after| after.rows_here(y))
+        self.after.map_or(Ok(()), |after| after.replace_rows(y))
     }
 }
 
@@ -60,18 +60,18 @@ impl CustomOp1 for FeedForward<'_> {
     }
 
     fn cpu_fwd(&self, storage: &CpuStorage, layout: &Layout) -> Result<(CpuStorage, Shape)> {
-        let (Some(wide), Some(narrow)) = (self.wide.packed(), self.narrow.packed()) else {
+        let (Some(wide), Some(narrow)) = (self.wide.packed_matrix(), self.narrow.packed_matrix()) else {
             bail!("candle computes this product")
         };
-        let x = slice::<f32>(storage, layout)?;
-        let (_, size) = rows(layout)?;
-        if size != self.narrow.outputs() {
-            bail!("{} outputs cannot be added to {size}", self.narrow.outputs());
+        let x = contiguous_slice::<f32>(storage, layout)?;
+        let (_, size) = row_shape(layout)?;
+        if size != self.narrow.output_count() {
+            bail!("{} outputs cannot be added to {size}", self.narrow.output_count());
         }
         let mut y = x.to_vec();
         self.wide.with_bias(|first| {
             self.narrow.with_bias(|second| {
-                by_rows((x, size), (&mut y, size), |x, y| self.some((wide, narrow), [first, second], x, y))
+                by_rows((x, size), (&mut y, size), |x, y| self.add_to_rows((wide, narrow), [first, second], x, y))
             })
         })?;
         Ok((CpuStorage::F32(y), layout.shape().clone()))

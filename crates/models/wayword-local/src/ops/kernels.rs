@@ -10,33 +10,33 @@ thread_local! {
 }
 
 /// Options of a product.
-pub(crate) type Options<'a> = GemmOptions<'a, f32, f32, f32>;
+pub(crate) type ProductOptions<'a> = GemmOptions<'a, f32, f32, f32>;
 
 /// Writes the matrix product of a and b into y, on all threads.
-pub(crate) fn product(
+pub(crate) fn write_product(
     y: &mut [f32],
     a: GemmInputA<'_, f32>,
     b: GemmInputB<'_, f32>,
-    options: Options<'_>,
+    options: ProductOptions<'_>,
 ) -> Result<()> {
     KERNELS.with(|kernels| kernels.gemm(y, a, b, options)).map_err(candle_core::Error::wrap)
 }
 
 /// A weight [outputs, inputs], packed as the right factor of products.
-pub(super) fn packed(weight: &[f32], outputs: usize, inputs: usize) -> PackedBMatrix<f32> {
-    pack(NdTensorView::from_data([outputs, inputs], weight).transposed())
+pub(super) fn pack_weight(weight: &[f32], outputs: usize, inputs: usize) -> PackedBMatrix<f32> {
+    pack_matrix(NdTensorView::from_data([outputs, inputs], weight).transposed())
 }
 
 /// A matrix [inputs, outputs], packed as the right factor of products.
-pub(super) fn pack(matrix: NdTensorView<'_, f32, 2>) -> PackedBMatrix<f32> {
+pub(super) fn pack_matrix(matrix: NdTensorView<'_, f32, 2>) -> PackedBMatrix<f32> {
     KERNELS.with(|kernels| kernels.prepack_b(matrix))
 }
 
 /// The smallest piece of work for a thread, numbers. For less, another thread costs more time than it saves.
-pub(super) const PIECE: usize = 16 << 10;
+pub(super) const PIECE_NUMBERS: usize = 16 << 10;
 
 /// The numbers of a contiguous tensor.
-pub(crate) fn slice<'a, T: WithDType>(storage: &'a CpuStorage, layout: &Layout) -> Result<&'a [T]> {
+pub(crate) fn contiguous_slice<'a, T: WithDType>(storage: &'a CpuStorage, layout: &Layout) -> Result<&'a [T]> {
     let Some((from, to)) = layout.contiguous_offsets() else { bail!("a tensor is not contiguous") };
     let all = storage.as_slice::<T>()?;
     match all.get(from..to) {
@@ -46,7 +46,7 @@ pub(crate) fn slice<'a, T: WithDType>(storage: &'a CpuStorage, layout: &Layout) 
 }
 
 /// The number of rows of a tensor, and their length, which is that of the last axis.
-pub(super) fn rows(layout: &Layout) -> Result<(usize, usize)> {
+pub(super) fn row_shape(layout: &Layout) -> Result<(usize, usize)> {
     let dims = layout.shape().dims();
     let Some((&last, others)) = dims.split_last() else { bail!("a single number has no rows") };
     Ok((others.iter().product(), last))
@@ -59,7 +59,7 @@ pub(crate) fn is_ours(tensor: &Tensor) -> bool {
 
 /// The number of rows of this length that make a piece of work.
 pub(super) fn rows_per_piece(row: usize) -> usize {
-    (PIECE / row.max(1)).max(1)
+    (PIECE_NUMBERS / row.max(1)).max(1)
 }
 
 /// Calls `then` with the numbers of a tensor in 32 bits on the CPU.
@@ -67,5 +67,5 @@ pub(crate) fn with_numbers<T>(x: &Tensor, then: impl FnOnce(&[f32]) -> Result<T>
     let x = x.contiguous()?;
     let (storage, layout) = x.storage_and_layout();
     let candle_core::Storage::Cpu(storage) = &*storage else { bail!("a tensor is on another device") };
-    then(slice::<f32>(storage, layout)?)
+    then(contiguous_slice::<f32>(storage, layout)?)
 }

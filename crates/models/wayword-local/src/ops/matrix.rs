@@ -1,6 +1,6 @@
 //! Products of two computed matrices, and softmax over rows.
 
-use super::kernels::{Options, is_ours, product, rows_per_piece, with_numbers};
+use super::kernels::{ProductOptions, is_ours, rows_per_piece, with_numbers, write_product};
 use candle_core::{Result, Tensor, bail};
 use rayon::prelude::*;
 use rten_gemm::{BiasVector, GemmInputA, GemmInputB};
@@ -9,13 +9,13 @@ use rten_tensor::NdTensorView;
 use rten_vecmath::Softmax;
 
 /// The product of a [rows, inner] and b [inner, columns]. b may be a transposed view.
-pub(crate) fn times(a: &Tensor, b: &Tensor) -> Result<Tensor> {
+pub(crate) fn multiply_matrices(a: &Tensor, b: &Tensor) -> Result<Tensor> {
     let shape = (a.dim(0)?, b.dim(1)?);
     if !is_ours(a) {
         return a.matmul(b);
     }
     let mut y = vec![0.0; shape.0 * shape.1];
-    into(&mut y, a, b, Options::default())?;
+    multiply_into(&mut y, a, b, ProductOptions::default())?;
     Tensor::from_vec(y, shape, a.device())
 }
 
@@ -26,17 +26,19 @@ pub(crate) fn plus_times(x: &Tensor, a: &Tensor, b: &Tensor, bias: Option<&Tenso
         return bias.map_or(Ok(sum.clone()), |bias| sum.broadcast_add(bias));
     }
     let mut y = with_numbers(x, |x| Ok(x.to_vec()))?;
-    let options = Options { beta: 1.0, ..Options::default() };
+    let options = ProductOptions { beta: 1.0, ..ProductOptions::default() };
     match bias {
-        None => into(&mut y, a, b, options)?,
+        None => multiply_into(&mut y, a, b, options)?,
         Some(bias) => {
-            with_numbers(bias, |bias| into(&mut y, a, b, Options { bias: Some(BiasVector::Row(bias)), ..options }))?;
+            with_numbers(bias, |bias| {
+                multiply_into(&mut y, a, b, ProductOptions { bias: Some(BiasVector::Row(bias)), ..options })
+            })?;
         }
     }
     Tensor::from_vec(y, x.shape(), x.device())
 }
 
-fn into(y: &mut [f32], a: &Tensor, b: &Tensor, options: Options<'_>) -> Result<()> {
+fn multiply_into(y: &mut [f32], a: &Tensor, b: &Tensor, options: ProductOptions<'_>) -> Result<()> {
     let ((rows, inner), (b_inner, columns)) = (a.dims2()?, b.dims2()?);
     if inner != b_inner {
         bail!("matrices {:?} and {:?} do not fit together", a.shape(), b.shape());
@@ -51,13 +53,13 @@ fn into(y: &mut [f32], a: &Tensor, b: &Tensor, options: Options<'_>) -> Result<(
                 true => NdTensorView::from_data([columns, inner], b).transposed(),
                 false => NdTensorView::from_data([inner, columns], b),
             };
-            product(y, a, GemmInputB::Unpacked(b), options)
+            write_product(y, a, GemmInputB::Unpacked(b), options)
         })
     })
 }
 
 /// Softmax over the last axis.
-pub(crate) fn softmax(x: &Tensor) -> Result<Tensor> {
+pub(crate) fn softmax_rows(x: &Tensor) -> Result<Tensor> {
     if !is_ours(x) {
         return candle_nn::ops::softmax_last_dim(&x.contiguous()?);
     }
@@ -77,7 +79,8 @@ mod tests {
     use candle_core::Device;
 
     fn drawn(shape: &[usize], seed: u64) -> Tensor {
-        let draw = |at: u64| (wayword_core::seed::derive(seed + at, &["matrix"]) >> 40) as f32 / (1 << 23) as f32 - 1.0;
+        let draw =
+            |at: u64| (wayword_core::seed::derive_seed(seed + at, &["matrix"]) >> 40) as f32 / (1 << 23) as f32 - 1.0;
         let count = shape.iter().product::<usize>() as u64;
         Tensor::from_vec((0..count).map(draw).collect(), shape, &Device::Cpu).unwrap()
     }
@@ -91,14 +94,14 @@ mod tests {
     #[test]
     fn products_and_softmax_agree_with_candle() {
         let (a, b, turned) = (drawn(&[70, 33], 1), drawn(&[33, 40], 2), drawn(&[40, 33], 3));
-        agree(&times(&a, &b).unwrap(), &a.matmul(&b).unwrap());
-        agree(&times(&a, &turned.t().unwrap()).unwrap(), &a.matmul(&turned.t().unwrap()).unwrap());
+        agree(&multiply_matrices(&a, &b).unwrap(), &a.matmul(&b).unwrap());
+        agree(&multiply_matrices(&a, &turned.t().unwrap()).unwrap(), &a.matmul(&turned.t().unwrap()).unwrap());
         let (x, bias) = (drawn(&[70, 40], 4), drawn(&[40], 5));
         let sum = (&x + a.matmul(&b).unwrap()).unwrap();
         agree(&plus_times(&x, &a, &b, None).unwrap(), &sum);
         agree(&plus_times(&x, &a, &b, Some(&bias)).unwrap(), &sum.broadcast_add(&bias).unwrap());
-        assert!(times(&a, &turned).is_err());
+        assert!(multiply_matrices(&a, &turned).is_err());
         let x = drawn(&[3, 50, 7], 6);
-        agree(&softmax(&x).unwrap(), &candle_nn::ops::softmax_last_dim(&x).unwrap());
+        agree(&softmax_rows(&x).unwrap(), &candle_nn::ops::softmax_last_dim(&x).unwrap());
     }
 }

@@ -20,10 +20,10 @@ mod softmax;
 pub(crate) mod tiles;
 
 pub(crate) use activation::Activation;
-pub(crate) use attention::{Attention, Past, causal};
-pub(crate) use embedding::{Embedding, patches};
+pub(crate) use attention::{KeyValueCache, MultiHeadAttention, causal_mask};
+pub(crate) use embedding::{EmbeddingTable, cut_patches};
 pub(crate) use feed_forward::FeedForward;
-pub(crate) use linear::Linear;
+pub(crate) use linear::LinearLayer;
 pub(crate) use norm::{LayerNorm, RmsNorm};
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Layer norms and root-mean-square norms over the last axis.
 
-use super::kernels::{is_ours, rows, rows_per_piece, slice, with_numbers};
+use super::kernels::{contiguous_slice, is_ours, row_shape, rows_per_piece, with_numbers};
 use candle_core::{CpuStorage, CustomOp2, CustomOp3, Layout, Result, Shape, Tensor};
 use rayon::prelude::*;
 use rten_simd::SimdOp;
@@ -21,29 +21,29 @@ pub(crate) struct RmsNorm {
 
 impl LayerNorm {
     pub(crate) fn new(weight: Tensor, bias: Tensor, epsilon: f64) -> Self {
-        Self { weight: wide(weight), bias: wide(bias), epsilon }
+        Self { weight: to_processor_precision(weight), bias: to_processor_precision(bias), epsilon }
     }
 
     /// The norm of x [.., size].
-    pub(crate) fn of(&self, x: &Tensor) -> Result<Tensor> {
+    pub(crate) fn apply_to(&self, x: &Tensor) -> Result<Tensor> {
         if is_ours(x) {
-            return x.contiguous()?.apply_op3_no_bwd(&self.weight, &self.bias, &Standard(self.epsilon));
+            return x.contiguous()?.apply_op3_no_bwd(&self.weight, &self.bias, &RowStandardiser(self.epsilon));
         }
         candle_nn::ops::layer_norm(&x.contiguous()?, &self.weight, &self.bias, self.epsilon as f32)
     }
 
     /// Writes the norm of the rows of x into y, on the CPU.
-    pub(crate) fn rows(&self, x: &[f32], y: &mut [f32]) -> Result<()> {
+    pub(crate) fn write_rows(&self, x: &[f32], y: &mut [f32]) -> Result<()> {
         y.copy_from_slice(x);
-        self.rows_here(y)
+        self.replace_rows(y)
     }
 
     /// Replaces the rows of y by their norms, on the CPU.
-    pub(super) fn rows_here(&self, y: &mut [f32]) -> Result<()> {
+    pub(super) fn replace_rows(&self, y: &mut [f32]) -> Result<()> {
         with_numbers(&self.weight, |weight| {
             with_numbers(&self.bias, |bias| {
-                let standard = Standard(self.epsilon);
-                y.chunks_exact_mut(weight.len().max(1)).for_each(|row| standard.row(row, weight, bias));
+                let standard = RowStandardiser(self.epsilon);
+                y.chunks_exact_mut(weight.len().max(1)).for_each(|row| standard.standardise_row(row, weight, bias));
                 Ok(())
             })
         })
@@ -52,11 +52,11 @@ impl LayerNorm {
 
 impl RmsNorm {
     pub(crate) fn new(weight: Tensor, epsilon: f64) -> Self {
-        Self { weight: wide(weight), epsilon }
+        Self { weight: to_processor_precision(weight), epsilon }
     }
 
     /// The norm of x [.., size].
-    pub(crate) fn of(&self, x: &Tensor) -> Result<Tensor> {
+    pub(crate) fn apply_to(&self, x: &Tensor) -> Result<Tensor> {
         if is_ours(x) {
             return x.contiguous()?.apply_op2_no_bwd(&self.weight, &RootMeanSquare(self.epsilon));
         }
@@ -65,14 +65,14 @@ impl RmsNorm {
 }
 
 /// Widens a weight on the CPU: the states between layers have 32 bits there, whatever the precision of the weights.
-fn wide(weight: Tensor) -> Tensor {
+fn to_processor_precision(weight: Tensor) -> Tensor {
     if weight.device().is_cpu() { weight.to_dtype(candle_core::DType::F32).unwrap_or(weight) } else { weight }
 }
 
-struct Standard(f64);
+struct RowStandardiser(f64);
 
-impl Standard {
-    fn row(&self, row: &mut [f32], weight: &[f32], bias: &[f32]) {
+impl RowStandardiser {
+    fn standardise_row(&self, row: &mut [f32], weight: &[f32], bias: &[f32]) {
         let size = row.len() as f32;
         let mean = Sum::new(row).dispatch() / size;
         let variance = SumSquareSub::new(row, mean).dispatch() / size;
@@ -87,7 +87,7 @@ impl Standard {
     }
 }
 
-impl CustomOp3 for Standard {
+impl CustomOp3 for RowStandardiser {
     fn name(&self) -> &'static str {
         "layer-norm"
     }
@@ -101,8 +101,9 @@ impl CustomOp3 for Standard {
         bias: &CpuStorage,
         bias_layout: &Layout,
     ) -> Result<(CpuStorage, Shape)> {
-        let (weight, bias) = (slice::<f32>(weight, weight_layout)?, slice::<f32>(bias, bias_layout)?);
-        let row = |row: &mut [f32]| self.row(row, weight, bias);
+        let (weight, bias) =
+            (contiguous_slice::<f32>(weight, weight_layout)?, contiguous_slice::<f32>(bias, bias_layout)?);
+        let row = |row: &mut [f32]| self.standardise_row(row, weight, bias);
         Ok((each_row(x, x_layout, row)?, x_layout.shape().clone()))
     }
 }
@@ -121,8 +122,8 @@ impl CustomOp2 for RootMeanSquare {
         weight: &CpuStorage,
         weight_layout: &Layout,
     ) -> Result<(CpuStorage, Shape)> {
-        let (_, size) = rows(x_layout)?;
-        let weight = slice::<f32>(weight, weight_layout)?;
+        let (_, size) = row_shape(x_layout)?;
+        let weight = contiguous_slice::<f32>(weight, weight_layout)?;
         let row = |row: &mut [f32]| {
             let mean_square = SumSquare::new(row).dispatch() / size as f32;
             let scale = 1.0 / (mean_square + self.0 as f32).sqrt();
@@ -135,8 +136,8 @@ impl CustomOp2 for RootMeanSquare {
 
 /// Applies a function to each row of a copy, on all threads.
 fn each_row(x: &CpuStorage, layout: &Layout, row: impl Fn(&mut [f32]) + Sync) -> Result<CpuStorage> {
-    let mut y = slice::<f32>(x, layout)?.to_vec();
-    let size = rows(layout)?.1.max(1);
+    let mut y = contiguous_slice::<f32>(x, layout)?.to_vec();
+    let size = row_shape(layout)?.1.max(1);
     let piece = |piece: &mut [f32]| piece.chunks_mut(size).for_each(&row);
     y.par_chunks_mut(size * rows_per_piece(size)).for_each(piece);
     Ok(CpuStorage::F32(y))

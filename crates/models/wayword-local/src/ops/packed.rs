@@ -1,7 +1,7 @@
 //! Weights in 32 bits on the CPU, packed once into the order in which the kernels read them.
 
 use super::{
-    kernels::{Options, packed, product},
+    kernels::{ProductOptions, pack_weight, write_product},
     rows::with_spare,
 };
 use candle_core::{Result, bail};
@@ -9,37 +9,37 @@ use rten_gemm::{BiasVector, GemmInputA, GemmInputB, PackedBMatrix};
 use rten_tensor::NdTensorView;
 
 /// The most columns that the kernels of `rten-gemm` give to a thread at a time.
-const COLUMNS: usize = 1024;
+const MAX_COLUMNS_PER_THREAD: usize = 1024;
 
 /// The number of columns that the kernels compute together.
-const TILE: usize = 32;
+const KERNEL_TILE_COLUMNS: usize = 32;
 
 /// A matrix [outputs, inputs], in pieces of columns (outputs).
 ///
 /// The kernels give blocks of 1024 columns to the threads. With 3072 columns on 2 threads there are three blocks, so
 /// that one thread works on the last block while the other one waits. Two pieces of 1536 columns keep both threads
 /// busy.
-pub(super) struct Packed {
+pub(super) struct PackedMatrix {
     /// The pieces, each with the number of its columns.
     pieces: Vec<(PackedBMatrix<f32>, usize)>,
     inputs: usize,
     outputs: usize,
 }
 
-impl Packed {
+impl PackedMatrix {
     pub(super) fn new(weight: &[f32], outputs: usize, inputs: usize) -> Self {
         let columns = at_a_time(outputs, rayon::current_num_threads());
         let pieces = weight.chunks((columns * inputs).max(1));
         let piece = |weight: &[f32]| {
             let columns = weight.len() / inputs.max(1);
-            (packed(weight, columns, inputs), columns)
+            (pack_weight(weight, columns, inputs), columns)
         };
         Self { pieces: pieces.map(piece).collect(), inputs, outputs }
     }
 
     /// Multiplies x [count, inputs] by the matrix, adds a bias, and writes the result into y [count, outputs], or adds
     /// it to y if `adds`.
-    pub(super) fn product(&self, x: &[f32], bias: Option<&[f32]>, y: &mut [f32], adds: bool) -> Result<()> {
+    pub(super) fn multiply_rows(&self, x: &[f32], bias: Option<&[f32]>, y: &mut [f32], adds: bool) -> Result<()> {
         let count = x.len() / self.inputs.max(1);
         if x.len() != count * self.inputs || y.len() != count * self.outputs {
             bail!("{} and {} numbers are not rows of {} and {}", x.len(), y.len(), self.inputs, self.outputs);
@@ -47,8 +47,8 @@ impl Packed {
         let x = || GemmInputA::Unpacked(NdTensorView::from_data([count, self.inputs], x));
         let part = |matrix, from: usize, columns: usize, y: &mut [f32], adds: bool| {
             let bias = bias.map(|bias| BiasVector::Row(&bias[from..from + columns]));
-            let options = Options { bias, beta: if adds { 1.0 } else { 0.0 }, ..Options::default() };
-            product(y, x(), GemmInputB::Packed(matrix), options)
+            let options = ProductOptions { bias, beta: if adds { 1.0 } else { 0.0 }, ..ProductOptions::default() };
+            write_product(y, x(), GemmInputB::Packed(matrix), options)
         };
         if let [(matrix, columns)] = &self.pieces[..] {
             return part(matrix, 0, *columns, y, adds);
@@ -74,8 +74,12 @@ impl Packed {
 
 /// The number of columns of a piece.
 fn at_a_time(outputs: usize, threads: usize) -> usize {
-    let pieces = outputs.div_ceil(threads * COLUMNS);
-    if threads < 2 || pieces < 2 { outputs } else { outputs.div_ceil(pieces).next_multiple_of(threads * TILE) }
+    let pieces = outputs.div_ceil(threads * MAX_COLUMNS_PER_THREAD);
+    if threads < 2 || pieces < 2 {
+        outputs
+    } else {
+        outputs.div_ceil(pieces).next_multiple_of(threads * KERNEL_TILE_COLUMNS)
+    }
 }
 
 #[cfg(test)]
@@ -103,16 +107,16 @@ mod tests {
         let (outputs, inputs) = (5000, 3);
         let weight: Vec<f32> = (0..outputs * inputs).map(|at| (at % 11) as f32).collect();
         let bias: Vec<f32> = (0..outputs).map(|at| (at % 7) as f32).collect();
-        let matrix = Packed::new(&weight, outputs, inputs);
+        let matrix = PackedMatrix::new(&weight, outputs, inputs);
         let x = [1.0, 2.0, 3.0, 0.5, 0.0, 1.0];
         let dot = |x: &[f32], w: &[f32]| w.iter().zip(x).map(|(w, x)| w * x).sum::<f32>();
         let row = |x: &[f32]| weight.chunks(inputs).zip(&bias).map(|(w, b)| dot(x, w) + b).collect::<Vec<_>>();
         let expected: Vec<f32> = x.chunks(inputs).flat_map(row).collect();
         let mut y = vec![0.0; 2 * outputs];
-        matrix.product(&x, Some(&bias), &mut y, false).unwrap();
+        matrix.multiply_rows(&x, Some(&bias), &mut y, false).unwrap();
         assert_eq!(y, expected);
-        matrix.product(&x, Some(&bias), &mut y, true).unwrap();
+        matrix.multiply_rows(&x, Some(&bias), &mut y, true).unwrap();
         assert!(y.iter().zip(&expected).all(|(y, expected)| *y == 2.0 * expected));
-        assert!(matrix.product(&x[1..], None, &mut y, false).is_err());
+        assert!(matrix.multiply_rows(&x[1..], None, &mut y, false).is_err());
     }
 }

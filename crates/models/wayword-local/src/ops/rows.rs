@@ -9,11 +9,11 @@ use std::cell::RefCell;
 
 /// The fewest and the most rows that a thread takes at a time. If there are fewer, the kernels distribute the columns
 /// of a product instead.
-const LEAST: usize = 48;
-const MOST: usize = 144;
+const MIN_ROWS_PER_THREAD: usize = 48;
+const MAX_ROWS_PER_THREAD: usize = 144;
 
 /// The number of rows that the kernels compute together.
-const TILE: usize = 6;
+const KERNEL_TILE_ROWS: usize = 6;
 
 thread_local! {
     /// Memory from earlier computations, to be used again.
@@ -41,11 +41,14 @@ pub(super) fn by_rows(
 /// The number of rows, of `count`, that a thread takes at a time, so that all threads end at about the same time.
 /// `None` if there are too few rows to distribute.
 fn at_a_time(count: usize, threads: usize) -> Option<usize> {
-    if threads < 2 || count < threads * LEAST {
-        return (threads < 2 && count > MOST).then_some(MOST);
+    if threads < 2 || count < threads * MIN_ROWS_PER_THREAD {
+        return (threads < 2 && count > MAX_ROWS_PER_THREAD).then_some(MAX_ROWS_PER_THREAD);
     }
     let longest = |rows: &usize| count.div_ceil(*rows).div_ceil(threads) * rows;
-    (LEAST / TILE..=MOST / TILE).rev().map(|tiles| tiles * TILE).min_by_key(longest)
+    (MIN_ROWS_PER_THREAD / KERNEL_TILE_ROWS..=MAX_ROWS_PER_THREAD / KERNEL_TILE_ROWS)
+        .rev()
+        .map(|tiles| tiles * KERNEL_TILE_ROWS)
+        .min_by_key(longest)
 }
 
 /// Calls `then` with memory for `length` numbers. Their values are leftovers of earlier uses.
@@ -69,7 +72,10 @@ mod tests {
         for (count, threads) in [(96, 2), (400, 2), (3601, 2), (3601, 16), (830, 2), (3601, 1)] {
             let rows = at_a_time(count, threads).unwrap();
             let longest = count.div_ceil(rows).div_ceil(threads) * rows;
-            assert!(longest * threads < count + count / 12 + TILE * threads, "{count} on {threads}: {rows}");
+            assert!(
+                longest * threads < count + count / 12 + KERNEL_TILE_ROWS * threads,
+                "{count} on {threads}: {rows}"
+            );
         }
     }
 

@@ -9,13 +9,13 @@ use rten_vecmath::Exp;
 
 /// Replaces scores by exp(score - largest score), and returns their sum. The numbers divided by the sum are the
 /// softmax. The caller divides, because it may do so later, with fewer numbers.
-pub(super) fn exponentials(scores: &mut [f32]) -> f32 {
-    Exponentials(scores).dispatch()
+pub(super) fn replace_by_exponentials(scores: &mut [f32]) -> f32 {
+    ExponentialsOp(scores).dispatch()
 }
 
-struct Exponentials<'a>(&'a mut [f32]);
+struct ExponentialsOp<'a>(&'a mut [f32]);
 
-impl SimdOp for Exponentials<'_> {
+impl SimdOp for ExponentialsOp<'_> {
     type Output = f32;
 
     #[inline(always)]
@@ -57,7 +57,7 @@ mod tests {
         for length in 1..70 {
             let before: Vec<f32> = (0..length).map(|at| (at * 37 % 11) as f32 - 5.0).collect();
             let mut after = before.clone();
-            let sum = exponentials(&mut after);
+            let sum = replace_by_exponentials(&mut after);
             let largest = before.iter().copied().fold(f32::MIN, f32::max);
             let expected: Vec<f32> = before.iter().map(|score| (score - largest).exp()).collect();
             assert!(after.iter().zip(&expected).all(|(a, b)| (a - b).abs() < 1e-6), "{length}");
@@ -68,7 +68,7 @@ mod tests {
     #[test]
     fn a_score_that_is_hidden_has_no_share() {
         let mut scores = [f32::NEG_INFINITY, 3.0, f32::NEG_INFINITY, 3.0, 1000.0, f32::NEG_INFINITY];
-        assert!((exponentials(&mut scores) - 1.0).abs() < 1e-6);
+        assert!((replace_by_exponentials(&mut scores) - 1.0).abs() < 1e-6);
         assert_eq!(scores, [0.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
     }
 }

@@ -4,7 +4,7 @@ use candle_core::Result;
 use rayon::prelude::*;
 
 /// The most rows of a tile: as many as the kernels take at a time.
-pub(crate) const TILE: usize = 64;
+pub(crate) const TILE_ROWS: usize = 64;
 
 /// Calls `tile` for each tile of y, a tensor with rows of `width` numbers, on all threads. It gets the number of the
 /// tile's first row, the rows, and memory to work in, which contains leftovers of other tiles.
@@ -16,12 +16,12 @@ pub(crate) fn each_tile(
     // If there are few rows, smaller tiles give every thread some.
     let rows = y.len() / width.max(1);
     let even = rows.div_ceil(rayon::current_num_threads()).next_multiple_of(8);
-    let tiles = y.par_chunks_mut(width.max(1) * even.min(TILE)).enumerate();
-    tiles.try_for_each_init(Vec::new, |memory, (at, y)| tile(at * even.min(TILE), y, memory))
+    let tiles = y.par_chunks_mut(width.max(1) * even.min(TILE_ROWS)).enumerate();
+    tiles.try_for_each_init(Vec::new, |memory, (at, y)| tile(at * even.min(TILE_ROWS), y, memory))
 }
 
 /// Splits memory into parts of these lengths. The memory grows if necessary.
-pub(crate) fn room<const N: usize>(memory: &mut Vec<f32>, lengths: [usize; N]) -> [&mut [f32]; N] {
+pub(crate) fn split_memory<const N: usize>(memory: &mut Vec<f32>, lengths: [usize; N]) -> [&mut [f32]; N] {
     let needed = lengths.iter().sum();
     if memory.len() < needed {
         memory.resize(needed, 0.0);

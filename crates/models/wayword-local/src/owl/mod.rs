@@ -8,7 +8,7 @@ mod heads;
 mod model;
 mod picture;
 
-pub use model::{Owl, OwlOutputs};
+pub use model::{OwlDetector, OwlOutputs};
 
 /// The most memory for the features of recent pictures, bytes.
 pub(crate) const KEPT_BYTES: usize = 256 << 20;

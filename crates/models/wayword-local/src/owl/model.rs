@@ -1,51 +1,51 @@
-//! A whole OWLv2 as a [`Detector`]: from a picture and phrases to boxes with scores.
+//! A whole OWLv2 as a [`ObjectDetector`]: from a picture and phrases to boxes with scores.
 
 use super::{
     KEPT_BYTES,
-    boxes::found,
-    heads::{BoxHead, ClassHead, Classes, unit},
-    picture::Processor,
+    boxes::boxes_from_logits,
+    heads::{BoxHead, ClassHead, PatchClasses, unit_vectors},
+    picture::OwlPictureProcessor,
 };
 use crate::{
-    Device, LocalError, Precision,
-    clip::{Family, TextTower, TowersConfig, VisionTower},
-    ops::{LayerNorm, Linear},
-    picture::{digest, of_view},
-    text::Tokenizer,
-    weights::Weights,
+    LocalError, ModelDevice, WeightPrecision,
+    clip::{TextTower, TowerFamily, TowersConfig, VisionTower},
+    ops::{LayerNorm, LinearLayer},
+    picture::{picture_digest, picture_of_view},
+    text::TextTokenizer,
+    weights::CheckpointWeights,
 };
 use candle_core::{Result as Computed, Tensor};
 use std::{path::Path, sync::Arc};
-use wayword_core::{Detector, Found, Image, ModelError, Recent, Scoring, View};
+use wayword_core::{DetectedBox, DetectorScoring, Image, ModelError, ObjectDetector, RecentCache, View};
 
 /// The number of texts that are computed together.
-const BATCH: usize = 32;
+const TEXTS_PER_BATCH: usize = 32;
 
 /// The number of texts for which vectors are kept, about 2 kB each.
 const KEPT_TEXTS: usize = 4 << 10;
 
 /// OWLv2. The features of recent pictures are kept, in at most 256 MiB, and the vectors of recent texts.
-pub struct Owl {
+pub struct OwlDetector {
     name: String,
-    processor: Processor,
-    tokenizer: Tokenizer,
+    processor: OwlPictureProcessor,
+    tokenizer: TextTokenizer,
     vision: VisionTower,
     text: TextTower,
-    text_projection: Linear,
+    text_projection: LinearLayer,
     patch_norm: LayerNorm,
     classes: ClassHead,
     boxes: BoxHead,
     edge: usize,
     /// The most tokens of a text.
     longest: usize,
-    device: Device,
-    seen: Recent<[u8; 32], Seen>,
-    said: Recent<String, Tensor>,
+    device: ModelDevice,
+    seen: RecentCache<[u8; 32], OwlPictureFeatures>,
+    said: RecentCache<String, Tensor>,
 }
 
 /// The features of a picture: classes and boxes of its patches. They do not depend on the texts.
-struct Seen {
-    classes: Classes,
+struct OwlPictureFeatures {
+    classes: PatchClasses,
     /// Centre, width and height, as shares of the square's edge.
     boxes: Vec<[f32; 4]>,
 }
@@ -59,14 +59,19 @@ pub struct OwlOutputs {
     pub boxes: Vec<[f32; 4]>,
 }
 
-impl Owl {
+impl OwlDetector {
     /// Reads `config.json`, `preprocessor_config.json`, `tokenizer.json` and the checkpoint of a folder. `name` is the
     /// model's name: `hf/ORG/NAME`.
     ///
     /// # Errors
     /// When a file is missing or damaged, or the checkpoint has another architecture.
-    pub fn load(name: &str, folder: &Path, device: &Device, precision: Precision) -> Result<Self, LocalError> {
-        let config = TowersConfig::read(folder, Family::Owl)?;
+    pub fn load(
+        name: &str,
+        folder: &Path,
+        device: &ModelDevice,
+        precision: WeightPrecision,
+    ) -> Result<Self, LocalError> {
+        let config = TowersConfig::from_folder(folder, TowerFamily::Owl)?;
         let (vision, text) = (&config.vision, &config.text);
         let (seen, said) = (vision.layers.hidden_size, text.layers.hidden_size);
         if config.projection_dim != said {
@@ -76,27 +81,27 @@ impl Owl {
                 hint: "choose an OWLv2 model, such as hf/google/owlv2-base-patch16-ensemble",
             });
         }
-        let processor = Processor::load(folder, vision.image_size)?;
-        let tokenizer = Tokenizer::load(folder)?;
-        let weights = Weights::open(folder, device, precision)?;
-        let (all, side) = (weights.scope(""), vision.image_size / vision.patch_size);
+        let processor = OwlPictureProcessor::load(folder, vision.image_size)?;
+        let tokenizer = TextTokenizer::load(folder)?;
+        let weights = CheckpointWeights::open(folder, device, precision)?;
+        let (all, side) = (weights.scope_under(""), vision.image_size / vision.patch_size);
         // Each patch has a class vector, a shift and a scale, and the four numbers of a box.
         let picture_bytes = side * side * (said + 6) * size_of::<f32>();
         Ok(Self {
             name: name.to_owned(),
             processor,
             tokenizer,
-            vision: VisionTower::load(&weights.scope("owlv2.vision_model"), vision, "pre_layernorm")?,
-            text: TextTower::load(&weights.scope("owlv2.text_model"), text)?,
-            text_projection: all.linear("owlv2.text_projection", said, said)?,
+            vision: VisionTower::from_weights(&weights.scope_under("owlv2.vision_model"), vision, "pre_layernorm")?,
+            text: TextTower::from_weights(&weights.scope_under("owlv2.text_model"), text)?,
+            text_projection: all.read_linear("owlv2.text_projection", said, said)?,
             patch_norm: all.layer_norm("layer_norm", seen, vision.layers.layer_norm_eps)?,
-            classes: ClassHead::load(&weights.scope("class_head"), seen, said)?,
-            boxes: BoxHead::load(&weights.scope("box_head"), seen, side, &device.0)?,
+            classes: ClassHead::from_weights(&weights.scope_under("class_head"), seen, said)?,
+            boxes: BoxHead::from_weights(&weights.scope_under("box_head"), seen, side, &device.0)?,
             edge: vision.image_size,
             longest: text.max_position_embeddings,
             device: device.clone(),
-            seen: Recent::one_at_a_time((KEPT_BYTES / picture_bytes.max(1)).max(1)),
-            said: Recent::new(KEPT_TEXTS),
+            seen: RecentCache::one_at_a_time((KEPT_BYTES / picture_bytes.max(1)).max(1)),
+            said: RecentCache::new(KEPT_TEXTS),
         })
     }
 
@@ -110,60 +115,63 @@ impl Owl {
     ///
     /// # Errors
     /// When the picture has no pixels, or the computation fails.
-    pub fn outputs(&self, image: &Image, texts: &[&str]) -> Result<OwlOutputs, LocalError> {
-        let seen = self.seen(image)?;
-        Ok(OwlOutputs { logits: self.logits(&seen, texts)?, boxes: seen.boxes.clone() })
+    pub fn raw_outputs(&self, image: &Image, texts: &[&str]) -> Result<OwlOutputs, LocalError> {
+        let seen = self.picture_features(image)?;
+        Ok(OwlOutputs { logits: self.text_logits(&seen, texts)?, boxes: seen.boxes.clone() })
     }
 
     /// Finds phrases in a picture: for each phrase its boxes, the best first.
     ///
     /// # Errors
     /// When the picture has no pixels, or the computation fails.
-    pub fn find(&self, image: &Image, phrases: &[&str]) -> Result<Vec<Vec<Found>>, LocalError> {
-        let seen = self.seen(image)?;
-        let texts: Vec<String> = phrases.iter().map(|phrase| prompt(phrase)).collect();
-        let logits = self.logits(&seen, &texts.iter().map(String::as_str).collect::<Vec<_>>())?;
+    pub fn find_phrases(&self, image: &Image, phrases: &[&str]) -> Result<Vec<Vec<DetectedBox>>, LocalError> {
+        let seen = self.picture_features(image)?;
+        let texts: Vec<String> = phrases.iter().map(|phrase| photo_prompt(phrase)).collect();
+        let logits = self.text_logits(&seen, &texts.iter().map(String::as_str).collect::<Vec<_>>())?;
         let size = (image.width_px(), image.height_px());
-        Ok(logits.iter().map(|logits| found(logits, &seen.boxes, size)).collect())
+        Ok(logits.iter().map(|logits| boxes_from_logits(logits, &seen.boxes, size)).collect())
     }
 
-    fn logits(&self, seen: &Seen, texts: &[&str]) -> Result<Vec<Vec<f32>>, LocalError> {
+    fn text_logits(&self, seen: &OwlPictureFeatures, texts: &[&str]) -> Result<Vec<Vec<f32>>, LocalError> {
         if texts.is_empty() {
             return Ok(Vec::new());
         }
-        let said = self.said(texts)?;
+        let said = self.text_vectors(texts)?;
         let vectors: Vec<&Tensor> = said.iter().map(|vector| &**vector).collect();
-        let logits = Tensor::stack(&vectors, 0).and_then(|texts| seen.classes.logits(&texts));
-        logits.map_err(|error| LocalError::compute(&self.name, &error))
+        let logits = Tensor::stack(&vectors, 0).and_then(|texts| seen.classes.text_logits(&texts));
+        logits.map_err(|error| LocalError::compute_failed(&self.name, &error))
     }
 
     /// The features of a picture: kept ones, or else new ones, which are then kept.
-    fn seen(&self, image: &Image) -> Result<Arc<Seen>, LocalError> {
-        self.seen.get_or_make(digest(image), || {
-            let picture = self.processor.tensor(image, &self.device)?;
-            self.look(&picture).map_err(|error| LocalError::compute(&self.name, &error))
+    fn picture_features(&self, image: &Image) -> Result<Arc<OwlPictureFeatures>, LocalError> {
+        self.seen.get_or_make(picture_digest(image), || {
+            let picture = self.processor.to_tensor(image, &self.device)?;
+            self.compute_features(&picture).map_err(|error| LocalError::compute_failed(&self.name, &error))
         })
     }
 
-    fn look(&self, picture: &Tensor) -> Computed<Seen> {
-        let states = self.vision.all(picture)?;
+    fn compute_features(&self, picture: &Tensor) -> Computed<OwlPictureFeatures> {
+        let states = self.vision.encode_all_tokens(picture)?;
         let (class, patches) = (states.narrow(1, 0, 1)?, states.narrow(1, 1, states.dim(1)? - 1)?);
-        let patches = self.patch_norm.of(&patches.broadcast_mul(&class)?)?;
-        Ok(Seen { classes: self.classes.of(&patches)?, boxes: self.boxes.of(&patches)? })
+        let patches = self.patch_norm.apply_to(&patches.broadcast_mul(&class)?)?;
+        Ok(OwlPictureFeatures {
+            classes: self.classes.classify_patches(&patches)?,
+            boxes: self.boxes.predict_boxes(&patches)?,
+        })
     }
 
     /// The unit vectors of texts, in their order: kept ones, or else new ones. Texts of similar length are computed
     /// together.
-    fn said(&self, texts: &[&str]) -> Result<Vec<Arc<Tensor>>, LocalError> {
+    fn text_vectors(&self, texts: &[&str]) -> Result<Vec<Arc<Tensor>>, LocalError> {
         let mut known: Vec<Option<Arc<Tensor>>> = texts.iter().map(|&text| self.said.get(&text.to_owned())).collect();
         let mut missing: Vec<(usize, Vec<u32>)> = Vec::new();
         for (at, text) in texts.iter().enumerate().filter(|(at, _)| known[*at].is_none()) {
-            missing.push((at, self.tokenizer.ids(text, self.longest)?));
+            missing.push((at, self.tokenizer.text_ids(text, self.longest)?));
         }
         missing.sort_by_key(|(_, ids)| ids.len());
-        for batch in missing.chunks(BATCH) {
+        for batch in missing.chunks(TEXTS_PER_BATCH) {
             let ids: Vec<&[u32]> = batch.iter().map(|(_, ids)| &ids[..]).collect();
-            let vectors = self.vectors(&ids).map_err(|error| LocalError::compute(&self.name, &error))?;
+            let vectors = self.compute_vectors(&ids).map_err(|error| LocalError::compute_failed(&self.name, &error))?;
             for ((at, _), vector) in batch.iter().zip(vectors) {
                 known[*at] = Some(self.said.put(texts[*at].to_owned(), vector));
             }
@@ -171,41 +179,41 @@ impl Owl {
         Ok(known.into_iter().flatten().collect())
     }
 
-    fn vectors(&self, ids: &[&[u32]]) -> Computed<Vec<Tensor>> {
-        let states = self.text.of(ids, &self.device.0)?;
+    fn compute_vectors(&self, ids: &[&[u32]]) -> Computed<Vec<Tensor>> {
+        let states = self.text.encode_texts(ids, &self.device.0)?;
         // transformers scales to length 1 twice.
-        let vectors = unit(&unit(&self.text_projection.of(&states)?.squeeze(1)?)?)?;
+        let vectors = unit_vectors(&unit_vectors(&self.text_projection.apply_to(&states)?.squeeze(1)?)?)?;
         (0..ids.len()).map(|at| vectors.get(at)).collect()
     }
 }
 
 /// The text for a phrase, as the documentation of the checkpoints recommends: "a photo of a sink". If the phrase has an
 /// article, it is left out.
-fn prompt(phrase: &str) -> String {
+fn photo_prompt(phrase: &str) -> String {
     let phrase = phrase.trim();
     let article = |(first, _): &(&str, &str)| ["a", "an", "the"].iter().any(|word| first.eq_ignore_ascii_case(word));
     let thing = phrase.split_once(char::is_whitespace).filter(article).map_or(phrase, |(_, rest)| rest.trim_start());
     format!("a photo of a {thing}")
 }
 
-impl Detector for Owl {
+impl ObjectDetector for OwlDetector {
     fn name(&self) -> &str {
         &self.name
     }
 
-    fn scoring(&self) -> Scoring {
-        Scoring {
+    fn scoring(&self) -> DetectorScoring {
+        DetectorScoring {
             means: "OWLv2: the sigmoid of the best patch's logit for \"a photo of a PHRASE\", each phrase by itself",
             found_from: 0.1,
             phrases_meet: false,
         }
     }
 
-    fn detect(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<Vec<Found>>, ModelError>> {
+    fn detect_phrases(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<Vec<DetectedBox>>, ModelError>> {
         let one = |view: &&View| {
-            let image = of_view(view, &self.name)?;
+            let image = picture_of_view(view, &self.name)?;
             let failed = |error: LocalError| ModelError::Failed { model: self.name.clone(), reason: error.to_string() };
-            self.find(image, phrases).map_err(failed)
+            self.find_phrases(image, phrases).map_err(failed)
         };
         views.iter().map(one).collect()
     }
@@ -213,7 +221,7 @@ impl Detector for Owl {
 
 #[cfg(test)]
 mod tests {
-    use super::prompt;
+    use super::photo_prompt;
 
     #[test]
     fn a_phrase_is_put_into_the_documented_prompt_without_its_own_article() {
@@ -224,7 +232,7 @@ mod tests {
             ("a", "a photo of a a"),
             ("theatre seat", "a photo of a theatre seat"),
         ] {
-            assert_eq!(prompt(phrase), text);
+            assert_eq!(photo_prompt(phrase), text);
         }
     }
 }

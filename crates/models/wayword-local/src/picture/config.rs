@@ -1,26 +1,26 @@
 //! Reads `preprocessor_config.json`, which prescribes how pictures are resized, cropped and normalised.
 
-use super::{Processor, Size, resample::Filter};
+use super::{PictureProcessor, ResizeRule, resample::ResampleFilter};
 use crate::{LocalError, json};
 use serde::Deserialize;
 use std::path::Path;
 
-const FILE: &str = "preprocessor_config.json";
+const PREPROCESSOR_FILE: &str = "preprocessor_config.json";
 
 /// Longest edge of a picture for a model, pixels.
 const LONGEST_EDGE: usize = 2048;
 
 /// OpenAI's means and standard deviations of red, green and blue, which CLIP and BLIP share.
-const MEAN: [f64; 3] = [0.48145466, 0.4578275, 0.40821073];
-const DEVIATION: [f64; 3] = [0.26862954, 0.26130258, 0.27577711];
+const CLIP_MEANS_RGB: [f64; 3] = [0.48145466, 0.4578275, 0.40821073];
+const CLIP_DEVIATIONS_RGB: [f64; 3] = [0.26862954, 0.26130258, 0.27577711];
 
 /// `preprocessor_config.json` in its old and new forms.
 #[derive(Debug, Deserialize)]
-pub(super) struct Config {
+pub(super) struct PictureConfig {
     #[serde(alias = "feature_extractor_type")]
     image_processor_type: Option<String>,
-    size: Option<Edges>,
-    crop_size: Option<Edges>,
+    size: Option<ResizeEdges>,
+    crop_size: Option<ResizeEdges>,
     do_resize: Option<bool>,
     do_center_crop: Option<bool>,
     do_rescale: Option<bool>,
@@ -34,7 +34,7 @@ pub(super) struct Config {
 /// A size, in any of the forms that files use.
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(untagged)]
-enum Edges {
+enum ResizeEdges {
     Both { height: usize, width: usize },
     Shortest { shortest_edge: usize },
     One(usize),
@@ -42,83 +42,87 @@ enum Edges {
 
 /// The family of the processor. CLIP and BLIP have different defaults.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Maker {
+enum ProcessorFamily {
     Clip,
     Blip,
 }
 
-impl Config {
-    pub(super) fn read(folder: &Path) -> Result<Self, LocalError> {
-        json::read(folder, FILE, "the configuration of the pictures")
+impl PictureConfig {
+    pub(super) fn from_folder(folder: &Path) -> Result<Self, LocalError> {
+        json::read_required(folder, PREPROCESSOR_FILE, "the configuration of the pictures")
     }
 
-    pub(super) fn processor(&self, folder: &Path) -> Result<Processor, LocalError> {
-        let built = self.build();
+    pub(super) fn to_processor(&self, folder: &Path) -> Result<PictureProcessor, LocalError> {
+        let built = self.build_processor();
         built.map_err(|problem| LocalError::File {
-            file: folder.join(FILE),
+            file: folder.join(PREPROCESSOR_FILE),
             problem,
             hint: "choose a CLIP, BLIP or BLIP-2 model; if this is one, its file is damaged: delete the folder models--ORG--NAME that holds it, and run `wayword models fetch hf/ORG/NAME`",
         })
     }
 
-    fn build(&self) -> Result<Processor, String> {
-        let maker = self.maker()?;
+    fn build_processor(&self) -> Result<PictureProcessor, String> {
+        let maker = self.processor_family()?;
         if self.do_resize == Some(false) {
             return Err("do_resize: pictures that are not resized are not supported".to_owned());
         }
-        let (size, (height_px, width_px)) = self.sizes(maker)?;
+        let (size, (height_px, width_px)) = self.resize_rule(maker)?;
         let filter = match self.resample.unwrap_or(3) {
-            2 => Filter::Bilinear,
-            3 => Filter::Bicubic,
+            2 => ResampleFilter::Bilinear,
+            3 => ResampleFilter::Bicubic,
             other => return Err(format!("resample: {other} is neither 2 (bilinear) nor 3 (bicubic)")),
         };
-        Ok(Processor { size, height_px, width_px, filter, numbers: self.numbers()? })
+        Ok(PictureProcessor { size, height_px, width_px, filter, numbers: self.byte_values()? })
     }
 
     /// The family. The oldest files do not name it, and are CLIP's.
-    fn maker(&self) -> Result<Maker, String> {
+    fn processor_family(&self) -> Result<ProcessorFamily, String> {
         match self.image_processor_type.as_deref() {
-            None => Ok(Maker::Clip),
-            Some(name) if name.starts_with("CLIP") => Ok(Maker::Clip),
-            Some(name) if name.starts_with("Blip") => Ok(Maker::Blip),
+            None => Ok(ProcessorFamily::Clip),
+            Some(name) if name.starts_with("CLIP") => Ok(ProcessorFamily::Clip),
+            Some(name) if name.starts_with("Blip") => Ok(ProcessorFamily::Blip),
             Some(name) => Err(format!("image_processor_type: {name} is neither CLIP's nor BLIP's")),
         }
     }
 
     /// The rule for resizing, and the height and width of the output.
-    fn sizes(&self, maker: Maker) -> Result<(Size, (usize, usize)), String> {
+    fn resize_rule(&self, maker: ProcessorFamily) -> Result<(ResizeRule, (usize, usize)), String> {
         let size = self.size.unwrap_or(match maker {
-            Maker::Clip => Edges::Shortest { shortest_edge: 224 },
-            Maker::Blip => Edges::Both { height: 384, width: 384 },
+            ProcessorFamily::Clip => ResizeEdges::Shortest { shortest_edge: 224 },
+            ProcessorFamily::Blip => ResizeEdges::Both { height: 384, width: 384 },
         });
         let size = match (size, maker) {
-            (Edges::One(edge), Maker::Clip) => Edges::Shortest { shortest_edge: edge },
-            (Edges::One(edge), Maker::Blip) => Edges::Both { height: edge, width: edge },
+            (ResizeEdges::One(edge), ProcessorFamily::Clip) => ResizeEdges::Shortest { shortest_edge: edge },
+            (ResizeEdges::One(edge), ProcessorFamily::Blip) => ResizeEdges::Both { height: edge, width: edge },
             (size, _) => size,
         };
-        let crops = self.do_center_crop.unwrap_or(maker == Maker::Clip);
-        let crop = match self.crop_size.unwrap_or(Edges::One(224)) {
+        let crops = self.do_center_crop.unwrap_or(maker == ProcessorFamily::Clip);
+        let crop = match self.crop_size.unwrap_or(ResizeEdges::One(224)) {
             _ if !crops => None,
-            Edges::One(edge) | Edges::Shortest { shortest_edge: edge } => Some((edge, edge)),
-            Edges::Both { height, width } => Some((height, width)),
+            ResizeEdges::One(edge) | ResizeEdges::Shortest { shortest_edge: edge } => Some((edge, edge)),
+            ResizeEdges::Both { height, width } => Some((height, width)),
         };
         let (size, out) = match (size, crop) {
-            (Edges::Both { height, width }, None) => (Size::Whole, (bounded(height)?, bounded(width)?)),
-            (Edges::Both { height, width }, Some(crop)) => (Size::Cropped(bounded(height)?, bounded(width)?), crop),
-            (Edges::Shortest { shortest_edge: edge } | Edges::One(edge), Some(crop)) => {
-                (Size::ShortestEdge(bounded(edge)?), crop)
+            (ResizeEdges::Both { height, width }, None) => {
+                (ResizeRule::Whole, (check_edge(height)?, check_edge(width)?))
+            }
+            (ResizeEdges::Both { height, width }, Some(crop)) => {
+                (ResizeRule::Cropped(check_edge(height)?, check_edge(width)?), crop)
+            }
+            (ResizeEdges::Shortest { shortest_edge: edge } | ResizeEdges::One(edge), Some(crop)) => {
+                (ResizeRule::ShortestEdge(check_edge(edge)?), crop)
             }
             _ => return Err("size: with only a shortest edge, pictures must be cropped".to_owned()),
         };
-        Ok((size, (bounded(out.0)?, bounded(out.1)?)))
+        Ok((size, (check_edge(out.0)?, check_edge(out.1)?)))
     }
 
     /// The model's input for each value of a byte, for each colour.
-    fn numbers(&self) -> Result<[[f32; 256]; 3], String> {
+    fn byte_values(&self) -> Result<[[f32; 256]; 3], String> {
         let factor = if self.do_rescale == Some(false) { 1.0 } else { self.rescale_factor.unwrap_or(1.0 / 255.0) };
         let (mean, deviation) = match self.do_normalize {
             Some(false) => ([0.0; 3], [1.0; 3]),
-            _ => (self.image_mean.unwrap_or(MEAN), self.image_std.unwrap_or(DEVIATION)),
+            _ => (self.image_mean.unwrap_or(CLIP_MEANS_RGB), self.image_std.unwrap_or(CLIP_DEVIATIONS_RGB)),
         };
         if deviation.contains(&0.0) || !deviation.iter().chain(&mean).chain([&factor]).all(|number| number.is_finite())
         {
@@ -130,7 +134,7 @@ impl Config {
     }
 }
 
-fn bounded(edge: usize) -> Result<usize, String> {
+fn check_edge(edge: usize) -> Result<usize, String> {
     match edge {
         1..=LONGEST_EDGE => Ok(edge),
         _ => Err(format!("size: an edge of {edge} pixels is not between 1 and {LONGEST_EDGE}")),

@@ -1,16 +1,16 @@
 //! Prepares pictures for GLIP: the whole picture is resized until its short edge has a given length, and padded at the
 //! right and at the bottom.
 
-use super::resample::{Axis, Filter, resample};
-use crate::{Device, LocalError};
+use super::resample::{ResampleAxis, ResampleFilter, resample_picture};
+use crate::{LocalError, ModelDevice};
 use candle_core::Tensor;
 use wayword_core::Image;
 
 /// The largest edges that are accepted, pixels.
-const LARGEST: usize = 4096;
+const MAX_EDGE_PX: usize = 4096;
 
 /// Prepares pictures of any proportions, without cropping.
-pub(crate) struct Edges {
+pub(crate) struct PaddedPictureProcessor {
     short: usize,
     long: usize,
     multiple: usize,
@@ -18,7 +18,7 @@ pub(crate) struct Edges {
     channels: [(usize, [f32; 256]); 3],
 }
 
-impl Edges {
+impl PaddedPictureProcessor {
     /// The short edge becomes `short` pixels, or less where the long one would exceed `long`. Then zeros are added
     /// until both are multiples of `multiple`. `colours` has the colour of each channel; `mean` and `deviation` are in
     /// bytes.
@@ -30,8 +30,8 @@ impl Edges {
         mean: [f32; 3],
         deviation: [f32; 3],
     ) -> Result<Self, LocalError> {
-        if !(1..=LARGEST).contains(&short) || short > long || long > LARGEST {
-            let problem = format!("a short edge of {short} pixels is not from 1 to {}", long.min(LARGEST));
+        if !(1..=MAX_EDGE_PX).contains(&short) || short > long || long > MAX_EDGE_PX {
+            let problem = format!("a short edge of {short} pixels is not from 1 to {}", long.min(MAX_EDGE_PX));
             return Err(LocalError::Compute { model: "pictures".to_owned(), problem });
         }
         let channel = |at: usize| {
@@ -48,7 +48,7 @@ impl Edges {
     }
 
     /// Width and height of a picture after it is resized, rounded as Python rounds them.
-    fn size(&self, width: usize, height: usize) -> (usize, usize) {
+    fn resized_size(&self, width: usize, height: usize) -> (usize, usize) {
         let (low, high) = (width.min(height).max(1), width.max(height).max(1));
         let mut short = self.short;
         if high as f64 / low as f64 * short as f64 > self.long as f64 {
@@ -65,16 +65,20 @@ impl Edges {
     ///
     /// # Errors
     /// When the picture has no pixels, or the device has no memory left.
-    pub(crate) fn tensor(&self, image: &Image, device: &Device) -> Result<(Tensor, (usize, usize)), LocalError> {
+    pub(crate) fn to_tensor(
+        &self,
+        image: &Image,
+        device: &ModelDevice,
+    ) -> Result<(Tensor, (usize, usize)), LocalError> {
         let wrong = |problem: String| LocalError::Compute { model: "pictures".to_owned(), problem };
         let (from_width, from_height) = (image.width_px() as usize, image.height_px() as usize);
         if from_width == 0 || from_height == 0 {
             return Err(wrong(format!("{image:?} has no pixels")));
         }
-        let (width, height) = self.size(from_width, from_height);
-        let down = Axis::middle(Filter::Bilinear, from_height, height, height);
-        let across = Axis::middle(Filter::Bilinear, from_width, width, width);
-        let rgb = resample(image.rgb(), &down, &across);
+        let (width, height) = self.resized_size(from_width, from_height);
+        let down = ResampleAxis::keep_middle(ResampleFilter::Bilinear, from_height, height, height);
+        let across = ResampleAxis::keep_middle(ResampleFilter::Bilinear, from_width, width, width);
+        let rgb = resample_picture(image.rgb_bytes(), &down, &across);
         let (padded_width, padded_height) =
             (width.next_multiple_of(self.multiple), height.next_multiple_of(self.multiple));
         let mut numbers = vec![0.0; 3 * padded_width * padded_height];
@@ -94,8 +98,9 @@ impl Edges {
 mod tests {
     use super::*;
 
-    fn edges() -> Edges {
-        Edges::new(800, 1333, 32, [2, 1, 0], [103.53, 116.28, 123.675], [57.375, 57.12, 58.395]).unwrap()
+    fn edges() -> PaddedPictureProcessor {
+        PaddedPictureProcessor::new(800, 1333, 32, [2, 1, 0], [103.53, 116.28, 123.675], [57.375, 57.12, 58.395])
+            .unwrap()
     }
 
     #[test]
@@ -109,15 +114,15 @@ mod tests {
             ((500, 500), (800, 800)),
             ((1, 100_000), (1, 1344)),
         ] {
-            assert_eq!(edges().size(from.0, from.1), to, "{from:?}");
+            assert_eq!(edges().resized_size(from.0, from.1), to, "{from:?}");
         }
     }
 
     #[test]
     fn channels_are_reordered_and_padding_is_zero() {
-        let edges = Edges::new(1, 1333, 4, [2, 1, 0], [0.0; 3], [1.0; 3]).unwrap();
+        let edges = PaddedPictureProcessor::new(1, 1333, 4, [2, 1, 0], [0.0; 3], [1.0; 3]).unwrap();
         let image = Image::new(2, 1, vec![10, 20, 30, 40, 50, 60]).unwrap();
-        let (pixels, size) = edges.tensor(&image, &Device::cpu()).unwrap();
+        let (pixels, size) = edges.to_tensor(&image, &ModelDevice::cpu()).unwrap();
         assert_eq!((pixels.dims(), size), (&[1, 3, 4, 4][..], (2, 1)));
         let rows = pixels.squeeze(0).unwrap().to_vec3::<f32>().unwrap();
         assert_eq!(
@@ -130,9 +135,9 @@ mod tests {
     #[test]
     fn impossible_edges_are_refused() {
         for short in [0, 1334, 1 << 40] {
-            assert!(Edges::new(short, 1333, 32, [0, 1, 2], [0.0; 3], [1.0; 3]).is_err());
+            assert!(PaddedPictureProcessor::new(short, 1333, 32, [0, 1, 2], [0.0; 3], [1.0; 3]).is_err());
         }
         let empty = Image::new(0, 7, Vec::new()).unwrap();
-        assert!(edges().tensor(&empty, &Device::cpu()).is_err());
+        assert!(edges().to_tensor(&empty, &ModelDevice::cpu()).is_err());
     }
 }

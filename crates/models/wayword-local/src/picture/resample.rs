@@ -10,11 +10,11 @@ use rayon::prelude::*;
 use std::ops::Range;
 
 /// The number of fraction bits of a weight.
-const BITS: u32 = 32 - 8 - 2;
+const WEIGHT_FRACTION_BITS: u32 = 32 - 8 - 2;
 
 /// The rule by which new pixels are interpolated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Filter {
+pub(crate) enum ResampleFilter {
     /// From the two nearest pixels.
     Bilinear,
     /// From the four nearest pixels, with a = -0.5.
@@ -22,7 +22,7 @@ pub(crate) enum Filter {
 }
 
 /// The weights for resizing one axis of a picture.
-pub(crate) struct Axis {
+pub(crate) struct ResampleAxis {
     /// The number of old pixels.
     from: usize,
     /// The number of new pixels, with black ones.
@@ -30,72 +30,72 @@ pub(crate) struct Axis {
     /// The position of the first computed pixel. Everything before the first and after the last one is black.
     first: usize,
     /// One window for each computed pixel.
-    windows: Vec<Window>,
+    windows: Vec<ResampleWindow>,
 }
 
 /// The old pixels and their weights for one new pixel.
-struct Window {
+struct ResampleWindow {
     start: usize,
     weights: Vec<i32>,
 }
 
-impl Filter {
+impl ResampleFilter {
     /// The largest distance of an old pixel that counts, pixels of the coarser picture.
-    fn reach(self) -> f64 {
+    fn reach_px(self) -> f64 {
         match self {
             Self::Bilinear => 1.0,
             Self::Bicubic => 2.0,
         }
     }
 
-    fn weight(self, at: f64) -> f64 {
-        const A: f64 = -0.5;
+    fn weight_at(self, at: f64) -> f64 {
+        const BICUBIC_A: f64 = -0.5;
         let at = at.abs();
         match self {
             Self::Bilinear if at < 1.0 => 1.0 - at,
-            Self::Bicubic if at < 1.0 => ((A + 2.0) * at - (A + 3.0)) * at * at + 1.0,
-            Self::Bicubic if at < 2.0 => (((at - 5.0) * at + 8.0) * at - 4.0) * A,
+            Self::Bicubic if at < 1.0 => ((BICUBIC_A + 2.0) * at - (BICUBIC_A + 3.0)) * at * at + 1.0,
+            Self::Bicubic if at < 2.0 => (((at - 5.0) * at + 8.0) * at - 4.0) * BICUBIC_A,
             _ => 0.0,
         }
     }
 
     /// The window of new pixel `at` on an axis that is resized from `from` to `to` pixels.
-    fn window(self, at: usize, from: usize, to: usize) -> Window {
+    fn pixel_window(self, at: usize, from: usize, to: usize) -> ResampleWindow {
         if from == to {
-            return Window { start: at, weights: vec![1 << BITS] };
+            return ResampleWindow { start: at, weights: vec![1 << WEIGHT_FRACTION_BITS] };
         }
         let scale = from as f64 / to as f64;
         let stretch = scale.max(1.0);
-        let reach = self.reach() * stretch;
+        let reach = self.reach_px() * stretch;
         let centre = (at as f64 + 0.5) * scale;
         let start = (centre - reach + 0.5).max(0.0) as usize;
         let end = ((centre + reach + 0.5) as usize).min(from);
         let shares: Vec<f64> =
-            (start..end).map(|pixel| self.weight((pixel as f64 - centre + 0.5) * (1.0 / stretch))).collect();
+            (start..end).map(|pixel| self.weight_at((pixel as f64 - centre + 0.5) * (1.0 / stretch))).collect();
         let sum: f64 = shares.iter().sum();
         let whole = |share: &f64| {
-            let share = if sum == 0.0 { *share } else { share / sum } * f64::from(1 << BITS);
+            let share = if sum == 0.0 { *share } else { share / sum } * f64::from(1 << WEIGHT_FRACTION_BITS);
             (if share < 0.0 { share - 0.5 } else { share + 0.5 }) as i32
         };
-        Window { start, weights: shares.iter().map(whole).collect() }
+        ResampleWindow { start, weights: shares.iter().map(whole).collect() }
     }
 }
 
-impl Axis {
+impl ResampleAxis {
     /// Resizes an axis from `from` pixels to `to`, and keeps the `keep` pixels in the middle. If there are fewer, black
     /// is added around them (transformers' `center_crop`). Only kept pixels are computed.
-    pub(crate) fn middle(filter: Filter, from: usize, to: usize, keep: usize) -> Self {
+    pub(crate) fn keep_middle(filter: ResampleFilter, from: usize, to: usize, keep: usize) -> Self {
         let (kept, first): (Range<usize>, usize) = if to >= keep {
             let left = (to - keep) / 2;
             (left..left + keep, 0)
         } else {
             (0..to, (keep - to).div_ceil(2))
         };
-        Self { from, to: keep, first, windows: kept.map(|at| filter.window(at, from, to)).collect() }
+        Self { from, to: keep, first, windows: kept.map(|at| filter.pixel_window(at, from, to)).collect() }
     }
 
     /// The range of old pixels that have a weight.
-    fn seen(&self) -> Range<usize> {
+    fn source_range(&self) -> Range<usize> {
         let start = self.windows.first().map_or(0, |window| window.start);
         let end = self.windows.iter().map(|window| window.start + window.weights.len()).max().unwrap_or(0);
         start..end.max(start)
@@ -103,8 +103,8 @@ impl Axis {
 }
 
 /// Resizes a picture of 3 bytes per pixel, rows from the top.
-pub(crate) fn resample(rgb: &[u8], down: &Axis, across: &Axis) -> Vec<u8> {
-    let seen = down.seen();
+pub(crate) fn resample_picture(rgb: &[u8], down: &ResampleAxis, across: &ResampleAxis) -> Vec<u8> {
+    let seen = down.source_range();
     let row = across.windows.len() * 3;
     let mut narrow = vec![0; seen.len() * row];
     let rows = rgb.chunks(across.from * 3).skip(seen.start).take(seen.len()).collect::<Vec<_>>();
@@ -119,32 +119,32 @@ pub(crate) fn resample(rgb: &[u8], down: &Axis, across: &Axis) -> Vec<u8> {
     made
 }
 
-fn across_row(from: &[u8], to: &mut [u8], across: &Axis) {
+fn across_row(from: &[u8], to: &mut [u8], across: &ResampleAxis) {
     for (pixel, window) in to.chunks_exact_mut(3).zip(&across.windows) {
-        let mut sums = [1 << (BITS - 1); 3];
+        let mut sums = [1 << (WEIGHT_FRACTION_BITS - 1); 3];
         for (pixel, &weight) in from[window.start * 3..].chunks_exact(3).zip(&window.weights) {
             for (sum, &byte) in sums.iter_mut().zip(pixel) {
                 *sum += i32::from(byte) * weight;
             }
         }
         for (byte, sum) in pixel.iter_mut().zip(sums) {
-            *byte = clipped(sum);
+            *byte = clip_to_byte(sum);
         }
     }
 }
 
-fn down_row(from: &[u8], to: &mut [u8], window: &Window) {
-    let mut sums = vec![1 << (BITS - 1); to.len()];
+fn down_row(from: &[u8], to: &mut [u8], window: &ResampleWindow) {
+    let mut sums = vec![1 << (WEIGHT_FRACTION_BITS - 1); to.len()];
     for (row, &weight) in from.chunks_exact(to.len().max(1)).zip(&window.weights) {
         for (sum, &byte) in sums.iter_mut().zip(row) {
             *sum += i32::from(byte) * weight;
         }
     }
     for (byte, sum) in to.iter_mut().zip(sums) {
-        *byte = clipped(sum);
+        *byte = clip_to_byte(sum);
     }
 }
 
-fn clipped(sum: i32) -> u8 {
-    (sum >> BITS).clamp(0, 255) as u8
+fn clip_to_byte(sum: i32) -> u8 {
+    (sum >> WEIGHT_FRACTION_BITS).clamp(0, 255) as u8
 }

@@ -27,14 +27,14 @@ fn drawn(width: u32, height: u32) -> Image {
     Image::new(width, height, (0..width * height * 3).map(byte).collect()).unwrap()
 }
 
-fn processor(config: &serde_json::Value) -> Result<Processor, LocalError> {
+fn processor(config: &serde_json::Value) -> Result<PictureProcessor, LocalError> {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("preprocessor_config.json"), config.to_string()).unwrap();
-    Processor::load(folder.path())
+    PictureProcessor::load(folder.path())
 }
 
-fn numbers(processor: &Processor, images: &[&Image]) -> Vec<f32> {
-    processor.tensor(images, &Device::cpu()).unwrap().flatten_all().unwrap().to_vec1().unwrap()
+fn numbers(processor: &PictureProcessor, images: &[&Image]) -> Vec<f32> {
+    processor.to_tensor(images, &ModelDevice::cpu()).unwrap().flatten_all().unwrap().to_vec1().unwrap()
 }
 
 #[test]
@@ -81,7 +81,7 @@ fn a_thin_picture_takes_no_more_memory_than_a_square_one() {
 fn a_picture_without_pixels_is_refused() {
     let processor = processor(&serde_json::json!({})).unwrap();
     let empty = Image::new(0, 7, Vec::new()).unwrap();
-    let error = processor.tensor(&[&empty], &Device::cpu()).unwrap_err().to_string();
+    let error = processor.to_tensor(&[&empty], &ModelDevice::cpu()).unwrap_err().to_string();
     assert!(error.contains("0 x 7"), "{error}");
 }
 
@@ -104,7 +104,7 @@ fn processor_reports_settings_it_does_not_support() {
 
 #[test]
 fn the_same_pixels_in_another_shape_are_another_picture() {
-    let shaped = |width, height| digest(&Image::new(width, height, vec![7; 36]).unwrap());
+    let shaped = |width, height| picture_digest(&Image::new(width, height, vec![7; 36]).unwrap());
     assert_ne!(shaped(3, 4), shaped(4, 3));
     assert_eq!(shaped(3, 4), shaped(3, 4));
 }

@@ -1,13 +1,13 @@
 //! Attention within windows: each place sees only the places of its own window.
 
-use super::windows::{Windows, distances};
+use super::windows::{MapWindows, bias_rows};
 use crate::{
     LocalError,
     ops::{
-        Attention,
-        kernels::{Options, product, with_numbers},
+        MultiHeadAttention,
+        kernels::{ProductOptions, with_numbers, write_product},
     },
-    weights::Scope,
+    weights::WeightScope,
 };
 use candle_core::{Result, Tensor};
 use rayon::prelude::*;
@@ -17,7 +17,7 @@ use rten_tensor::NdTensorView;
 use rten_vecmath::Softmax;
 
 /// Added to the score of two places that do not see each other, so that its share becomes almost 0.
-const UNSEEN: f32 = -100.0;
+const HIDDEN_SCORE: f32 = -100.0;
 
 /// Attention within windows, with a learned bias for the distance between two places.
 pub(super) struct WindowAttention {
@@ -27,33 +27,33 @@ pub(super) struct WindowAttention {
 }
 
 impl WindowAttention {
-    pub(super) fn load(
-        weights: &Scope<'_>,
+    pub(super) fn from_weights(
+        weights: &WeightScope<'_>,
         table: &str,
         heads: usize,
         edge: usize,
     ) -> std::result::Result<Self, LocalError> {
         let rows = (2 * edge - 1) * (2 * edge - 1);
-        let biases = weights.state(table, &[rows, heads])?;
+        let biases = weights.read_state(table, &[rows, heads])?;
         let spread = || {
-            let rows = distances(edge).into_iter().map(|row| row as u32).collect::<Vec<_>>();
+            let rows = bias_rows(edge).into_iter().map(|row| row as u32).collect::<Vec<_>>();
             let rows = Tensor::from_vec(rows, edge * edge * edge * edge, biases.device())?;
             biases.index_select(&rows, 0)?.t()?.contiguous()?.reshape((heads, edge * edge, edge * edge))
         };
-        Ok(Self { heads, bias: spread().map_err(|error| weights.wrong(table, &error))? })
+        Ok(Self { heads, bias: spread().map_err(|error| weights.tensor_error(table, &error))? })
     }
 
     /// The states [places, channels] after attention, in the order of the windows. `qkv` has queries, keys and values
     /// [positions, 3 * channels] of a map, and `of_padding` those of padding [3 * channels].
-    pub(super) fn on_processor(&self, qkv: &Tensor, of_padding: &Tensor, windows: &Windows) -> Result<Tensor> {
+    pub(super) fn on_processor(&self, qkv: &Tensor, of_padding: &Tensor, windows: &MapWindows) -> Result<Tensor> {
         let width = qkv.dim(1)? / 3;
         let mut mixed = vec![0.0; windows.positions.len() * width];
         with_numbers(qkv, |qkv| {
             with_numbers(of_padding, |of_padding| {
                 with_numbers(&self.bias, |bias| {
-                    let attend = Windowed { qkv, of_padding, bias, windows, width, heads: self.heads };
+                    let attend = WindowPass { qkv, of_padding, bias, windows, width, heads: self.heads };
                     let each = mixed.par_chunks_mut(windows.size * width).enumerate();
-                    each.try_for_each_init(Vec::new, |room, (window, mixed)| attend.one(window, mixed, room))
+                    each.try_for_each_init(Vec::new, |room, (window, mixed)| attend.attend_window(window, mixed, room))
                 })
             })
         })?;
@@ -61,9 +61,9 @@ impl WindowAttention {
     }
 
     /// The same with candle's operators.
-    pub(super) fn on_device(&self, qkv: &Tensor, of_padding: &Tensor, windows: &Windows) -> Result<Tensor> {
+    pub(super) fn on_device(&self, qkv: &Tensor, of_padding: &Tensor, windows: &MapWindows) -> Result<Tensor> {
         let width = qkv.dim(1)? / 3;
-        let (count, size, device) = (windows.count(), windows.size, qkv.device());
+        let (count, size, device) = (windows.window_count(), windows.size, qkv.device());
         let padding = qkv.dim(0)? as u32;
         let rows = windows.positions.iter().map(|&at| at.min(padding)).collect();
         let rows = Tensor::from_vec(rows, count * size, device)?;
@@ -74,30 +74,30 @@ impl WindowAttention {
         for (window, hides) in hides.chunks_mut(size * size).enumerate() {
             let Some(regions) = windows.regions_of(window) else { continue };
             for (pair, hides) in hides.iter_mut().enumerate() {
-                *hides = if regions[pair / size] == regions[pair % size] { 0.0 } else { UNSEEN };
+                *hides = if regions[pair / size] == regions[pair % size] { 0.0 } else { HIDDEN_SCORE };
             }
         }
         let hides = Tensor::from_vec(hides, (count, 1, size, size), device)?.to_dtype(self.bias.dtype())?;
         let bias = hides.broadcast_add(&self.bias.unsqueeze(0)?)?;
         let scale = 1.0 / ((width / self.heads) as f32).sqrt();
-        let attention = Attention { heads: self.heads, scale, bias: Some(&bias) };
-        attention.of(&part(0)?, &part(1)?, &part(2)?)?.reshape((count * size, width))
+        let attention = MultiHeadAttention { heads: self.heads, scale, bias: Some(&bias) };
+        attention.attend_to(&part(0)?, &part(1)?, &part(2)?)?.reshape((count * size, width))
     }
 }
 
 /// The inputs of one pass over all windows.
-struct Windowed<'a> {
+struct WindowPass<'a> {
     qkv: &'a [f32],
     of_padding: &'a [f32],
     bias: &'a [f32],
-    windows: &'a Windows,
+    windows: &'a MapWindows,
     width: usize,
     heads: usize,
 }
 
-impl Windowed<'_> {
+impl WindowPass<'_> {
     /// Writes the states [places, channels] of one window into `mixed`. `room` is memory to work in.
-    fn one(&self, window: usize, mixed: &mut [f32], room: &mut Vec<f32>) -> Result<()> {
+    fn attend_window(&self, window: usize, mixed: &mut [f32], room: &mut Vec<f32>) -> Result<()> {
         let (size, width, row) = (self.windows.size, self.width, 3 * self.width);
         let head_width = width / self.heads;
         room.resize(size * row + size * size + size * head_width, 0.0);
@@ -106,7 +106,11 @@ impl Windowed<'_> {
         let positions = &self.windows.positions[window * size..(window + 1) * size];
         for (seen, &position) in seen.chunks_exact_mut(row).zip(positions) {
             let from = position as usize * row;
-            seen.copy_from_slice(if position == Windows::PAD { self.of_padding } else { &self.qkv[from..from + row] });
+            seen.copy_from_slice(if position == MapWindows::PADDING_POSITION {
+                self.of_padding
+            } else {
+                &self.qkv[from..from + row]
+            });
         }
         let regions = self.windows.regions_of(window);
         let scale = 1.0 / (head_width as f32).sqrt();
@@ -117,12 +121,12 @@ impl Windowed<'_> {
                 NdTensorView::from_data_with_strides([size, head_width], &seen[from..to], [row, 1])
                     .map_err(candle_core::Error::wrap)
             };
-            let options = Options { alpha: scale, ..Options::default() };
+            let options = ProductOptions { alpha: scale, ..ProductOptions::default() };
             let keys = GemmInputB::Unpacked(part(1)?.transposed());
-            product(scores, GemmInputA::Unpacked(part(0)?), keys, options)?;
-            self.softmax(scores, head, regions);
+            write_product(scores, GemmInputA::Unpacked(part(0)?), keys, options)?;
+            self.normalise_scores(scores, head, regions);
             let weights = GemmInputA::Unpacked(NdTensorView::from_data([size, size], &*scores));
-            product(of_head, weights, GemmInputB::Unpacked(part(2)?), Options::default())?;
+            write_product(of_head, weights, GemmInputB::Unpacked(part(2)?), ProductOptions::default())?;
             for (mixed, of_head) in mixed.chunks_exact_mut(width).zip(of_head.chunks_exact(head_width)) {
                 mixed[head * head_width..(head + 1) * head_width].copy_from_slice(of_head);
             }
@@ -132,14 +136,14 @@ impl Windowed<'_> {
 
     /// Adds the biases of a head to the scores of a window, hides places that are no neighbours on the map, and makes
     /// each row sum to 1.
-    fn softmax(&self, scores: &mut [f32], head: usize, regions: Option<&[u8]>) {
+    fn normalise_scores(&self, scores: &mut [f32], head: usize, regions: Option<&[u8]>) {
         let size = self.windows.size;
         let bias = &self.bias[head * size * size..(head + 1) * size * size];
         for (at, (scores, bias)) in scores.chunks_exact_mut(size).zip(bias.chunks_exact(size)).enumerate() {
             scores.iter_mut().zip(bias).for_each(|(score, bias)| *score += bias);
             if let Some(regions) = regions {
                 for (score, region) in scores.iter_mut().zip(regions) {
-                    *score += if *region == regions[at] { 0.0 } else { UNSEEN };
+                    *score += if *region == regions[at] { 0.0 } else { HIDDEN_SCORE };
                 }
             }
             Softmax::new_mut(scores).dispatch();

@@ -3,61 +3,61 @@
 
 use super::{
     attention::WindowAttention,
-    config::{Names, SwinConfig},
-    windows::Windows,
+    config::{SwinConfig, SwinTensorNames},
+    windows::MapWindows,
 };
 use crate::{
     LocalError,
     ops::{
-        Activation, LayerNorm, Linear,
+        Activation, LayerNorm, LinearLayer,
         kernels::{is_ours, with_numbers},
-        tiles::{TILE, each_tile, room},
+        tiles::{TILE_ROWS, each_tile, split_memory},
     },
-    weights::Scope,
+    weights::WeightScope,
 };
 use candle_core::{Result, Tensor};
 
-pub(super) struct Block {
+pub(super) struct SwinBlock {
     mix_norm: LayerNorm,
-    qkv: Linear,
+    qkv: LinearLayer,
     /// The queries, keys and values of padding. Padding is 0, so they are the bias of the layer.
     of_padding: Tensor,
     attention: WindowAttention,
-    mixed: Linear,
+    mixed: LinearLayer,
     think_norm: LayerNorm,
-    wide: Linear,
-    narrow: Linear,
+    wide: LinearLayer,
+    narrow: LinearLayer,
     /// The width between the last two layers.
     inner: usize,
 }
 
-impl Block {
-    pub(super) fn load(
-        weights: &Scope<'_>,
-        names: &Names,
+impl SwinBlock {
+    pub(super) fn from_weights(
+        weights: &WeightScope<'_>,
+        names: &SwinTensorNames,
         config: &SwinConfig,
         stage: usize,
     ) -> std::result::Result<Self, LocalError> {
         let (width, epsilon) = (config.width_of(stage), config.epsilon);
         let (inner, each) = (width * config.widening, 3 * width / names.qkv.len());
-        let biases = names.qkv.iter().map(|layer| weights.sub(layer).state("bias", &[each]));
+        let biases = names.qkv.iter().map(|layer| weights.sub_scope(layer).read_state("bias", &[each]));
         let biases: Vec<Tensor> = biases.collect::<std::result::Result<_, _>>()?;
-        let of_padding = Tensor::cat(&biases, 0).map_err(|error| weights.wrong(names.qkv[0], &error))?;
+        let of_padding = Tensor::cat(&biases, 0).map_err(|error| weights.tensor_error(names.qkv[0], &error))?;
         Ok(Self {
             mix_norm: weights.layer_norm(names.mix_norm, width, epsilon)?,
-            qkv: weights.linears(names.qkv, width, each)?,
+            qkv: weights.read_joined_linears(names.qkv, width, each)?,
             of_padding,
-            attention: WindowAttention::load(weights, names.positions, config.heads[stage], config.window)?,
-            mixed: weights.linear(names.mixed, width, width)?,
+            attention: WindowAttention::from_weights(weights, names.positions, config.heads[stage], config.window)?,
+            mixed: weights.read_linear(names.mixed, width, width)?,
             think_norm: weights.layer_norm(names.think_norm, width, epsilon)?,
-            wide: weights.linear(names.wide, width, inner)?,
-            narrow: weights.linear(names.narrow, inner, width)?,
+            wide: weights.read_linear(names.wide, width, inner)?,
+            narrow: weights.read_linear(names.narrow, inner, width)?,
             inner,
         })
     }
 
     /// The block's output for x [batch, height, width, channels]. The shape stays the same.
-    pub(super) fn of(&self, x: &Tensor, windows: &Windows) -> Result<Tensor> {
+    pub(super) fn apply_to(&self, x: &Tensor, windows: &MapWindows) -> Result<Tensor> {
         let (batch, height, width, channels) = x.dims4()?;
         let one = |at: usize| {
             let x = x.get(at)?.reshape((height * width, channels))?;
@@ -68,52 +68,52 @@ impl Block {
     }
 
     /// The output for x [positions, channels], with candle's operators.
-    pub(super) fn on_device(&self, x: &Tensor, windows: &Windows) -> Result<Tensor> {
-        let qkv = self.qkv.of(&self.mix_norm.of(x)?)?;
+    pub(super) fn on_device(&self, x: &Tensor, windows: &MapWindows) -> Result<Tensor> {
+        let qkv = self.qkv.apply_to(&self.mix_norm.apply_to(x)?)?;
         let mixed = self.attention.on_device(&qkv, &self.of_padding, windows)?;
         let places = Tensor::from_slice(&windows.places, windows.places.len(), x.device())?;
-        let x = (self.mixed.of(&mixed.index_select(&places, 0)?)? + x)?;
-        let wide = self.wide.of_then(&self.think_norm.of(&x)?, Activation::Gelu)?;
-        self.narrow.of(&wide)? + x
+        let x = (self.mixed.apply_to(&mixed.index_select(&places, 0)?)? + x)?;
+        let wide = self.wide.apply_then(&self.think_norm.apply_to(&x)?, Activation::Gelu)?;
+        self.narrow.apply_to(&wide)? + x
     }
 
     /// The output for x [positions, channels] on the processor. A tile of positions at a time goes through the layers,
     /// so that the numbers between two layers stay in the cache.
-    fn on_processor(&self, x: &Tensor, windows: &Windows) -> Result<Tensor> {
+    fn on_processor(&self, x: &Tensor, windows: &MapWindows) -> Result<Tensor> {
         let (count, width) = x.dims2()?;
         let mut qkv = vec![0.0; count * 3 * width];
         with_numbers(x, |x| {
             each_tile(&mut qkv, 3 * width, |from, qkv, memory| {
                 let rows = qkv.len() / (3 * width);
-                let [normed] = room(memory, [rows * width]);
-                self.mix_norm.rows(&x[from * width..(from + rows) * width], normed)?;
-                self.qkv.rows(normed, qkv)
+                let [normed] = split_memory(memory, [rows * width]);
+                self.mix_norm.write_rows(&x[from * width..(from + rows) * width], normed)?;
+                self.qkv.write_rows(normed, qkv)
             })
         })?;
         let qkv = Tensor::from_vec(qkv, (count, 3 * width), x.device())?;
         let mixed = self.attention.on_processor(&qkv, &self.of_padding, windows)?;
         drop(qkv);
         let mut y = vec![0.0; count * width];
-        with_numbers(x, |x| with_numbers(&mixed, |mixed| self.think(x, mixed, windows, &mut y)))?;
+        with_numbers(x, |x| with_numbers(&mixed, |mixed| self.feed_forward(x, mixed, windows, &mut y)))?;
         Tensor::from_vec(y, (count, width), x.device())
     }
 
     /// The layers after attention. `mixed` is in the order of the windows, and is put back into the order of the map.
-    fn think(&self, x: &[f32], mixed: &[f32], windows: &Windows, y: &mut [f32]) -> Result<()> {
+    fn feed_forward(&self, x: &[f32], mixed: &[f32], windows: &MapWindows, y: &mut [f32]) -> Result<()> {
         let width = x.len() / windows.places.len().max(1);
         each_tile(y, width, |from, y, memory| {
             let count = y.len();
-            let [states, normed, wide] = room(memory, [count, count, TILE * self.inner]);
+            let [states, normed, wide] = split_memory(memory, [count, count, TILE_ROWS * self.inner]);
             let wide = &mut wide[..count / width * self.inner];
             for (normed, &place) in normed.chunks_exact_mut(width).zip(&windows.places[from..]) {
                 normed.copy_from_slice(&mixed[place as usize * width..(place as usize + 1) * width]);
             }
-            self.mixed.rows(normed, states)?;
+            self.mixed.write_rows(normed, states)?;
             states.iter_mut().zip(&x[from * width..]).for_each(|(state, x)| *state += x);
-            self.think_norm.rows(states, normed)?;
-            self.wide.rows(normed, wide)?;
-            Activation::Gelu.map_here(wide);
-            self.narrow.rows(wide, y)?;
+            self.think_norm.write_rows(states, normed)?;
+            self.wide.write_rows(normed, wide)?;
+            Activation::Gelu.map_on_this_thread(wide);
+            self.narrow.write_rows(wide, y)?;
             y.iter_mut().zip(&*states).for_each(|(y, state)| *y += state);
             Ok(())
         })

@@ -30,7 +30,7 @@ const LARGEST_WINDOW: usize = 32;
 
 impl SwinConfig {
     /// Swin-T: 28 million parameters, with the outputs at strides 8, 16 and 32.
-    pub(crate) fn tiny() -> Self {
+    pub(crate) fn for_swin_tiny() -> Self {
         Self {
             width: 96,
             depths: vec![2, 2, 6, 2],
@@ -48,7 +48,7 @@ impl SwinConfig {
     }
 
     /// The problem with the sizes, if there is one. Sizes without a problem are safe to compute with.
-    pub(crate) fn problem(&self) -> Option<String> {
+    pub(crate) fn find_problem(&self) -> Option<String> {
         let sizes = [("width", self.width), ("window", self.window), ("widening", self.widening)];
         if let Some(problem) = size_problem(&sizes) {
             return Some(problem);
@@ -80,7 +80,7 @@ impl SwinConfig {
 
 /// The names of a backbone's tensors within its part of a checkpoint.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Names {
+pub(crate) struct SwinTensorNames {
     pub(crate) patch: &'static str,
     pub(crate) patch_norm: &'static str,
     pub(crate) stages: &'static str,
@@ -96,7 +96,7 @@ pub(crate) struct Names {
     pub(super) narrow: &'static str,
 }
 
-impl Names {
+impl SwinTensorNames {
     /// The names of the original implementation, which GLIP's checkpoints have.
     pub(crate) const ORIGINAL: Self = Self {
         patch: "patch_embed.proj",

@@ -1,7 +1,7 @@
 //! Compares the backbone with transformers (`fixtures/make_swin.py`), and tests windows and sizes.
 
 use super::*;
-use crate::{Device, Precision, weights::Weights};
+use crate::{ModelDevice, WeightPrecision, weights::CheckpointWeights};
 use candle_core::safetensors;
 use std::path::PathBuf;
 
@@ -11,12 +11,12 @@ fn fixture() -> PathBuf {
 
 /// The configuration of `fixtures/make_swin.py`.
 fn config() -> SwinConfig {
-    SwinConfig { width: 4, depths: vec![2, 2, 2, 1], heads: vec![1, 2, 2, 4], window: 3, ..SwinConfig::tiny() }
+    SwinConfig { width: 4, depths: vec![2, 2, 2, 1], heads: vec![1, 2, 2, 4], window: 3, ..SwinConfig::for_swin_tiny() }
 }
 
-fn load(config: &SwinConfig) -> std::result::Result<Swin, LocalError> {
-    let weights = Weights::open(&fixture(), &Device::cpu(), Precision::F32)?;
-    Swin::load(&weights.scope(""), &Names::TRANSFORMERS, config)
+fn load(config: &SwinConfig) -> std::result::Result<SwinBackbone, LocalError> {
+    let weights = CheckpointWeights::open(&fixture(), &ModelDevice::cpu(), WeightPrecision::F32)?;
+    SwinBackbone::from_weights(&weights.scope_under(""), &SwinTensorNames::TRANSFORMERS, config)
 }
 
 fn off(ours: &Tensor, theirs: &Tensor) -> f32 {
@@ -27,7 +27,7 @@ fn off(ours: &Tensor, theirs: &Tensor) -> f32 {
 #[test]
 fn every_map_is_that_of_transformers() {
     let expected = safetensors::load(fixture().join("expected.safetensors"), &candle_core::Device::Cpu).unwrap();
-    let maps = load(&config()).unwrap().of(&expected["pixels"]).unwrap();
+    let maps = load(&config()).unwrap().extract_features(&expected["pixels"]).unwrap();
     assert_eq!(maps.len(), 3);
     for (at, map) in maps.iter().enumerate() {
         let off = off(map, &expected[&format!("map{at}")]);
@@ -41,9 +41,9 @@ fn candles_operators_give_the_same_block() {
     let positions = Tensor::arange(0_f32, 4.0 * 7.0 * 11.0, &candle_core::Device::Cpu).unwrap();
     let x = (positions.sin().unwrap()).reshape((77, 4)).unwrap();
     for by in [0, 1] {
-        let windows = Windows::new(7, 11, 3, by);
+        let windows = MapWindows::new(7, 11, 3, by);
         let block = &swin.stages[0].blocks[0];
-        let ours = block.of(&x.reshape((1, 7, 11, 4)).unwrap(), &windows).unwrap().reshape((77, 4)).unwrap();
+        let ours = block.apply_to(&x.reshape((1, 7, 11, 4)).unwrap(), &windows).unwrap().reshape((77, 4)).unwrap();
         let off = off(&ours, &block.on_device(&x, &windows).unwrap());
         assert!(off < 1e-5, "{off}");
     }
@@ -51,16 +51,16 @@ fn candles_operators_give_the_same_block() {
 
 #[test]
 fn windows_contain_each_position_once_and_separate_distant_cells() {
-    let windows = Windows::new(5, 4, 3, 1);
-    assert_eq!((windows.count(), windows.size), (4, 9));
+    let windows = MapWindows::new(5, 4, 3, 1);
+    assert_eq!((windows.window_count(), windows.size), (4, 9));
     for (position, &place) in windows.places.iter().enumerate() {
         assert_eq!(windows.positions[place as usize], position as u32);
     }
-    let padding = windows.positions.iter().filter(|&&position| position == Windows::PAD).count();
+    let padding = windows.positions.iter().filter(|&&position| position == MapWindows::PADDING_POSITION).count();
     assert_eq!(padding, 36 - 20);
     assert!(windows.regions_of(0).is_none() && windows.regions_of(3).is_some());
     // A map that is a single window is moved too, as in the original.
-    let one = Windows::new(3, 3, 3, 1);
+    let one = MapWindows::new(3, 3, 3, 1);
     assert_eq!(one.positions, [4, 5, 3, 7, 8, 6, 1, 2, 0]);
     assert_eq!(one.regions, [4, 4, 5, 4, 4, 5, 7, 7, 8]);
 }
@@ -75,10 +75,10 @@ fn config_reports_impossible_sizes() {
         (SwinConfig { depths: vec![1, 1, 65, 1], ..config() }, "depths: 65"),
         (SwinConfig { outputs: vec![4], ..config() }, "no stage 4"),
     ] {
-        assert!(change.problem().is_some_and(|problem| problem.contains(told)), "{told}");
+        assert!(change.find_problem().is_some_and(|problem| problem.contains(told)), "{told}");
     }
-    assert_eq!(config().problem(), None);
-    assert_eq!(SwinConfig::tiny().problem(), None);
+    assert_eq!(config().find_problem(), None);
+    assert_eq!(SwinConfig::for_swin_tiny().find_problem(), None);
 }
 
 #[test]

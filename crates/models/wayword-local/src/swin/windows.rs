@@ -1,8 +1,8 @@
 //! Divides the positions of a map into windows. A position is a cell of the map; a place is a cell of a window.
 
 /// The windows of a map, and where each position lies in them.
-pub(super) struct Windows {
-    /// For each place of each window, the position on the map, rows from the top; [`Windows::PAD`] for padding.
+pub(super) struct MapWindows {
+    /// For each place of each window, the position on the map, rows from the top; [`MapWindows::PADDING_POSITION`] for padding.
     pub(super) positions: Vec<u32>,
     /// For each position on the map, its place in the windows.
     pub(super) places: Vec<u32>,
@@ -13,9 +13,9 @@ pub(super) struct Windows {
     pub(super) size: usize,
 }
 
-impl Windows {
+impl MapWindows {
     /// Marks a place that is padding, instead of a position.
-    pub(super) const PAD: u32 = u32::MAX;
+    pub(super) const PADDING_POSITION: u32 = u32::MAX;
 
     /// Windows of `edge` x `edge` positions. The map is padded at the right and at the bottom to whole windows, and
     /// then moved up and left by `by` positions. Cells that leave the map come in on the other side.
@@ -38,7 +38,7 @@ impl Windows {
                     places[y * width + x] = positions.len() as u32;
                     positions.push((y * width + x) as u32);
                 } else {
-                    positions.push(Self::PAD);
+                    positions.push(Self::PADDING_POSITION);
                 }
             }
         }
@@ -46,7 +46,7 @@ impl Windows {
     }
 
     /// The number of windows.
-    pub(super) fn count(&self) -> usize {
+    pub(super) fn window_count(&self) -> usize {
         self.positions.len() / self.size.max(1)
     }
 
@@ -59,7 +59,7 @@ impl Windows {
 
 /// For each pair of places of a window (query, then key), its row in the table of biases. The rows are ordered by the
 /// distance downwards, then by the distance to the right, each from `1 - edge` to `edge - 1`.
-pub(super) fn distances(edge: usize) -> Vec<usize> {
+pub(super) fn bias_rows(edge: usize) -> Vec<usize> {
     let size = edge * edge;
     let row = |pair: usize| {
         let (query, key) = (pair / size, pair % size);

@@ -9,24 +9,24 @@ mod safetensor;
 mod scope;
 mod trained;
 
-pub(crate) use scope::Scope;
+pub(crate) use scope::WeightScope;
 
-use crate::{Device, LocalError, Precision, error::FETCH_AGAIN};
+use crate::{LocalError, ModelDevice, WeightPrecision, error::FETCH_AGAIN};
 use candle_core::{DType, Tensor};
-use pickled::Pickled;
+use pickled::PickledFile;
 use safetensor::SafeFile;
 use serde::Deserialize;
 use std::{
     collections::{BTreeMap, BTreeSet},
     path::{Path, PathBuf},
 };
-use trained::Trained;
+use trained::TrainingCheckpoint;
 
 /// The longest index of a checkpoint in several files that is read, bytes.
 const LONGEST_INDEX: u64 = 64 << 20;
 
 /// A checkpoint's tensors by their names.
-pub(crate) struct Weights {
+pub(crate) struct CheckpointWeights {
     /// The file that an error names if a tensor is missing.
     path: PathBuf,
     files: Vec<WeightFile>,
@@ -39,22 +39,22 @@ pub(crate) struct Weights {
 /// A file of tensors.
 enum WeightFile {
     Safe(SafeFile),
-    Pickled(Pickled),
-    Trained(Trained),
+    Pickled(PickledFile),
+    Trained(TrainingCheckpoint),
 }
 
 #[derive(Deserialize)]
-struct Index {
+struct WeightsIndex {
     weight_map: BTreeMap<String, String>,
 }
 
-impl Weights {
+impl CheckpointWeights {
     /// Opens a model's folder: `model.safetensors`, or its parts by `model.safetensors.index.json`, or
     /// `pytorch_model.bin`.
     ///
     /// # Errors
     /// When none of these files exists, or one is damaged.
-    pub(crate) fn open(folder: &Path, device: &Device, precision: Precision) -> Result<Self, LocalError> {
+    pub(crate) fn open(folder: &Path, device: &ModelDevice, precision: WeightPrecision) -> Result<Self, LocalError> {
         let whole = folder.join("model.safetensors");
         let index = folder.join("model.safetensors.index.json");
         let pickled = folder.join("pytorch_model.bin");
@@ -62,10 +62,10 @@ impl Weights {
             let file = WeightFile::Safe(SafeFile::open(&whole)?);
             (whole, vec![file])
         } else if index.exists() {
-            let files = parts(folder, &index)?;
+            let files = open_parts(folder, &index)?;
             (index, files)
         } else if pickled.exists() {
-            let file = WeightFile::Pickled(Pickled::open(&pickled)?);
+            let file = WeightFile::Pickled(PickledFile::open(&pickled)?);
             (pickled, vec![file])
         } else {
             let hint =
@@ -79,62 +79,62 @@ impl Weights {
     ///
     /// # Errors
     /// When it is missing or damaged.
-    pub(crate) fn of_file(path: &Path, device: &Device, precision: Precision) -> Result<Self, LocalError> {
+    pub(crate) fn of_file(path: &Path, device: &ModelDevice, precision: WeightPrecision) -> Result<Self, LocalError> {
         let is_safe = path.extension().is_some_and(|end| end.eq_ignore_ascii_case("safetensors"));
         let file = if is_safe {
             SafeFile::open(path).map(WeightFile::Safe)
         } else {
-            Trained::open(path).map(WeightFile::Trained)
+            TrainingCheckpoint::open(path).map(WeightFile::Trained)
         };
         Ok(Self::new(path.to_owned(), vec![file?], device, precision))
     }
 
-    fn new(path: PathBuf, files: Vec<WeightFile>, device: &Device, precision: Precision) -> Self {
+    fn new(path: PathBuf, files: Vec<WeightFile>, device: &ModelDevice, precision: WeightPrecision) -> Self {
         let mut at = BTreeMap::new();
         for (number, file) in files.iter().enumerate() {
-            at.extend(file.names().map(|name| (name, number)));
+            at.extend(file.tensor_names().map(|name| (name, number)));
         }
-        Self { path, files, at, device: device.0.clone(), dtype: precision.dtype() }
+        Self { path, files, at, device: device.0.clone(), dtype: precision.candle_dtype() }
     }
 
     /// The tensors with names that begin with `prefix`, or all tensors for "".
-    pub(crate) fn scope(&self, prefix: &str) -> Scope<'_> {
-        Scope::new(self, prefix)
+    pub(crate) fn scope_under(&self, prefix: &str) -> WeightScope<'_> {
+        WeightScope::new(self, prefix)
     }
 
     /// The size of all tensors at the weights' precision, bytes.
-    pub(crate) fn bytes(&self) -> u64 {
+    pub(crate) fn size_bytes(&self) -> u64 {
         let elements = |name: &String| {
-            let shape = self.shape(name).unwrap_or_default();
+            let shape = self.tensor_shape(name).unwrap_or_default();
             shape.iter().fold(1_u64, |product, &length| product.saturating_mul(length as u64))
         };
         let all = self.at.keys().fold(0_u64, |sum, name| sum.saturating_add(elements(name)));
         all.saturating_mul(self.dtype.size_in_bytes() as u64)
     }
 
-    fn has(&self, name: &str) -> bool {
+    fn has_tensor(&self, name: &str) -> bool {
         self.at.contains_key(name)
     }
 
     /// Reads a tensor, checks its shape, and converts it to the weights' precision and device.
-    fn tensor(&self, name: &str, shape: &[usize]) -> Result<Tensor, LocalError> {
-        let lacks = || LocalError::tensor(&self.path, name, "it is missing");
+    fn read_tensor(&self, name: &str, shape: &[usize]) -> Result<Tensor, LocalError> {
+        let lacks = || LocalError::bad_tensor(&self.path, name, "it is missing");
         let file = self.at.get(name).and_then(|&at| self.files.get(at)).ok_or_else(lacks)?;
         let tensor = match file {
-            WeightFile::Safe(file) => file.read(name, shape)?,
-            WeightFile::Pickled(file) => file.read(name, shape)?,
-            WeightFile::Trained(file) => file.read(name, shape)?,
+            WeightFile::Safe(file) => file.read_tensor(name, shape)?,
+            WeightFile::Pickled(file) => file.read_tensor(name, shape)?,
+            WeightFile::Trained(file) => file.read_tensor(name, shape)?,
         };
-        let wrong = |error: candle_core::Error| LocalError::tensor(file.path(), name, error.to_string());
+        let wrong = |error: candle_core::Error| LocalError::bad_tensor(file.path(), name, error.to_string());
         tensor.to_dtype(self.dtype).and_then(|tensor| tensor.to_device(&self.device)).map_err(wrong)
     }
 
     /// The shape of a tensor, if it exists.
-    fn shape(&self, name: &str) -> Option<Vec<usize>> {
+    fn tensor_shape(&self, name: &str) -> Option<Vec<usize>> {
         match self.files.get(*self.at.get(name)?)? {
-            WeightFile::Safe(file) => file.shape(name),
-            WeightFile::Pickled(file) => file.shape(name),
-            WeightFile::Trained(file) => file.shape(name),
+            WeightFile::Safe(file) => file.tensor_shape(name),
+            WeightFile::Pickled(file) => file.tensor_shape(name),
+            WeightFile::Trained(file) => file.tensor_shape(name),
         }
     }
 }
@@ -148,17 +148,17 @@ impl WeightFile {
         }
     }
 
-    fn names(&self) -> Box<dyn Iterator<Item = String> + '_> {
+    fn tensor_names(&self) -> Box<dyn Iterator<Item = String> + '_> {
         match self {
-            Self::Safe(file) => Box::new(file.names()),
-            Self::Pickled(file) => Box::new(file.names()),
-            Self::Trained(file) => Box::new(file.names()),
+            Self::Safe(file) => Box::new(file.tensor_names()),
+            Self::Pickled(file) => Box::new(file.tensor_names()),
+            Self::Trained(file) => Box::new(file.tensor_names()),
         }
     }
 }
 
 /// The files that an index names, each opened once.
-fn parts(folder: &Path, index: &Path) -> Result<Vec<WeightFile>, LocalError> {
+fn open_parts(folder: &Path, index: &Path) -> Result<Vec<WeightFile>, LocalError> {
     let open = |name: &String| SafeFile::open(&folder.join(name)).map(WeightFile::Safe);
     part_names(index)?.iter().map(open).collect()
 }
@@ -169,12 +169,12 @@ fn parts(folder: &Path, index: &Path) -> Result<Vec<WeightFile>, LocalError> {
 /// When the index is damaged, or names something that is not a file in the same folder.
 pub(crate) fn part_names(index: &Path) -> Result<BTreeSet<String>, LocalError> {
     let damaged = |problem: String| LocalError::File { file: index.to_owned(), problem, hint: FETCH_AGAIN };
-    let length = std::fs::metadata(index).map_err(|error| LocalError::io(index, "read", error))?.len();
+    let length = std::fs::metadata(index).map_err(|error| LocalError::from_io(index, "read", error))?.len();
     if length > LONGEST_INDEX {
         return Err(damaged(format!("it is too long for an index: {length} bytes")));
     }
-    let text = std::fs::read_to_string(index).map_err(|error| LocalError::io(index, "read", error))?;
-    let parsed: Index = serde_json::from_str(&text).map_err(|error| damaged(error.to_string()))?;
+    let text = std::fs::read_to_string(index).map_err(|error| LocalError::from_io(index, "read", error))?;
+    let parsed: WeightsIndex = serde_json::from_str(&text).map_err(|error| damaged(error.to_string()))?;
     let names: BTreeSet<String> = parsed.weight_map.into_values().collect();
     // The names are untrusted, and must not lead out of the folder.
     let is_file = |name: &str| {

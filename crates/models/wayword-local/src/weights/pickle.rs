@@ -6,38 +6,38 @@
 
 mod machine;
 
-use machine::Machine;
+use machine::PickleMachine;
 use std::{collections::BTreeMap, rc::Rc};
 
 /// A value of a pickle. A table is referred to by its number, because a pickle fills it after it has put it on the
 /// stack.
 #[derive(Debug, Clone)]
-pub(super) enum Value {
+pub(super) enum PickleValue {
     /// A value that no tensor depends on, such as a float or a boolean.
     Other,
     Whole(i64),
     Text(Rc<str>),
-    Tuple(Rc<Tuple>),
+    Tuple(Rc<PickleTuple>),
     /// A list. Its values are not kept, because no tensor depends on them.
     List,
     /// A table, by its number.
     Table(usize),
-    Known(Known),
-    Storage(Rc<Storage>),
-    Tensor(Rc<Place>),
+    Known(PickleCallable),
+    Storage(Rc<TensorStorage>),
+    Tensor(Rc<TensorLocation>),
 }
 
 /// Values in a row.
 #[derive(Debug)]
-pub(super) struct Tuple {
-    values: Vec<Value>,
+pub(super) struct PickleTuple {
+    values: Vec<PickleValue>,
     /// The depth of nested tuples. It is bounded, because dropping them is recursive, and could exhaust the stack.
     depth: usize,
 }
 
 /// The functions and types that a checkpoint may name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Known {
+pub(super) enum PickleCallable {
     OrderedDict,
     Floats,
     Longs,
@@ -46,7 +46,7 @@ pub(super) enum Known {
 
 /// A run of numbers in a file of the archive.
 #[derive(Debug)]
-pub(super) struct Storage {
+pub(super) struct TensorStorage {
     /// The name of the file.
     pub(super) key: Rc<str>,
     /// Whether the numbers are floats of 32 bits. Otherwise they are whole numbers of 64 bits.
@@ -56,8 +56,8 @@ pub(super) struct Storage {
 
 /// The location of a tensor: a part of a storage.
 #[derive(Debug)]
-pub(super) struct Place {
-    pub(super) storage: Rc<Storage>,
+pub(super) struct TensorLocation {
+    pub(super) storage: Rc<TensorStorage>,
     /// The numbers of the storage before the tensor.
     pub(super) offset: u64,
     pub(super) shape: Vec<usize>,
@@ -65,32 +65,35 @@ pub(super) struct Place {
 }
 
 /// A pickle after it is read: its tables, and its top value, which is usually one of them.
-pub(super) struct Pickle {
-    tables: Vec<BTreeMap<Rc<str>, Value>>,
-    top: Value,
+pub(super) struct CheckpointPickle {
+    tables: Vec<BTreeMap<Rc<str>, PickleValue>>,
+    top: PickleValue,
 }
 
-impl Pickle {
+impl CheckpointPickle {
     /// Reads a pickle.
     ///
     /// # Errors
     /// The problem with the pickle.
-    pub(super) fn read(bytes: &[u8]) -> Result<Self, String> {
-        let mut machine = Machine::new(bytes);
+    pub(super) fn from_bytes(bytes: &[u8]) -> Result<Self, String> {
+        let mut machine = PickleMachine::new(bytes);
         let top = machine.run()?;
         Ok(Self { tables: machine.tables, top })
     }
 
     /// The tensors, with their names, of the table that the top table has under `key`.
-    pub(super) fn tensors(&self, key: &str) -> Result<impl Iterator<Item = (Rc<str>, Rc<Place>)>, String> {
-        let Value::Table(top) = self.top else { return Err("it does not hold a table".to_owned()) };
+    pub(super) fn tensors_under(
+        &self,
+        key: &str,
+    ) -> Result<impl Iterator<Item = (Rc<str>, Rc<TensorLocation>)>, String> {
+        let PickleValue::Table(top) = self.top else { return Err("it does not hold a table".to_owned()) };
         let model = match self.tables.get(top).and_then(|top| top.get(key)) {
-            Some(Value::Table(model)) => self.tables.get(*model),
+            Some(PickleValue::Table(model)) => self.tables.get(*model),
             _ => None,
         };
         let model = model.ok_or_else(|| format!("it has no table {key:?}"))?;
         Ok(model.iter().filter_map(|(name, value)| match value {
-            Value::Tensor(place) => Some((Rc::clone(name), Rc::clone(place))),
+            PickleValue::Tensor(place) => Some((Rc::clone(name), Rc::clone(place))),
             _ => None,
         }))
     }

@@ -7,15 +7,15 @@ use candle_core::{Tensor, pickle::PthTensors};
 use std::path::{Path, PathBuf};
 
 /// A pickled checkpoint.
-pub(super) struct Pickled {
+pub(super) struct PickledFile {
     path: PathBuf,
     tensors: PthTensors,
     length: u64,
 }
 
-impl Pickled {
+impl PickledFile {
     pub(super) fn open(path: &Path) -> Result<Self, LocalError> {
-        let length = std::fs::metadata(path).map_err(|error| LocalError::io(path, "read", error))?.len();
+        let length = std::fs::metadata(path).map_err(|error| LocalError::from_io(path, "read", error))?.len();
         let tensors = PthTensors::new(path, None).map_err(|error| LocalError::File {
             file: path.to_owned(),
             problem: format!("it is cut off or not a PyTorch checkpoint: {}", first_line(&error)),
@@ -28,19 +28,19 @@ impl Pickled {
         &self.path
     }
 
-    pub(super) fn names(&self) -> impl Iterator<Item = String> {
+    pub(super) fn tensor_names(&self) -> impl Iterator<Item = String> {
         let mut names: Vec<String> = self.tensors.tensor_infos().keys().cloned().collect();
         names.sort_unstable();
         names.into_iter()
     }
 
-    pub(super) fn shape(&self, name: &str) -> Option<Vec<usize>> {
+    pub(super) fn tensor_shape(&self, name: &str) -> Option<Vec<usize>> {
         Some(self.tensors.tensor_infos().get(name)?.layout.shape().dims().to_vec())
     }
 
-    pub(super) fn read(&self, name: &str, shape: &[usize]) -> Result<Tensor, LocalError> {
-        let wrong = |problem: String| LocalError::tensor(&self.path, name, problem);
-        let found = self.shape(name).ok_or_else(|| wrong("it is missing".to_owned()))?;
+    pub(super) fn read_tensor(&self, name: &str, shape: &[usize]) -> Result<Tensor, LocalError> {
+        let wrong = |problem: String| LocalError::bad_tensor(&self.path, name, problem);
+        let found = self.tensor_shape(name).ok_or_else(|| wrong("it is missing".to_owned()))?;
         if found != shape {
             return Err(wrong(format!("its shape is {found:?}, not {shape:?}")));
         }

@@ -28,7 +28,7 @@ pub(super) struct SafeFile {
 impl SafeFile {
     /// Opens a file and reads its header, which must agree with the file's length.
     pub(super) fn open(path: &Path) -> Result<Self, LocalError> {
-        let io = |error| LocalError::io(path, "read", error);
+        let io = |error| LocalError::from_io(path, "read", error);
         let damaged = |problem: String| LocalError::File {
             file: path.to_owned(),
             problem: format!("it is cut off or not a safetensors file: {problem}"),
@@ -57,27 +57,28 @@ impl SafeFile {
         &self.path
     }
 
-    pub(super) fn names(&self) -> impl Iterator<Item = String> {
+    pub(super) fn tensor_names(&self) -> impl Iterator<Item = String> {
         self.header.offset_keys().into_iter()
     }
 
-    pub(super) fn shape(&self, name: &str) -> Option<Vec<usize>> {
+    pub(super) fn tensor_shape(&self, name: &str) -> Option<Vec<usize>> {
         Some(self.header.info(name)?.shape.clone())
     }
 
     /// Reads a tensor, and checks its shape.
-    pub(super) fn read(&self, name: &str, shape: &[usize]) -> Result<Tensor, LocalError> {
-        let wrong = |problem: String| LocalError::tensor(&self.path, name, problem);
+    pub(super) fn read_tensor(&self, name: &str, shape: &[usize]) -> Result<Tensor, LocalError> {
+        let wrong = |problem: String| LocalError::bad_tensor(&self.path, name, problem);
         let info = self.header.info(name).ok_or_else(|| wrong("it is missing".to_owned()))?;
         if info.shape != shape {
             return Err(wrong(format!("its shape is {:?}, not {shape:?}", info.shape)));
         }
-        let dtype = dtype(info).ok_or_else(|| wrong(format!("numbers of type {:?} are not supported", info.dtype)))?;
-        let bytes = self.bytes(info)?;
+        let dtype =
+            candle_dtype(info).ok_or_else(|| wrong(format!("numbers of type {:?} are not supported", info.dtype)))?;
+        let bytes = self.tensor_bytes(info)?;
         Tensor::from_raw_buffer(&bytes, dtype, shape, &Device::Cpu).map_err(|error| wrong(error.to_string()))
     }
 
-    fn bytes(&self, info: &TensorInfo) -> Result<Vec<u8>, LocalError> {
+    fn tensor_bytes(&self, info: &TensorInfo) -> Result<Vec<u8>, LocalError> {
         let (from, to) = info.data_offsets;
         let io = |error| LocalError::Io { file: self.path.clone(), doing: "read", source: Arc::new(error) };
         let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
@@ -89,7 +90,7 @@ impl SafeFile {
     }
 }
 
-fn dtype(info: &TensorInfo) -> Option<DType> {
+fn candle_dtype(info: &TensorInfo) -> Option<DType> {
     Some(match info.dtype {
         Dtype::F64 => DType::F64,
         Dtype::F32 => DType::F32,

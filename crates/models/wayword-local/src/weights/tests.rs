@@ -11,8 +11,8 @@ fn checkpoint(folder: &Path) -> PathBuf {
     file
 }
 
-fn open(folder: &Path) -> Result<Weights, LocalError> {
-    Weights::open(folder, &Device::cpu(), Precision::F32)
+fn open(folder: &Path) -> Result<CheckpointWeights, LocalError> {
+    CheckpointWeights::open(folder, &ModelDevice::cpu(), WeightPrecision::F32)
 }
 
 #[test]
@@ -20,9 +20,9 @@ fn a_tensor_is_read_by_name_and_shape() {
     let folder = tempfile::tempdir().unwrap();
     checkpoint(folder.path());
     let weights = open(folder.path()).unwrap();
-    let tensor = weights.scope("layer").tensor("weight", &[2, 3]).unwrap();
+    let tensor = weights.scope_under("layer").read_tensor("weight", &[2, 3]).unwrap();
     assert_eq!(tensor.to_vec2::<f32>().unwrap(), [[0.0, 1.0, 2.0], [3.0, 4.0, 5.0]]);
-    assert_eq!(weights.bytes(), 6 * 4);
+    assert_eq!(weights.size_bytes(), 6 * 4);
 }
 
 #[test]
@@ -32,7 +32,7 @@ fn an_error_names_file_and_tensor() {
     let weights = open(folder.path()).unwrap();
     for (tensor, shape, problem) in [("weight", [3, 2], "its shape is [2, 3], not [3, 2]"), ("bias", [2, 3], "missing")]
     {
-        let error = weights.scope("layer").tensor(tensor, &shape).unwrap_err().to_string();
+        let error = weights.scope_under("layer").read_tensor(tensor, &shape).unwrap_err().to_string();
         for part in [file.to_str().unwrap(), &format!("layer.{tensor}"), problem] {
             assert!(error.contains(part), "{error}");
         }

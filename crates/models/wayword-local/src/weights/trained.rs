@@ -2,7 +2,7 @@
 //! entry for the numbers of each storage. Only the weights are read, which are under the key `model`; the state of the
 //! optimiser is left out.
 
-use super::pickle::Pickle;
+use super::pickle::CheckpointPickle;
 use crate::{LocalError, error::FETCH_AGAIN};
 use candle_core::{DType, Device, Tensor};
 use std::{
@@ -15,26 +15,26 @@ use std::{
 use zip::{CompressionMethod, ZipArchive};
 
 /// The key of the table with the weights.
-const WEIGHTS: &str = "model";
+const WEIGHTS_TABLE: &str = "model";
 
 /// The prefix of the names of weights that were trained on several devices.
-const BEGIN: &str = "module.";
+const PARALLEL_NAME_PREFIX: &str = "module.";
 
 /// The longest pickle that is read, bytes. The numbers of tensors are not in it.
 const LONGEST_PICKLE: u64 = 32 << 20;
 
 /// An open archive, and the locations of its weights.
-pub(super) struct Trained {
+pub(super) struct TrainingCheckpoint {
     path: PathBuf,
     archive: Mutex<ZipArchive<BufReader<File>>>,
     /// The name of the folder within the archive.
     root: String,
-    tensors: BTreeMap<String, Lies>,
+    tensors: BTreeMap<String, ArchivedTensor>,
     length: u64,
 }
 
 /// The location of a tensor: a part of the numbers of an entry of the archive.
-struct Lies {
+struct ArchivedTensor {
     entry: String,
     dtype: DType,
     /// How many numbers the entry has, and how many of them come before the tensor.
@@ -44,9 +44,9 @@ struct Lies {
     strides: Vec<usize>,
 }
 
-impl Trained {
+impl TrainingCheckpoint {
     pub(super) fn open(path: &Path) -> Result<Self, LocalError> {
-        let io = |error| LocalError::io(path, "read", error);
+        let io = |error| LocalError::from_io(path, "read", error);
         let damaged = |problem: String| LocalError::File {
             file: path.to_owned(),
             problem: format!("it is cut off or not a checkpoint of PyTorch: {problem}"),
@@ -60,7 +60,7 @@ impl Trained {
         let pickle = names.iter().map(String::as_str).find(is_pickle);
         let root = pickle.and_then(|name| name.split_once('/')).map(|(root, _)| root.to_owned());
         let root = root.ok_or_else(|| damaged("it has no data.pkl".to_owned()))?;
-        let bytes = entry(&mut archive, &format!("{root}/data.pkl"), |entry| {
+        let bytes = with_entry(&mut archive, &format!("{root}/data.pkl"), |entry| {
             if entry.size > LONGEST_PICKLE {
                 return Err(format!("its pickle has {} bytes", entry.size));
             }
@@ -68,9 +68,9 @@ impl Trained {
             entry.read.read_to_end(&mut bytes).map_err(|error| error.to_string())?;
             Ok(bytes)
         });
-        let pickle = Pickle::read(&bytes.map_err(damaged)?).map_err(damaged)?;
-        let tensors = pickle.tensors(WEIGHTS).map_err(damaged)?.map(|(name, place)| {
-            let lies = Lies {
+        let pickle = CheckpointPickle::from_bytes(&bytes.map_err(damaged)?).map_err(damaged)?;
+        let tensors = pickle.tensors_under(WEIGHTS_TABLE).map_err(damaged)?.map(|(name, place)| {
+            let lies = ArchivedTensor {
                 entry: place.storage.key.to_string(),
                 dtype: if place.storage.floats { DType::F32 } else { DType::I64 },
                 count: place.storage.count,
@@ -78,7 +78,7 @@ impl Trained {
                 shape: place.shape.clone(),
                 strides: place.strides.clone(),
             };
-            (name.strip_prefix(BEGIN).unwrap_or(&name).to_owned(), lies)
+            (name.strip_prefix(PARALLEL_NAME_PREFIX).unwrap_or(&name).to_owned(), lies)
         });
         let tensors = tensors.collect();
         Ok(Self { path: path.to_owned(), archive: Mutex::new(archive), root, tensors, length })
@@ -88,28 +88,28 @@ impl Trained {
         &self.path
     }
 
-    pub(super) fn names(&self) -> impl Iterator<Item = String> {
+    pub(super) fn tensor_names(&self) -> impl Iterator<Item = String> {
         self.tensors.keys().cloned()
     }
 
-    pub(super) fn shape(&self, name: &str) -> Option<Vec<usize>> {
+    pub(super) fn tensor_shape(&self, name: &str) -> Option<Vec<usize>> {
         Some(self.tensors.get(name)?.shape.clone())
     }
 
     /// Reads a tensor, and checks its shape.
-    pub(super) fn read(&self, name: &str, shape: &[usize]) -> Result<Tensor, LocalError> {
-        let wrong = |problem: String| LocalError::tensor(&self.path, name, problem);
+    pub(super) fn read_tensor(&self, name: &str, shape: &[usize]) -> Result<Tensor, LocalError> {
+        let wrong = |problem: String| LocalError::bad_tensor(&self.path, name, problem);
         let lies = self.tensors.get(name).ok_or_else(|| wrong("it is missing".to_owned()))?;
         if lies.shape != shape {
             return Err(wrong(format!("its shape is {:?}, not {shape:?}", lies.shape)));
         }
-        let bytes = lies.range(self.length).and_then(|range| self.bytes(lies, range)).map_err(wrong)?;
+        let bytes = lies.byte_range(self.length).and_then(|range| self.tensor_bytes(lies, range)).map_err(wrong)?;
         Tensor::from_raw_buffer(&bytes, lies.dtype, shape, &Device::Cpu).map_err(|error| wrong(error.to_string()))
     }
 
-    fn bytes(&self, lies: &Lies, (from, length): (u64, u64)) -> Result<Vec<u8>, String> {
+    fn tensor_bytes(&self, lies: &ArchivedTensor, (from, length): (u64, u64)) -> Result<Vec<u8>, String> {
         let mut archive = self.archive.lock().unwrap_or_else(PoisonError::into_inner);
-        entry(&mut archive, &format!("{}/data/{}", self.root, lies.entry), |entry| {
+        with_entry(&mut archive, &format!("{}/data/{}", self.root, lies.entry), |entry| {
             let whole = lies.count * lies.dtype.size_in_bytes() as u64;
             if entry.size != whole {
                 return Err(format!("its entry of the archive has {} bytes, not {whole}", entry.size));
@@ -127,10 +127,10 @@ impl Trained {
     }
 }
 
-impl Lies {
+impl ArchivedTensor {
     /// The position of the tensor's first byte in the entry, and the number of its bytes. `file` is the length of the
     /// file.
-    fn range(&self, file: u64) -> Result<(u64, u64), String> {
+    fn byte_range(&self, file: u64) -> Result<(u64, u64), String> {
         let numbers = self.shape.iter().try_fold(1_u64, |product, &length| product.checked_mul(length as u64));
         let size = self.dtype.size_in_bytes() as u64;
         let end = numbers.and_then(|numbers| self.offset.checked_add(numbers)).filter(|end| *end <= self.count);
@@ -153,23 +153,23 @@ impl Lies {
 }
 
 /// An entry of an archive.
-struct Entry<'a> {
+struct ArchiveEntry<'a> {
     size: u64,
     read: &'a mut dyn Read,
 }
 
 /// Calls `then` with an entry of the archive. A compressed entry is refused: PyTorch compresses none, and one could
 /// unpack to more bytes than the memory holds.
-fn entry<T>(
+fn with_entry<T>(
     archive: &mut ZipArchive<BufReader<File>>,
     name: &str,
-    then: impl FnOnce(Entry<'_>) -> Result<T, String>,
+    then: impl FnOnce(ArchiveEntry<'_>) -> Result<T, String>,
 ) -> Result<T, String> {
     let mut found = archive.by_name(name).map_err(|error| format!("{name}: {error}"))?;
     if found.compression() != CompressionMethod::Stored || found.compressed_size() != found.size() {
         return Err(format!("{name} is compressed"));
     }
-    then(Entry { size: found.size(), read: &mut found })
+    then(ArchiveEntry { size: found.size(), read: &mut found })
 }
 
 #[cfg(test)]

@@ -2,10 +2,10 @@
 
 use crate::common::{self, copy, fixture, refused};
 use std::path::{Path, PathBuf};
-use wayword_local::{Device, Precision, SentenceEncoder};
+use wayword_local::{ModelDevice, SentenceEncoder, WeightPrecision};
 
 fn load(folder: &Path) -> Result<SentenceEncoder, wayword_local::LocalError> {
-    SentenceEncoder::load("hf/test/bert", folder, &Device::cpu(), Precision::F32)
+    SentenceEncoder::load("hf/test/bert", folder, &ModelDevice::cpu(), WeightPrecision::F32)
 }
 
 #[derive(serde::Deserialize)]
@@ -18,14 +18,14 @@ struct Expected {
 fn agrees(encoder: &SentenceEncoder, expected: &Path) {
     let expected: Vec<Expected> = serde_json::from_str(&std::fs::read_to_string(expected).unwrap()).unwrap();
     let texts: Vec<&str> = expected.iter().map(|one| &one.text[..]).collect();
-    let ours = encoder.vectors(&texts).unwrap();
+    let ours = encoder.unit_vectors(&texts).unwrap();
     for (ours, theirs) in ours.iter().zip(&expected) {
         let off = ours.iter().zip(&theirs.vector).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
         assert!(ours.len() == theirs.vector.len() && off < 1e-5, "{:?}: {off}", theirs.text);
     }
     // A text has the same vector alone and among others.
     for (text, among) in texts.iter().zip(&ours) {
-        let alone = encoder.vectors(&[text]).unwrap().remove(0);
+        let alone = encoder.unit_vectors(&[text]).unwrap().remove(0);
         assert!(alone.iter().zip(among).all(|(a, b)| (a - b).abs() < 1e-5), "{text:?}");
     }
 }
@@ -51,9 +51,10 @@ fn real_weights_agree_with_pytorch() {
 #[test]
 fn sixteen_bits_come_near() {
     let whole = load(&fixture("bert")).unwrap();
-    let half = SentenceEncoder::load("hf/test/bert", &fixture("bert"), &Device::cpu(), Precision::Bf16).unwrap();
+    let half =
+        SentenceEncoder::load("hf/test/bert", &fixture("bert"), &ModelDevice::cpu(), WeightPrecision::Bf16).unwrap();
     let text = "Go past the table and stop at the sink.";
-    let (whole, half) = (whole.vectors(&[text]).unwrap(), half.vectors(&[text]).unwrap());
+    let (whole, half) = (whole.unit_vectors(&[text]).unwrap(), half.unit_vectors(&[text]).unwrap());
     let cosine: f32 = whole[0].iter().zip(&half[0]).map(|(a, b)| a * b).sum();
     assert!((0.99..0.999_999).contains(&cosine), "{cosine}");
 }

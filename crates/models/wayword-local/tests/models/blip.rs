@@ -2,14 +2,14 @@
 
 use crate::common::{self, copy, drawn, fixture, refused};
 use std::path::Path;
-use wayword_local::{BlipCaptioner, BlipVqa, Device, LocalError, Precision};
+use wayword_local::{BlipCaptioner, BlipVqa, LocalError, ModelDevice, WeightPrecision};
 
 fn captioner(folder: &Path) -> Result<BlipCaptioner, LocalError> {
-    BlipCaptioner::load("hf/test/blip", folder, &Device::cpu(), Precision::F32)
+    BlipCaptioner::load("hf/test/blip", folder, &ModelDevice::cpu(), WeightPrecision::F32)
 }
 
 fn vqa(folder: &Path) -> Result<BlipVqa, LocalError> {
-    BlipVqa::load("hf/test/blip", folder, &Device::cpu(), Precision::F32)
+    BlipVqa::load("hf/test/blip", folder, &ModelDevice::cpu(), WeightPrecision::F32)
 }
 
 fn expected<T: serde::de::DeserializeOwned>(name: &str) -> T {
@@ -37,23 +37,23 @@ struct Captions {
 fn captions_agree_with_pytorch_token_for_token() {
     let expected: Captions = expected("blip_caption");
     let (blip, picture) = (captioner(&fixture("blip_caption")).unwrap(), drawn(expected.size));
-    near(&blip.states(&picture).unwrap(), &expected.vision, "states of the picture");
-    let free = blip.tokens(&picture, "", 12).unwrap();
+    near(&blip.picture_states(&picture).unwrap(), &expected.vision, "states of the picture");
+    let free = blip.description_tokens(&picture, "", 12).unwrap();
     // PyTorch's list includes the tokens that begin and end a caption.
     assert_eq!(free, expected.free[1..expected.free.len() - 1]);
-    assert_eq!(blip.caption(&picture, "", 12).unwrap(), expected.free_text);
-    let begun = blip.tokens(&picture, "a photo of", 8).unwrap();
+    assert_eq!(blip.describe_picture(&picture, "", 12).unwrap(), expected.free_text);
+    let begun = blip.description_tokens(&picture, "a photo of", 8).unwrap();
     assert_eq!(begun, expected.begun[1..expected.begun.len() - 1]);
-    assert_eq!(blip.caption(&picture, "a photo of", 8).unwrap(), expected.begun_text);
+    assert_eq!(blip.describe_picture(&picture, "a photo of", 8).unwrap(), expected.begun_text);
 }
 
 #[test]
 fn a_caption_ends_at_the_requested_length() {
     let expected: Captions = expected("blip_caption");
     let blip = captioner(&fixture("blip_caption")).unwrap();
-    let cut = blip.tokens(&drawn(expected.size), "", 2).unwrap();
+    let cut = blip.description_tokens(&drawn(expected.size), "", 2).unwrap();
     assert_eq!(cut, expected.free[1..3]);
-    assert_eq!(blip.tokens(&drawn(expected.size), "", 0).unwrap(), [0_u32; 0]);
+    assert_eq!(blip.description_tokens(&drawn(expected.size), "", 0).unwrap(), [0_u32; 0]);
 }
 
 #[derive(serde::Deserialize)]
@@ -75,17 +75,18 @@ fn answers_agree_with_pytorch_in_whatever_order_they_are_asked_for() {
     let expected: Answers = expected("blip_vqa");
     let (blip, picture) = (vqa(&fixture("blip_vqa")).unwrap(), drawn(expected.size));
     for answer in expected.answers.iter().chain(expected.answers.iter().rev()) {
-        near(&blip.states(&picture, &answer.question).unwrap(), &answer.states, &answer.question);
-        assert_eq!(blip.answer(&picture, &answer.question, 10).unwrap(), answer.text, "{}", answer.question);
+        near(&blip.question_states(&picture, &answer.question).unwrap(), &answer.states, &answer.question);
+        assert_eq!(blip.answer_question(&picture, &answer.question, 10).unwrap(), answer.text, "{}", answer.question);
     }
 }
 
 #[test]
 fn sixteen_bits_load_and_answer() {
     let expected: Captions = expected("blip_caption");
-    for precision in [Precision::Bf16, Precision::F16] {
-        let blip = BlipCaptioner::load("hf/test/blip", &fixture("blip_caption"), &Device::cpu(), precision).unwrap();
-        let states = blip.states(&drawn(expected.size)).unwrap();
+    for precision in [WeightPrecision::Bf16, WeightPrecision::F16] {
+        let blip =
+            BlipCaptioner::load("hf/test/blip", &fixture("blip_caption"), &ModelDevice::cpu(), precision).unwrap();
+        let states = blip.picture_states(&drawn(expected.size)).unwrap();
         let off = states.iter().zip(&expected.vision).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
         assert!(off > 0.0 && off < 0.2, "{off}");
     }
@@ -144,7 +145,7 @@ fn text_config_cannot_change_the_width_of_vision_states() {
     for said in ["\"encoder_hidden_size\": 768", "\"encoder_hidden_width\": 30"] {
         let change = replaced("\"encoder_hidden_size\": 30", said);
         let blip = changed("blip_caption", "config.json", change, captioner).unwrap();
-        assert_eq!(blip.caption(&drawn(expected.size), "", 12).unwrap(), expected.free_text);
+        assert_eq!(blip.describe_picture(&drawn(expected.size), "", 12).unwrap(), expected.free_text);
     }
 }
 

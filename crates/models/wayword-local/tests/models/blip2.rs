@@ -2,12 +2,12 @@
 
 use crate::common::{self, copy, drawn, fixture, refused};
 use std::path::Path;
-use wayword_local::{Blip2, Device, LocalError, Precision};
+use wayword_local::{Blip2Model, LocalError, ModelDevice, WeightPrecision};
 
 const BOTH: [&str; 2] = ["blip2_t5", "blip2_opt"];
 
-fn load(folder: &Path) -> Result<Blip2, LocalError> {
-    Blip2::load("hf/test/blip2", folder, &Device::cpu(), Precision::F32)
+fn load(folder: &Path) -> Result<Blip2Model, LocalError> {
+    Blip2Model::load("hf/test/blip2", folder, &ModelDevice::cpu(), WeightPrecision::F32)
 }
 
 #[derive(serde::Deserialize)]
@@ -35,14 +35,14 @@ fn queries_and_answers_agree_with_pytorch() {
     for name in BOTH {
         let (blip2, expected) = (load(&fixture(name)).unwrap(), expected(name));
         let picture = drawn(expected.size);
-        let seen = blip2.queries(&picture).unwrap();
+        let seen = blip2.query_states(&picture).unwrap();
         let largest = expected.projected.iter().copied().map(f32::abs).fold(1.0, f32::max);
         let off = seen.iter().zip(&expected.projected).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
         assert!(seen.len() == expected.projected.len() && off < 1e-5 * largest, "{name}: {off}");
         for answer in expected.answers.iter().chain(expected.answers.iter().rev()) {
-            let said = blip2.tokens(&picture, &answer.prompt, expected.most).unwrap();
+            let said = blip2.answer_tokens(&picture, &answer.prompt, expected.most).unwrap();
             assert_eq!(said, answer.said, "{name}: {}", answer.prompt);
-            assert_eq!(blip2.answer(&picture, &answer.prompt, expected.most).unwrap(), answer.text);
+            assert_eq!(blip2.continue_prompt(&picture, &answer.prompt, expected.most).unwrap(), answer.text);
         }
     }
 }
@@ -50,15 +50,16 @@ fn queries_and_answers_agree_with_pytorch() {
 #[test]
 fn sixteen_bits_come_near() {
     for name in BOTH {
-        let blip2 = Blip2::load("hf/test/blip2", &fixture(name), &Device::cpu(), Precision::Bf16).unwrap();
+        let blip2 =
+            Blip2Model::load("hf/test/blip2", &fixture(name), &ModelDevice::cpu(), WeightPrecision::Bf16).unwrap();
         let expected = expected(name);
         let picture = drawn(expected.size);
-        let seen = blip2.queries(&picture).unwrap();
+        let seen = blip2.query_states(&picture).unwrap();
         let dot = |a: &[f32], b: &[f32]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f32>();
         let cosine = dot(&seen, &expected.projected)
             / (dot(&seen, &seen) * dot(&expected.projected, &expected.projected)).sqrt();
         assert!((0.99..0.999_999).contains(&cosine), "{name}: {cosine}");
-        blip2.answer(&picture, "a photo of", 5).unwrap();
+        blip2.continue_prompt(&picture, "a photo of", 5).unwrap();
     }
 }
 

@@ -2,11 +2,11 @@
 
 use crate::common::{copy, damaged_files_are_named, drawn, fixture, refused, set, view};
 use std::path::Path;
-use wayword_core::{Grounder, Image, ModelError, View};
-use wayword_local::{Clip, ClipGrounder, Device, LocalError, Precision};
+use wayword_core::{Image, ModelError, PhraseGrounder, View};
+use wayword_local::{ClipGrounder, ClipModel, LocalError, ModelDevice, WeightPrecision};
 
-fn load(folder: &Path) -> Result<Clip, LocalError> {
-    Clip::load("hf/test/clip", folder, &Device::cpu(), Precision::F32)
+fn load(folder: &Path) -> Result<ClipModel, LocalError> {
+    ClipModel::load("hf/test/clip", folder, &ModelDevice::cpu(), WeightPrecision::F32)
 }
 
 #[derive(serde::Deserialize)]
@@ -39,7 +39,7 @@ fn near(ours: &[f32], theirs: &[f32], what: &str) {
 }
 
 #[track_caller]
-fn texts_agree(clip: &Clip, expected: &[OfText]) {
+fn texts_agree(clip: &ClipModel, expected: &[OfText]) {
     let texts: Vec<&str> = expected.iter().map(|one| &one.text[..]).collect();
     for (ours, one) in clip.text_features(&texts).unwrap().iter().zip(expected) {
         near(ours, &one.vector, &one.text);
@@ -81,7 +81,7 @@ fn texts_agree_where_the_configuration_names_the_wrong_end() {
 
 #[test]
 fn sixteen_bits_come_near() {
-    let half = Clip::load("hf/test/clip", &fixture("clip"), &Device::cpu(), Precision::Bf16).unwrap();
+    let half = ClipModel::load("hf/test/clip", &fixture("clip"), &ModelDevice::cpu(), WeightPrecision::Bf16).unwrap();
     let expected = expected();
     let image = half.image_features(&[&drawn(expected.images[0].size)]).unwrap().remove(0);
     let text = half.text_features(&[&expected.texts[0].text]).unwrap().remove(0);
@@ -99,7 +99,7 @@ fn a_score_is_the_cosine_of_picture_and_phrase() {
     let phrases: Vec<&str> = expected.texts.iter().map(|one| &one.text[..]).collect();
     // Twice, because the second time the vectors are kept ones.
     for _ in 0..2 {
-        let scores = grounder.ground(&views.iter().collect::<Vec<_>>(), &phrases);
+        let scores = grounder.score_phrases(&views.iter().collect::<Vec<_>>(), &phrases);
         for (scores, image) in scores.into_iter().zip(&expected.images) {
             let cosine = |text: &OfText| image.vector.iter().zip(&text.vector).map(|(a, b)| a * b).sum();
             near(&scores.unwrap(), &expected.texts.iter().map(cosine).collect::<Vec<f32>>(), "scores");
@@ -112,7 +112,7 @@ fn grounder_knows_which_texts_are_cut_off() {
     let grounder = ClipGrounder::new(load(&fixture("clip")).unwrap());
     // The model reads 18 tokens, of which two are the ends; a letter is a token here.
     let held = ["a b c d e f g h i j k l m n o p", "a b c d e f g h i j k l m n o p q"];
-    assert_eq!(held.map(|text| grounder.holds(text).unwrap()), [true, false]);
+    assert_eq!(held.map(|text| grounder.reads_whole_phrase(text).unwrap()), [true, false]);
 }
 
 #[test]
@@ -121,16 +121,17 @@ fn a_view_without_a_picture_does_not_fail_the_others() {
     let drawn = |at: usize| view(Some(drawn(expected.images[at].size)));
     let (blank, empty) = (view(None), view(Some(Image::new(0, 3, Vec::new()).unwrap())));
     let (first, last) = (drawn(0), drawn(1));
-    let scores = grounder.ground(&[&first, &blank, &first, &empty, &last], &["stairs"]);
+    let scores = grounder.score_phrases(&[&first, &blank, &first, &empty, &last], &["stairs"]);
     for at in [1, 3] {
         assert!(matches!(&scores[at], Err(ModelError::NothingToSee { name, .. }) if name == "hf/test/clip"));
     }
-    let alone = |view: &View| ClipGrounder::new(load(&fixture("clip")).unwrap()).ground(&[view], &["stairs"]).remove(0);
+    let alone =
+        |view: &View| ClipGrounder::new(load(&fixture("clip")).unwrap()).score_phrases(&[view], &["stairs"]).remove(0);
     for (at, view) in [(0, &first), (2, &first), (4, &last)] {
         near(scores[at].as_ref().unwrap(), &alone(view).unwrap(), "a score among others");
     }
-    assert_eq!(grounder.ground(&[&first], &[]), [Ok(Vec::new())]);
-    assert!(grounder.ground(&[], &["stairs"]).is_empty());
+    assert_eq!(grounder.score_phrases(&[&first], &[]), [Ok(Vec::new())]);
+    assert!(grounder.score_phrases(&[], &["stairs"]).is_empty());
 }
 
 #[test]

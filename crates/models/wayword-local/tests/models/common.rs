@@ -23,7 +23,7 @@ pub(crate) fn drawn((width, height): (u32, u32)) -> Image {
 }
 
 pub(crate) fn view(image: Option<Image>) -> View {
-    View::new(Pose::level(DVec3::ZERO, Heading::NORTH), FRAC_PI_2, image.map(Arc::new), None)
+    View::new(Pose::looking_level(DVec3::ZERO, Heading::NORTH), FRAC_PI_2, image.map(Arc::new), None)
 }
 
 /// A copy of a fixture.

@@ -6,29 +6,29 @@ use std::{
     path::{Path, PathBuf},
     sync::Arc,
 };
-use wayword_core::{DVec3, Detector, Heading, Image, Pose, View};
-use wayword_ledger::{Filter, Ledger, Limits, Run};
-use wayword_local::{Device, Hub, HubConfig, Loading, Models, Precision};
+use wayword_core::{DVec3, Heading, Image, ObjectDetector, Pose, View};
+use wayword_ledger::{Ledger, LedgerFilter, LedgerRun, RunLimits};
+use wayword_local::{HubConfig, LoadingOptions, LocalModels, ModelDevice, ModelHub, WeightPrecision};
 
 fn name(folder: &Path) -> String {
     format!("hf/{}", folder.display())
 }
 
-fn models(run: Run, memory_bytes: Option<u64>, precision: Option<Precision>) -> Models {
+fn models(run: LedgerRun, memory_bytes: Option<u64>, precision: Option<WeightPrecision>) -> LocalModels {
     let mut config = HubConfig::new(PathBuf::from("/nowhere"));
     config.offline = true;
-    let loading = Loading { device: Device::cpu(), precision, memory_bytes };
-    Models::new(Hub::new(config).unwrap(), loading, Box::new(()), run)
+    let loading = LoadingOptions { device: ModelDevice::cpu(), precision, memory_bytes };
+    LocalModels::new(ModelHub::new(config).unwrap(), loading, Box::new(()), run)
 }
 
-fn run(ledger: &Ledger, id: &str) -> Run {
-    ledger.run(id, Limits::default()).unwrap()
+fn run(ledger: &Ledger, id: &str) -> LedgerRun {
+    ledger.start_run(id, RunLimits::default()).unwrap()
 }
 
 fn view(shade: u8) -> View {
     let bytes = (0..40 * 30 * 3_u32).map(|at| (at * 7 % 251) as u8 ^ shade).collect();
     let image = Image::new(40, 30, bytes).unwrap();
-    View::new(Pose::level(DVec3::ZERO, Heading::NORTH), FRAC_PI_2, Some(Arc::new(image)), None)
+    View::new(Pose::looking_level(DVec3::ZERO, Heading::NORTH), FRAC_PI_2, Some(Arc::new(image)), None)
 }
 
 #[test]
@@ -38,23 +38,28 @@ fn answers_are_stored_by_view_and_phrase() {
     let (first, second) = (run(&ledger, "first"), run(&ledger, "second"));
     let name = name(&fixture("owl"));
     let (here, there) = (view(0), view(1));
-    let owl = models(first.clone(), None, None).detector(&name).unwrap();
+    let owl = models(first.clone(), None, None).get_detector(&name).unwrap();
     assert_eq!(owl.name(), name);
     assert!(owl.origin().contains("sha256:") && owl.origin().contains("f32"), "{}", owl.origin());
-    let computed = owl.detect(&[&here, &there], &["stairs", "red door", "sink"]);
+    let computed = owl.detect_phrases(&[&here, &there], &["stairs", "red door", "sink"]);
     assert_eq!((first.totals().answered, first.totals().hits), (6, 0));
     // Another process, with another list of phrases.
-    let again =
-        models(second.clone(), None, None).detector(&name).unwrap().detect(&[&there], &["sink", "lamp", "stairs"]);
+    let again = models(second.clone(), None, None)
+        .get_detector(&name)
+        .unwrap()
+        .detect_phrases(&[&there], &["sink", "lamp", "stairs"]);
     assert_eq!((second.totals().answered, second.totals().hits), (1, 2));
     let (again, computed) = (again[0].as_ref().unwrap(), computed[1].as_ref().unwrap());
     assert_eq!((&again[0], &again[2]), (&computed[2], &computed[0]));
     assert!(again.iter().all(|places| !places.is_empty()));
-    assert_eq!(ledger.list(&Filter::default()).unwrap().len(), 7);
+    assert_eq!(ledger.list_calls(&LedgerFilter::default()).unwrap().len(), 7);
     assert_eq!(second.totals().usd, 0.0);
     // Other weights have other answers.
     let third = run(&ledger, "third");
-    models(third.clone(), None, Some(Precision::Bf16)).detector(&name).unwrap().detect(&[&there], &["sink"]);
+    models(third.clone(), None, Some(WeightPrecision::Bf16))
+        .get_detector(&name)
+        .unwrap()
+        .detect_phrases(&[&there], &["sink"]);
     assert_eq!(third.totals().hits, 0);
 }
 
@@ -65,7 +70,7 @@ fn a_detector_is_loaded_once_and_looked_for_without_loading() {
     let models = models(run(&ledger, "run"), None, None);
     let name = name(&fixture("owl"));
     models.detector_at_hand(&name).unwrap();
-    assert!(Arc::ptr_eq(&models.detector(&name).unwrap(), &models.detector(&name).unwrap()));
+    assert!(Arc::ptr_eq(&models.get_detector(&name).unwrap(), &models.get_detector(&name).unwrap()));
 }
 
 #[test]
@@ -81,12 +86,12 @@ fn a_model_that_is_no_detector_is_refused_before_loading() {
         ("hf/a/b:c.gguf".to_owned(), vec!["GGUF"]),
     ] {
         let at_hand = models.detector_at_hand(&name).unwrap_err().to_string();
-        let loaded = refused(models.detector(&name));
+        let loaded = refused(models.get_detector(&name));
         for error in [at_hand, loaded] {
             assert!(told.iter().all(|told| error.contains(told)), "{error}");
         }
     }
-    assert!(Models::check_detector_name("hf/a/b").is_ok() && Models::check_detector_name("hf/a").is_err());
+    assert!(LocalModels::check_detector_name("hf/a/b").is_ok() && LocalModels::check_detector_name("hf/a").is_err());
 }
 
 #[test]
@@ -95,6 +100,6 @@ fn a_detector_that_does_not_fit_into_the_memory_is_refused_before_it_is_loaded()
     let ledger = Ledger::open(&folder.path().join("ledger.db")).unwrap();
     // The weights are small: the features that it keeps are not.
     let models = models(run(&ledger, "run"), Some(500 << 20), None);
-    let error = refused(models.detector(&name(&fixture("owl"))));
+    let error = refused(models.get_detector(&name(&fixture("owl"))));
     assert!(error.contains("fixtures/owl") && error.contains("of memory"), "{error}");
 }

@@ -2,14 +2,14 @@
 
 use crate::common::{copy, damaged_files_are_named, drawn, fixture, refused, set, view};
 use std::{collections::BTreeMap, path::Path};
-use wayword_core::{Detector, Found, Image, ModelError, View};
-use wayword_local::{Device, Dino, LocalError, Precision};
+use wayword_core::{DetectedBox, Image, ModelError, ObjectDetector, View};
+use wayword_local::{GroundingDino, LocalError, ModelDevice, WeightPrecision};
 
 /// The fixtures: one with separate heads for the two layers of the decoder, and one with shared heads.
 const MODELS: [&str; 2] = ["dino_mm", "dino"];
 
-fn load(folder: &Path) -> Result<Dino, LocalError> {
-    Dino::load("hf/test/dino", folder, &Device::cpu(), Precision::F32)
+fn load(folder: &Path) -> Result<GroundingDino, LocalError> {
+    GroundingDino::load("hf/test/dino", folder, &ModelDevice::cpu(), WeightPrecision::F32)
 }
 
 #[derive(serde::Deserialize)]
@@ -37,10 +37,10 @@ struct Seen {
 
 impl Seen {
     /// For each phrase what was found, the best first.
-    fn found(&self) -> Vec<Vec<Found>> {
+    fn found(&self) -> Vec<Vec<DetectedBox>> {
         let of_phrase = |scores: &Vec<f32>| {
-            let mut found: Vec<Found> =
-                scores.iter().zip(&self.boxes).map(|(&score, &box_px)| Found { box_px, score }).collect();
+            let mut found: Vec<DetectedBox> =
+                scores.iter().zip(&self.boxes).map(|(&score, &box_px)| DetectedBox { box_px, score }).collect();
             found.sort_by(|a, b| b.score.total_cmp(&a.score));
             found
         };
@@ -54,8 +54,8 @@ fn expected(name: &str) -> Expected {
 
 /// The largest differences of scores, and of boxes in pixels.
 #[track_caller]
-fn off(ours: &[Vec<Found>], theirs: &[Vec<Found>]) -> (f32, f32) {
-    let counts = |found: &[Vec<Found>]| found.iter().map(Vec::len).collect::<Vec<_>>();
+fn off(ours: &[Vec<DetectedBox>], theirs: &[Vec<DetectedBox>]) -> (f32, f32) {
+    let counts = |found: &[Vec<DetectedBox>]| found.iter().map(Vec::len).collect::<Vec<_>>();
     assert_eq!(counts(ours), counts(theirs));
     let both = || ours.iter().flatten().zip(theirs.iter().flatten());
     let scores = both().map(|(a, b)| (a.score - b.score).abs()).fold(0.0, f32::max);
@@ -64,14 +64,14 @@ fn off(ours: &[Vec<Found>], theirs: &[Vec<Found>]) -> (f32, f32) {
 }
 
 #[track_caller]
-fn agree(ours: &[Vec<Found>], theirs: &[Vec<Found>], what: &str) {
+fn agree(ours: &[Vec<DetectedBox>], theirs: &[Vec<DetectedBox>], what: &str) {
     let (scores, boxes) = off(ours, theirs);
     assert!(scores < 1e-5 && boxes < 1e-3, "{what}: {scores}, {boxes} px");
 }
 
-fn detected(dino: &Dino, size: (u32, u32), phrases: &[String]) -> Vec<Vec<Found>> {
+fn detected(dino: &GroundingDino, size: (u32, u32), phrases: &[String]) -> Vec<Vec<DetectedBox>> {
     let phrases: Vec<&str> = phrases.iter().map(|phrase| &phrase[..]).collect();
-    dino.detect(&[&view(Some(drawn(size)))], &phrases).remove(0).unwrap()
+    dino.detect_phrases(&[&view(Some(drawn(size)))], &phrases).remove(0).unwrap()
 }
 
 #[test]
@@ -82,7 +82,7 @@ fn scores_and_boxes_agree_with_pytorch() {
         let phrases: Vec<&str> = expected.phrases.iter().map(|phrase| &phrase[..]).collect();
         // Twice, because the second time the features are kept ones.
         for time in ["first", "second"] {
-            let found = dino.detect(&views.iter().collect::<Vec<_>>(), &phrases);
+            let found = dino.detect_phrases(&views.iter().collect::<Vec<_>>(), &phrases);
             for (found, theirs) in found.iter().zip(&expected.pictures) {
                 agree(found.as_ref().unwrap(), &theirs.seen.found(), &format!("{name} {time}"));
             }
@@ -144,7 +144,7 @@ fn heads_are_also_found_in_the_decoder() {
 fn phrases_of_more_than_a_prompt_are_looked_for_in_several() {
     let dino = load(&fixture("dino")).unwrap();
     let view = view(Some(drawn((75, 50))));
-    let detect = |phrases: &[&str]| dino.detect(&[&view], phrases).remove(0).unwrap();
+    let detect = |phrases: &[&str]| dino.detect_phrases(&[&view], phrases).remove(0).unwrap();
     // 24 tokens are the most: the first six phrases have as many, with their dots and both ends.
     let phrases =
         ["a white wooden door", "a red lamp", "the kitchen table", "a plant", "bed", "a wooden chair", "...", "sink"];
@@ -152,8 +152,8 @@ fn phrases_of_more_than_a_prompt_are_looked_for_in_several() {
     assert_eq!(together[..6], first);
     assert_eq!(together[6..], second);
     assert!(together[6].is_empty() && together[7].len() == 20);
-    assert_eq!(detect(&[]), Vec::<Vec<Found>>::new());
-    let long = dino.detect(&[&view], &["bed", &"red ".repeat(30)]).remove(0).unwrap_err().to_string();
+    assert_eq!(detect(&[]), Vec::<Vec<DetectedBox>>::new());
+    let long = dino.detect_phrases(&[&view], &["bed", &"red ".repeat(30)]).remove(0).unwrap_err().to_string();
     assert!(long.contains("30 tokens") && long.contains("21 are the most"), "{long}");
 }
 
@@ -162,7 +162,7 @@ fn a_view_without_a_picture_does_not_fail_the_others() {
     let dino = load(&fixture("dino_mm")).unwrap();
     let (shown, blank, empty) =
         (view(Some(drawn((75, 50)))), view(None), view(Some(Image::new(0, 3, Vec::new()).unwrap())));
-    let found = dino.detect(&[&blank, &shown, &empty], &["sink"]);
+    let found = dino.detect_phrases(&[&blank, &shown, &empty], &["sink"]);
     for at in [0, 2] {
         assert!(matches!(&found[at], Err(ModelError::NothingToSee { name, .. }) if name == "hf/test/dino"));
     }
@@ -175,9 +175,9 @@ fn a_view_without_a_picture_does_not_fail_the_others() {
 fn boxes_lie_within_pictures_of_any_shape() {
     let dino = load(&fixture("dino")).unwrap();
     for (width, height) in [(1, 1), (3, 400), (700, 2), (97, 72)] {
-        let found = dino.detect(&[&view(Some(drawn((width, height))))], &["sink"]).remove(0).unwrap();
+        let found = dino.detect_phrases(&[&view(Some(drawn((width, height))))], &["sink"]).remove(0).unwrap();
         assert!(!found[0].is_empty());
-        for Found { box_px: [left, top, right, bottom], score } in &found[0] {
+        for DetectedBox { box_px: [left, top, right, bottom], score } in &found[0] {
             assert!(0.0 <= *left && left <= right && *right <= width as f32, "{found:?}");
             assert!(0.0 <= *top && top <= bottom && *bottom <= height as f32, "{found:?}");
             assert!((0.0..=1.0).contains(score));
@@ -188,8 +188,9 @@ fn boxes_lie_within_pictures_of_any_shape() {
 #[test]
 fn sixteen_bits_come_near() {
     let expected = expected("dino");
-    let half = Dino::load("hf/test/dino", &fixture("dino"), &Device::cpu(), Precision::Bf16).unwrap();
-    let best = |found: &[Vec<Found>]| found.iter().map(|found| found[0].score).collect::<Vec<_>>();
+    let half =
+        GroundingDino::load("hf/test/dino", &fixture("dino"), &ModelDevice::cpu(), WeightPrecision::Bf16).unwrap();
+    let best = |found: &[Vec<DetectedBox>]| found.iter().map(|found| found[0].score).collect::<Vec<_>>();
     let ours = best(&detected(&half, expected.pictures[0].size, &expected.phrases));
     let off = ours.iter().zip(best(&expected.pictures[0].seen.found())).map(|(a, b)| (a - b).abs());
     let off = off.fold(0.0, f32::max);

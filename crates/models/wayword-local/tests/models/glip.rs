@@ -3,12 +3,14 @@
 use crate::common::{copy, drawn, fixture, refused, set, view};
 use candle_core::{Device as On, Tensor, safetensors};
 use std::{collections::HashMap, path::Path};
-use wayword_core::{Detector, Grounded, Grounder, ModelError};
-use wayword_local::{Device, Glip, GlipFiles, Hub, HubConfig, LocalError, ModelName, Precision, Progress};
+use wayword_core::{DetectorGrounder, ModelError, ObjectDetector, PhraseGrounder};
+use wayword_local::{
+    DownloadProgress, GlipDetector, GlipFiles, HubConfig, LocalError, ModelDevice, ModelHub, ModelName, WeightPrecision,
+};
 
-fn load_from(folder: &Path, short: usize) -> Result<Glip, LocalError> {
+fn load_from(folder: &Path, short: usize) -> Result<GlipDetector, LocalError> {
     let files = GlipFiles { weights: folder.join("glip.pth"), tokenizer: folder.to_owned(), identity: String::new() };
-    Glip::load("hf/test/glip:glip.pth", &files, short, &Device::cpu(), Precision::F32)
+    GlipDetector::load("hf/test/glip:glip.pth", &files, short, &ModelDevice::cpu(), WeightPrecision::F32)
 }
 
 #[derive(serde::Deserialize)]
@@ -43,8 +45,8 @@ fn off(ours: &[f32], theirs: &[f32]) -> f32 {
 }
 
 #[track_caller]
-fn agrees(glip: &Glip, case: &Case, expected: &HashMap<String, Tensor>, at: &str) {
-    let (logits, boxes) = glip.raw(&drawn(case.size), &case.phrases()).unwrap();
+fn agrees(glip: &GlipDetector, case: &Case, expected: &HashMap<String, Tensor>, at: &str) {
+    let (logits, boxes) = glip.raw_outputs(&drawn(case.size), &case.phrases()).unwrap();
     let column = |from: usize, to: usize| boxes.chunks(5).flat_map(|row| row[from..to].to_vec()).collect::<Vec<f32>>();
     for (name, ours) in [("logits", logits), ("deltas", column(0, 4)), ("centres", column(4, 5))] {
         let off = off(&ours, &numbers(&expected[&format!("{name}{at}")]));
@@ -66,7 +68,7 @@ fn outputs_differ_from_those_of_likely_mistakes() {
     let expected = expected();
     for (at, case) in cases().iter().enumerate() {
         let (logits, _) =
-            load_from(&fixture("glip"), case.short).unwrap().raw(&drawn(case.size), &case.phrases()).unwrap();
+            load_from(&fixture("glip"), case.short).unwrap().raw_outputs(&drawn(case.size), &case.phrases()).unwrap();
         for trap in ["offsets", "corners", "residual"] {
             let off = off(&logits, &numbers(&expected[&format!("{trap}{at}")]));
             assert!(off > 0.1, "{trap}{at}: {off}");
@@ -78,7 +80,7 @@ fn outputs_differ_from_those_of_likely_mistakes() {
 fn boxes_and_scores_agree_with_the_oracle() {
     for case in cases() {
         let glip = load_from(&fixture("glip"), case.short).unwrap();
-        let found = glip.find(&drawn(case.size), &case.phrases()).unwrap();
+        let found = glip.find_phrases(&drawn(case.size), &case.phrases()).unwrap();
         assert_eq!(found.len(), case.boxes.len());
         for (found, expected) in found.iter().zip(&case.boxes) {
             assert_eq!(found.len(), expected.len());
@@ -94,10 +96,10 @@ fn boxes_and_scores_agree_with_the_oracle() {
 #[derive(Default)]
 struct Notes(std::sync::Mutex<Vec<String>>);
 
-impl Progress for Notes {
-    fn bytes(&self, _: &str, _: u64, _: Option<u64>) {}
+impl DownloadProgress for Notes {
+    fn bytes_arrived(&self, _: &str, _: u64, _: Option<u64>) {}
 
-    fn told(&self, note: &str) {
+    fn show_note(&self, note: &str) {
         self.0.lock().unwrap().push(note.to_owned());
     }
 }
@@ -107,14 +109,14 @@ fn files_are_found_by_name_and_the_licence_is_noted() {
     let cache = tempfile::tempdir().unwrap();
     let mut config = HubConfig::new(cache.path().to_owned());
     config.offline = true;
-    let hub = Hub::new(config).unwrap();
+    let hub = ModelHub::new(config).unwrap();
     let name = |file: &str| ModelName::parse(&format!("hf/{}", fixture("glip").join(file).display())).unwrap();
     let notes = Notes::default();
-    let files = GlipFiles::find(&hub, &name("glip.pth"), &notes).unwrap();
+    let files = GlipFiles::find_files(&hub, &name("glip.pth"), &notes).unwrap();
     assert_eq!((files.weights, files.tokenizer), (fixture("glip").join("glip.pth"), fixture("glip")));
     let notes = notes.0.into_inner().unwrap();
     assert!(notes.len() == 2 && notes[0].contains("SHA-256") && notes[1] == wayword_local::GLIP_LICENCE, "{notes:?}");
-    let error = GlipFiles::find(&hub, &name(""), &()).unwrap_err().to_string();
+    let error = GlipFiles::find_files(&hub, &name(""), &()).unwrap_err().to_string();
     assert!(error.contains("GLIPModel/GLIP:glip_tiny"), "{error}");
 }
 
@@ -122,7 +124,7 @@ fn files_are_found_by_name_and_the_licence_is_noted() {
 fn a_view_without_a_picture_does_not_fail_the_others() {
     let (glip, case) = (load_from(&fixture("glip"), 96).unwrap(), &cases()[0]);
     let (shown, blank) = (view(Some(drawn(case.size))), view(None));
-    let found = glip.detect(&[&shown, &blank, &shown], &["blue chair", "", "sink"]);
+    let found = glip.detect_phrases(&[&shown, &blank, &shown], &["blue chair", "", "sink"]);
     assert!(matches!(&found[1], Err(ModelError::NothingToSee { name, .. }) if name == glip.name()));
     let of_shown = found[0].as_ref().unwrap();
     assert_eq!(Ok(of_shown), found[2].as_ref());
@@ -134,17 +136,17 @@ fn a_view_without_a_picture_does_not_fail_the_others() {
             |[left, top, right, bottom]: [f32; 4]| left >= 0.0 && top >= 0.0 && right <= 160.0 && bottom <= 96.0;
         assert!(found.iter().all(|found| inside(found.box_px) && (0.0..=1.0).contains(&found.score)));
     }
-    assert_eq!(glip.detect(&[&shown], &[]), [Ok(Vec::new())]);
+    assert_eq!(glip.detect_phrases(&[&shown], &[]), [Ok(Vec::new())]);
 }
 
 #[test]
 fn a_phrase_is_grounded_by_itself() {
     let (glip, case) = (load_from(&fixture("glip"), 96).unwrap(), &cases()[0]);
     assert!(glip.scoring().phrases_meet);
-    let alone = glip.find(&drawn(case.size), &["sink"]).unwrap()[0][0].score;
-    let together = glip.find(&drawn(case.size), &["blue chair", "sink"]).unwrap()[1][0].score;
+    let alone = glip.find_phrases(&drawn(case.size), &["sink"]).unwrap()[0][0].score;
+    let together = glip.find_phrases(&drawn(case.size), &["blue chair", "sink"]).unwrap()[1][0].score;
     let shown = view(Some(drawn(case.size)));
-    let scores = Grounded::new(glip).ground(&[&shown], &["blue chair", "sink"]).remove(0).unwrap();
+    let scores = DetectorGrounder::new(glip).score_phrases(&[&shown], &["blue chair", "sink"]).remove(0).unwrap();
     assert_eq!(scores[1], alone);
     assert!((alone - together).abs() > 1e-4);
 }
@@ -154,13 +156,13 @@ fn many_phrases_go_into_several_prompts() {
     // The fixture's texts have at most 64 tokens.
     let (glip, case) = (load_from(&fixture("glip"), 96).unwrap(), &cases()[0]);
     let phrases = vec!["wooden door"; 50];
-    let found = glip.find(&drawn(case.size), &phrases).unwrap();
+    let found = glip.find_phrases(&drawn(case.size), &phrases).unwrap();
     assert!(found.len() == 50 && found.iter().all(|found| !found.is_empty()));
     let long = vec!["lamp"; 70].join(" ");
-    let error = glip.find(&drawn(case.size), &["sink", &long]).unwrap_err().to_string();
+    let error = glip.find_phrases(&drawn(case.size), &["sink", &long]).unwrap_err().to_string();
     assert!(error.contains("lamp lamp") && error.contains("64 tokens"), "{error}");
     let shown = view(Some(drawn(case.size)));
-    assert!(matches!(&glip.detect(&[&shown], &[&long])[0], Err(ModelError::Failed { .. })));
+    assert!(matches!(&glip.detect_phrases(&[&shown], &[&long])[0], Err(ModelError::Failed { .. })));
 }
 
 #[test]
@@ -168,8 +170,8 @@ fn sixteen_bits_come_near() {
     let case = &cases()[0];
     let files =
         GlipFiles { weights: fixture("glip").join("glip.pth"), tokenizer: fixture("glip"), identity: String::new() };
-    let half = Glip::load("half", &files, 96, &Device::cpu(), Precision::Bf16).unwrap();
-    let (logits, _) = half.raw(&drawn(case.size), &case.phrases()).unwrap();
+    let half = GlipDetector::load("half", &files, 96, &ModelDevice::cpu(), WeightPrecision::Bf16).unwrap();
+    let (logits, _) = half.raw_outputs(&drawn(case.size), &case.phrases()).unwrap();
     let expected = numbers(&expected()["logits0"]);
     let mean = logits.iter().zip(&expected).map(|(a, b)| (a - b).abs()).sum::<f32>() / logits.len() as f32;
     assert!((1e-5..0.2).contains(&mean), "{mean}");

@@ -2,11 +2,11 @@
 
 use crate::common::{copy, damaged_files_are_named, drawn, fixture, refused, set, view};
 use std::{collections::BTreeMap, path::Path};
-use wayword_core::{Detector, Grounded, Grounder, MOST_BOXES, ModelError};
-use wayword_local::{Device, LocalError, Owl, OwlOutputs, Precision};
+use wayword_core::{DetectorGrounder, MOST_BOXES, ModelError, ObjectDetector, PhraseGrounder};
+use wayword_local::{LocalError, ModelDevice, OwlDetector, OwlOutputs, WeightPrecision};
 
-fn load(folder: &Path) -> Result<Owl, LocalError> {
-    Owl::load("hf/test/owl", folder, &Device::cpu(), Precision::F32)
+fn load(folder: &Path) -> Result<OwlDetector, LocalError> {
+    OwlDetector::load("hf/test/owl", folder, &ModelDevice::cpu(), WeightPrecision::F32)
 }
 
 #[derive(serde::Deserialize)]
@@ -58,7 +58,7 @@ fn logits_and_boxes_agree_with_pytorch() {
     let (owl, expected) = (load(&fixture("owl")).unwrap(), Expected::read(&fixture("owl")));
     assert_eq!(owl.edge_px(), 48);
     for OfPicture { size, numbers } in &expected.pictures {
-        let ours = owl.outputs(&drawn(*size), &expected.texts()).unwrap();
+        let ours = owl.raw_outputs(&drawn(*size), &expected.texts()).unwrap();
         let (logits, boxes) = off(&ours, numbers);
         assert!(logits < 1e-4 && boxes < 2e-6, "{size:?}: {logits}, {boxes}");
     }
@@ -67,7 +67,7 @@ fn logits_and_boxes_agree_with_pytorch() {
 #[test]
 fn outputs_differ_from_those_of_known_mistakes() {
     let (owl, expected) = (load(&fixture("owl")).unwrap(), Expected::read(&fixture("owl")));
-    let ours = owl.outputs(&drawn(expected.pictures[1].size), &expected.texts()).unwrap();
+    let ours = owl.raw_outputs(&drawn(expected.pictures[1].size), &expected.texts()).unwrap();
     assert_eq!(expected.traps.len(), 8);
     for (mistake, numbers) in &expected.traps {
         let (logits, boxes) = off(&ours, numbers);
@@ -81,14 +81,14 @@ fn a_text_scores_the_same_alone_and_among_others() {
     let OfPicture { size, numbers } = &expected.pictures[0];
     for (text, logits) in expected.texts.iter().zip(&numbers.logits).rev() {
         // Another instance, which has no kept vectors.
-        let alone = load(&fixture("owl")).unwrap().outputs(&drawn(*size), &[text]).unwrap();
-        let kept = owl.outputs(&drawn(*size), &[text]).unwrap();
+        let alone = load(&fixture("owl")).unwrap().raw_outputs(&drawn(*size), &[text]).unwrap();
+        let kept = owl.raw_outputs(&drawn(*size), &[text]).unwrap();
         for ours in [alone, kept] {
             let off = ours.logits[0].iter().zip(logits).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
             assert!(off < 1e-4, "{text}: {off}");
         }
     }
-    assert!(owl.outputs(&drawn(*size), &[]).unwrap().logits.is_empty());
+    assert!(owl.raw_outputs(&drawn(*size), &[]).unwrap().logits.is_empty());
 }
 
 #[test]
@@ -96,7 +96,7 @@ fn finds_have_a_score_and_a_box_in_picture_pixels() {
     let (owl, expected) = (load(&fixture("owl")).unwrap(), Expected::read(&fixture("owl")));
     let OfPicture { size: (width, height), numbers } = &expected.pictures[1];
     let shown = view(Some(drawn((*width, *height))));
-    let found = owl.detect(&[&shown], &["the red door", "sink"]).remove(0).unwrap();
+    let found = owl.detect_phrases(&[&shown], &["the red door", "sink"]).remove(0).unwrap();
     assert_eq!(found.len(), 2);
     // The first of the texts is the prompt for this phrase; its best patch within the picture is the best find.
     let edge = (*width).max(*height) as f32;
@@ -115,7 +115,7 @@ fn finds_have_a_score_and_a_box_in_picture_pixels() {
     for places in &found {
         assert!(places.len() <= MOST_BOXES && places.is_sorted_by(|a, b| a.score >= b.score));
     }
-    let scores = Grounded::new(owl).ground(&[&shown], &["the red door", "sink"]).remove(0).unwrap();
+    let scores = DetectorGrounder::new(owl).score_phrases(&[&shown], &["the red door", "sink"]).remove(0).unwrap();
     assert_eq!(scores, [best.score, found[1].first().map_or(0.0, |found| found.score)]);
 }
 
@@ -123,7 +123,7 @@ fn finds_have_a_score_and_a_box_in_picture_pixels() {
 fn a_view_without_a_picture_does_not_fail_the_others() {
     let owl = load(&fixture("owl")).unwrap();
     let (blank, shown) = (view(None), view(Some(drawn((40, 30)))));
-    let found = owl.detect(&[&blank, &shown], &["stairs"]);
+    let found = owl.detect_phrases(&[&blank, &shown], &["stairs"]);
     assert!(matches!(&found[0], Err(ModelError::NothingToSee { name, .. }) if name == "hf/test/owl"));
     assert_eq!(found[1].as_ref().unwrap().len(), 1);
     let scoring = owl.scoring();
@@ -132,10 +132,10 @@ fn a_view_without_a_picture_does_not_fail_the_others() {
 
 #[test]
 fn sixteen_bits_come_near() {
-    let half = Owl::load("hf/test/owl", &fixture("owl"), &Device::cpu(), Precision::Bf16).unwrap();
+    let half = OwlDetector::load("hf/test/owl", &fixture("owl"), &ModelDevice::cpu(), WeightPrecision::Bf16).unwrap();
     let expected = Expected::read(&fixture("owl"));
     let OfPicture { size, numbers } = &expected.pictures[0];
-    let (logits, boxes) = off(&half.outputs(&drawn(*size), &expected.texts()).unwrap(), numbers);
+    let (logits, boxes) = off(&half.raw_outputs(&drawn(*size), &expected.texts()).unwrap(), numbers);
     assert!((1e-4..1.0).contains(&logits) && (1e-6..0.05).contains(&boxes), "{logits}, {boxes}");
 }
 

@@ -12,121 +12,122 @@ use object_store::{
 use std::{fs, sync::Arc, time::Duration};
 use url::Url;
 
-const SCHEMES: [&str; 10] = ["s3", "s3a", "gs", "az", "adl", "azure", "abfs", "abfss", "https", "file"];
+const ADDRESS_SCHEMES: [&str; 10] = ["s3", "s3a", "gs", "az", "adl", "azure", "abfs", "abfss", "https", "file"];
 
 /// The schemes in which the part before the `@` is a container and not a user.
 const CONTAINER_FIRST: [&str; 5] = ["az", "adl", "azure", "abfs", "abfss"];
 
-const FORMS: &str = "write s3://BUCKET/PREFIX, gs://BUCKET/PREFIX, az://CONTAINER/PREFIX or file:///FOLDER";
+const ADDRESS_HINT: &str = "write s3://BUCKET/PREFIX, gs://BUCKET/PREFIX, az://CONTAINER/PREFIX or file:///FOLDER";
 
 /// How long one request may take. A part of a file is at most 64 MiB.
-const REQUEST: &str = "300 seconds";
+const REQUEST_TIMEOUT: &str = "300 seconds";
 
 /// Whether a text is an address of an object store, and not a folder.
 fn is_url(text: &str) -> bool {
-    text.split_once("://").is_some_and(|(scheme, _)| SCHEMES.iter().any(|known| known.eq_ignore_ascii_case(scheme)))
+    text.split_once("://")
+        .is_some_and(|(scheme, _)| ADDRESS_SCHEMES.iter().any(|known| known.eq_ignore_ascii_case(scheme)))
 }
 
 /// A store, the prefix in it, and the address as it may be shown.
-pub(super) struct Opened {
+pub(super) struct OpenedStore {
     pub(super) store: Arc<dyn ObjectStore>,
     pub(super) prefix: Path,
     pub(super) shown: String,
 }
 
-fn wrong(problem: &'static str, hint: &'static str) -> CloudError {
+fn address_error(problem: &'static str, hint: &'static str) -> CloudError {
     CloudError::Address { problem, hint }
 }
 
-pub(super) fn open(text: &str) -> Result<Opened, CloudError> {
-    let url = parsed(text)?;
+pub(super) fn open_store(text: &str) -> Result<OpenedStore, CloudError> {
+    let url = parse_address(text)?;
     let Ok((scheme, prefix)) = ObjectStoreScheme::parse(&url) else {
-        return Err(wrong("is of no store that is known", FORMS));
+        return Err(address_error("is of no store that is known", ADDRESS_HINT));
     };
     if !prefix.as_ref().is_empty() {
-        names::check(prefix.as_ref())?;
+        names::check_name(prefix.as_ref())?;
     }
     // Messages show the address as it was parsed and checked, not as it was typed.
     let shown = url.as_str().trim_end_matches('/').escape_debug().to_string();
     let store: Arc<dyn ObjectStore> = match scheme {
-        ObjectStoreScheme::Local => return folder(&url, shown),
-        ObjectStoreScheme::AmazonS3 => Arc::new(s3(&url).map_err(|error| trouble::of_settings(&shown, &error))?),
+        ObjectStoreScheme::Local => return open_folder(&url, shown),
+        ObjectStoreScheme::AmazonS3 => Arc::new(open_s3(&url).map_err(|error| trouble::of_settings(&shown, &error))?),
         ObjectStoreScheme::GoogleCloudStorage => {
-            Arc::new(google(&url).map_err(|error| trouble::of_settings(&shown, &error))?)
+            Arc::new(open_google(&url).map_err(|error| trouble::of_settings(&shown, &error))?)
         }
         ObjectStoreScheme::MicrosoftAzure => {
-            Arc::new(azure(&url).map_err(|error| trouble::of_settings(&shown, &error))?)
+            Arc::new(open_azure(&url).map_err(|error| trouble::of_settings(&shown, &error))?)
         }
-        _ => return Err(wrong("is of a server whose kind is not known", FORMS)),
+        _ => return Err(address_error("is of a server whose kind is not known", ADDRESS_HINT)),
     };
-    Ok(Opened { store, prefix, shown })
+    Ok(OpenedStore { store, prefix, shown })
 }
 
 /// Parses an address and refuses parts that could contain a secret.
-fn parsed(text: &str) -> Result<Url, CloudError> {
+fn parse_address(text: &str) -> Result<Url, CloudError> {
     if text.len() > 2048 || text.chars().any(char::is_control) {
-        return Err(wrong("is too long or has control characters", FORMS));
+        return Err(address_error("is too long or has control characters", ADDRESS_HINT));
     }
     if !is_url(text) {
-        return Err(wrong("is of no store that is known", FORMS));
+        return Err(address_error("is of no store that is known", ADDRESS_HINT));
     }
     // `..` would be resolved before it can be seen.
     if text.split(['/', '\\']).any(|part| matches!(part, "." | "..")) {
-        return Err(wrong("has a part `.` or `..`", FORMS));
+        return Err(address_error("has a part `.` or `..`", ADDRESS_HINT));
     }
-    let url = Url::parse(text).map_err(|_| wrong("cannot be read", FORMS))?;
+    let url = Url::parse(text).map_err(|_| address_error("cannot be read", ADDRESS_HINT))?;
     let is_user = !url.username().is_empty() && !CONTAINER_FIRST.contains(&url.scheme());
     if url.password().is_some() || is_user {
         let hint =
             "take it out, and set the variables of the provider, such as AWS_ACCESS_KEY_ID and AWS_SECRET_ACCESS_KEY";
-        return Err(wrong("has a user or a password in it, which others could read", hint));
+        return Err(address_error("has a user or a password in it, which others could read", hint));
     }
     // A port may be the beginning of a password that was cut off. An endpoint belongs in a variable.
     if url.port().is_some() {
         let hint = "take it out; the address of a server stands in a variable, such as AWS_ENDPOINT_URL";
-        return Err(wrong("has a port in it", hint));
+        return Err(address_error("has a port in it", hint));
     }
     if url.query().is_some() || url.fragment().is_some() {
         let hint =
             "take out what follows `?` or `#`; a signature belongs in a variable, such as AZURE_STORAGE_SAS_TOKEN";
-        return Err(wrong("has a query in it, where signatures stand", hint));
+        return Err(address_error("has a query in it, where signatures stand", hint));
     }
     Ok(url)
 }
 
-fn folder(url: &Url, shown: String) -> Result<Opened, CloudError> {
-    let path = url.to_file_path().map_err(|()| wrong("is no folder of this machine", FORMS))?;
-    fs::create_dir_all(&path).map_err(CloudError::local(&path, "make this folder"))?;
+fn open_folder(url: &Url, shown: String) -> Result<OpenedStore, CloudError> {
+    let path = url.to_file_path().map_err(|()| address_error("is no folder of this machine", ADDRESS_HINT))?;
+    fs::create_dir_all(&path).map_err(CloudError::for_local_file(&path, "make this folder"))?;
     let store = LocalFileSystem::new_with_prefix(&path).map_err(|error| trouble::of_settings(&shown, &error))?;
-    Ok(Opened { store: Arc::new(store.with_fsync(true)), prefix: Path::default(), shown })
+    Ok(OpenedStore { store: Arc::new(store.with_fsync(true)), prefix: Path::default(), shown })
 }
 
 /// At most twelve more tries, within two and a half minutes. If a store is down for longer, the worker ends and has to be
 /// started again.
-fn retry() -> RetryConfig {
+fn retry_config() -> RetryConfig {
     RetryConfig { max_retries: 12, retry_timeout: Duration::from_secs(150), ..RetryConfig::default() }
 }
 
-fn s3(url: &Url) -> Result<impl ObjectStore, object_store::Error> {
+fn open_s3(url: &Url) -> Result<impl ObjectStore, object_store::Error> {
     AmazonS3Builder::from_env()
         .with_url(url.as_str())
-        .with_config(AmazonS3ConfigKey::Client(ClientConfigKey::Timeout), REQUEST)
-        .with_retry(retry())
+        .with_config(AmazonS3ConfigKey::Client(ClientConfigKey::Timeout), REQUEST_TIMEOUT)
+        .with_retry(retry_config())
         .build()
 }
 
-fn google(url: &Url) -> Result<impl ObjectStore, object_store::Error> {
+fn open_google(url: &Url) -> Result<impl ObjectStore, object_store::Error> {
     GoogleCloudStorageBuilder::from_env()
         .with_url(url.as_str())
-        .with_config(GoogleConfigKey::Client(ClientConfigKey::Timeout), REQUEST)
-        .with_retry(retry())
+        .with_config(GoogleConfigKey::Client(ClientConfigKey::Timeout), REQUEST_TIMEOUT)
+        .with_retry(retry_config())
         .build()
 }
 
-fn azure(url: &Url) -> Result<impl ObjectStore, object_store::Error> {
+fn open_azure(url: &Url) -> Result<impl ObjectStore, object_store::Error> {
     MicrosoftAzureBuilder::from_env()
         .with_url(url.as_str())
-        .with_config(AzureConfigKey::Client(ClientConfigKey::Timeout), REQUEST)
-        .with_retry(retry())
+        .with_config(AzureConfigKey::Client(ClientConfigKey::Timeout), REQUEST_TIMEOUT)
+        .with_retry(retry_config())
         .build()
 }

@@ -12,14 +12,14 @@ use tokio::runtime::{Builder, Handle, Runtime};
 pub const MOST_OBJECTS: usize = 1_000_000;
 
 /// How often a write is tried again after a conflict with another write of the same object.
-const CONFLICTS: u32 = 5;
+const MAX_CONFLICT_RETRIES: u32 = 5;
 
 /// The pause before it, multiplied by the number of conflicts so far.
-const CONFLICT: Duration = Duration::from_millis(50);
+const CONFLICT_PAUSE: Duration = Duration::from_millis(50);
 
 /// An object of a list.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Entry {
+pub struct StoredObject {
     /// The name, below the bucket's prefix.
     pub name: String,
     /// How many bytes it has.
@@ -29,34 +29,34 @@ pub struct Entry {
 }
 
 /// A bucket, or the part of it below a prefix. It can be used by several threads at the same time.
-pub struct Bucket {
+pub struct CloudBucket {
     pub(super) store: Arc<dyn ObjectStore>,
     prefix: Path,
     shown: String,
     runtime: Runtime,
 }
 
-impl fmt::Debug for Bucket {
+impl fmt::Debug for CloudBucket {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         // The debug texts of the stores contain their settings, so they are left out.
         f.debug_struct("Bucket").field("address", &self.shown).finish_non_exhaustive()
     }
 }
 
-impl fmt::Display for Bucket {
+impl fmt::Display for CloudBucket {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.shown)
     }
 }
 
-fn runtime() -> Result<Runtime, CloudError> {
+fn start_runtime() -> Result<Runtime, CloudError> {
     Builder::new_current_thread()
         .enable_all()
         .build()
-        .map_err(CloudError::local(".", "start the client of object stores"))
+        .map_err(CloudError::for_local_file(".", "start the client of object stores"))
 }
 
-impl Bucket {
+impl CloudBucket {
     /// Opens a bucket: `s3://BUCKET/PREFIX`, `gs://BUCKET/PREFIX`, `az://CONTAINER/PREFIX`, `file:///FOLDER`, and the
     /// `https://` addresses of Amazon, Cloudflare R2 and Azure. Sends no request to the store yet; a folder is made if it
     /// does not exist.
@@ -67,8 +67,8 @@ impl Bucket {
     pub fn open(url: &str) -> Result<Self, CloudError> {
         // The client needs a provider of cryptography. Where the program has chosen one, that one stays.
         let _ = rustls::crypto::ring::default_provider().install_default();
-        let opened = address::open(url)?;
-        Ok(Self { store: opened.store, prefix: opened.prefix, shown: opened.shown, runtime: runtime()? })
+        let opened = address::open_store(url)?;
+        Ok(Self { store: opened.store, prefix: opened.prefix, shown: opened.shown, runtime: start_runtime()? })
     }
 
     /// A bucket in memory, for tests.
@@ -77,11 +77,11 @@ impl Bucket {
     /// When the system has no room for a client.
     pub fn in_memory() -> Result<Self, CloudError> {
         let store = Arc::new(InMemory::new());
-        Ok(Self { store, prefix: Path::default(), shown: "memory:".to_owned(), runtime: runtime()? })
+        Ok(Self { store, prefix: Path::default(), shown: "memory:".to_owned(), runtime: start_runtime()? })
     }
 
     /// Waits for the store.
-    pub(super) fn wait<T>(&self, work: impl Future<Output = Result<T, CloudError>>) -> Result<T, CloudError> {
+    pub(super) fn block_on_store<T>(&self, work: impl Future<Output = Result<T, CloudError>>) -> Result<T, CloudError> {
         if Handle::try_current().is_ok() {
             return Err(CloudError::InsideAsync);
         }
@@ -89,17 +89,17 @@ impl Bucket {
     }
 
     /// The address of an object, as it is shown.
-    pub(super) fn shown(&self, name: &str) -> String {
+    pub(super) fn shown_address(&self, name: &str) -> String {
         if name.is_empty() { self.shown.clone() } else { format!("{}/{}", self.shown, name.escape_debug()) }
     }
 
-    pub(super) fn place(&self, name: &str) -> Result<Path, CloudError> {
-        names::check(name)?;
-        names::below(&self.prefix, name)
+    pub(super) fn object_path(&self, name: &str) -> Result<Path, CloudError> {
+        names::check_name(name)?;
+        names::path_below(&self.prefix, name)
     }
 
-    pub(super) fn trouble(&self, name: &str, doing: &'static str, error: &object_store::Error) -> CloudError {
-        match trouble::of(&self.shown(name), doing, error) {
+    pub(super) fn object_error(&self, name: &str, doing: &'static str, error: &object_store::Error) -> CloudError {
+        match trouble::from_store_error(&self.shown_address(name), doing, error) {
             CloudError::NoBucket { .. } => CloudError::NoBucket { bucket: self.shown.clone() },
             other => other,
         }
@@ -114,21 +114,21 @@ impl Bucket {
     /// # Errors
     /// When the store cannot be used, or has no put-if-absent ([`CloudError::NoPutNew`]).
     pub fn put_new(&self, name: &str, bytes: impl Into<Vec<u8>>) -> Result<bool, CloudError> {
-        let place = self.place(name)?;
+        let place = self.object_path(name)?;
         let payload = PutPayload::from(bytes.into());
-        self.wait(async {
+        self.block_on_store(async {
             let mut conflicts = 0;
             loop {
                 let options = PutOptions::from(PutMode::Create);
                 match self.store.put_opts(&place, payload.clone(), options).await {
                     Ok(_) => return Ok(true),
-                    Err(error) if trouble::is_conflict(&error) && conflicts < CONFLICTS => {
+                    Err(error) if trouble::is_conflict(&error) && conflicts < MAX_CONFLICT_RETRIES => {
                         conflicts += 1;
-                        tokio::time::sleep(CONFLICT * conflicts).await;
+                        tokio::time::sleep(CONFLICT_PAUSE * conflicts).await;
                     }
                     Err(error) if trouble::is_conflict(&error) => {
                         let problem = "others write the same object all the time".to_owned();
-                        return Err(CloudError::Network { at: self.shown(name), doing: "write it", problem });
+                        return Err(CloudError::Network { at: self.shown_address(name), doing: "write it", problem });
                     }
                     Err(error @ object_store::Error::AlreadyExists { .. }) if !trouble::is_no_bucket(&error) => {
                         return Ok(false);
@@ -136,7 +136,7 @@ impl Bucket {
                     Err(error) if trouble::is_not_implemented(&error) => {
                         return Err(self.no_put_new("it says so"));
                     }
-                    Err(error) => return Err(self.trouble(name, "write it", &error)),
+                    Err(error) => return Err(self.object_error(name, "write it", &error)),
                 }
             }
         })
@@ -146,7 +146,7 @@ impl Bucket {
         CloudError::NoPutNew { bucket: self.shown.clone(), problem }
     }
 
-    /// Tests whether [`Bucket::put_new`] makes one writer win: writes one object twice and removes it again. A store that
+    /// Tests whether [`CloudBucket::put_new`] makes one writer win: writes one object twice and removes it again. A store that
     /// ignores the condition accepts both writes.
     ///
     /// # Errors
@@ -157,7 +157,7 @@ impl Bucket {
         let name = format!(".wayword-check-{:016x}", std::hash::BuildHasher::hash_one(&number, std::process::id()));
         self.put_new(&name, *b"1")?;
         let second = self.put_new(&name, *b"2");
-        let removed = self.remove(&name);
+        let removed = self.remove_object(&name);
         if second? { Err(self.no_put_new("it took a second object of the same name")) } else { removed }
     }
 
@@ -165,12 +165,12 @@ impl Bucket {
     ///
     /// # Errors
     /// When the store cannot be used.
-    pub fn put(&self, name: &str, bytes: impl Into<Vec<u8>>) -> Result<(), CloudError> {
-        let place = self.place(name)?;
+    pub fn put_object(&self, name: &str, bytes: impl Into<Vec<u8>>) -> Result<(), CloudError> {
+        let place = self.object_path(name)?;
         let payload = PutPayload::from(bytes.into());
-        self.wait(async {
+        self.block_on_store(async {
             let put = self.store.put(&place, payload).await;
-            put.map(drop).map_err(|error| self.trouble(name, "write it", &error))
+            put.map(drop).map_err(|error| self.object_error(name, "write it", &error))
         })
     }
 
@@ -178,29 +178,29 @@ impl Bucket {
     ///
     /// # Errors
     /// When the store or the bucket is not there, or the object is larger.
-    pub fn get(&self, name: &str, most_bytes: u64) -> Result<Option<Vec<u8>>, CloudError> {
-        let place = self.place(name)?;
-        self.wait(async {
+    pub fn get_object(&self, name: &str, most_bytes: u64) -> Result<Option<Vec<u8>>, CloudError> {
+        let place = self.object_path(name)?;
+        self.block_on_store(async {
             match self.store.get(&place).await {
                 Ok(found) => self.bytes_of(name, found, most_bytes).await.map(Some),
-                Err(error @ object_store::Error::NotFound { .. }) => match self.trouble(name, "read it", &error) {
+                Err(error @ object_store::Error::NotFound { .. }) => match self.object_error(name, "read it", &error) {
                     no_bucket @ CloudError::NoBucket { .. } => Err(no_bucket),
                     _ => Ok(None),
                 },
-                Err(error) => Err(self.trouble(name, "read it", &error)),
+                Err(error) => Err(self.object_error(name, "read it", &error)),
             }
         })
     }
 
     async fn bytes_of(&self, name: &str, found: GetResult, most: u64) -> Result<Vec<u8>, CloudError> {
-        let too_large = |bytes| CloudError::TooLarge { at: self.shown(name), bytes, most };
+        let too_large = |bytes| CloudError::TooLarge { at: self.shown_address(name), bytes, most };
         if found.meta.size > most {
             return Err(too_large(found.meta.size));
         }
         let mut bytes = Vec::new();
         let mut pieces = found.into_stream();
         while let Some(piece) = pieces.next().await {
-            let piece = piece.map_err(|error| self.trouble(name, "read it", &error))?;
+            let piece = piece.map_err(|error| self.object_error(name, "read it", &error))?;
             bytes.extend_from_slice(&piece);
             // A server can send more than it announced.
             if bytes.len() as u64 > most {
@@ -213,37 +213,37 @@ impl Bucket {
     /// The objects below a prefix, in the order of their names. An empty prefix is all.
     ///
     /// # Errors
-    /// When the store cannot be used, or there are more than [`MOST_OBJECTS`]. A name that [`Bucket::get`] would refuse is
+    /// When the store cannot be used, or there are more than [`MOST_OBJECTS`]. A name that [`CloudBucket::get_object`] would refuse is
     /// an error too: no object is left out silently.
-    pub fn list(&self, prefix: &str) -> Result<Vec<Entry>, CloudError> {
+    pub fn list_objects(&self, prefix: &str) -> Result<Vec<StoredObject>, CloudError> {
         if !prefix.is_empty() {
-            names::check(prefix)?;
+            names::check_name(prefix)?;
         }
-        let place = names::below(&self.prefix, prefix)?;
-        self.wait(async {
+        let place = names::path_below(&self.prefix, prefix)?;
+        self.block_on_store(async {
             let mut entries = Vec::new();
             let mut found = self.store.list(Some(&place));
-            while let Some(about) = found.try_next().await.map_err(|error| self.listing(prefix, &error))? {
-                let Some(entry) = self.entry(&about)? else { continue };
+            while let Some(about) = found.try_next().await.map_err(|error| self.listing_error(prefix, &error))? {
+                let Some(entry) = self.object_from_meta(&about)? else { continue };
                 if entries.len() == MOST_OBJECTS {
-                    return Err(CloudError::TooMany { at: self.shown(prefix), most: MOST_OBJECTS });
+                    return Err(CloudError::TooMany { at: self.shown_address(prefix), most: MOST_OBJECTS });
                 }
                 entries.push(entry);
             }
-            entries.sort_by(|a: &Entry, b| a.name.cmp(&b.name));
+            entries.sort_by(|a: &StoredObject, b| a.name.cmp(&b.name));
             Ok(entries)
         })
     }
 
-    fn listing(&self, prefix: &str, error: &object_store::Error) -> CloudError {
+    fn listing_error(&self, prefix: &str, error: &object_store::Error) -> CloudError {
         // The client refuses some hostile names before they get here.
         if matches!(error, object_store::Error::InvalidPath { .. }) {
-            return names::wrong(prefix, "has an object below it whose name is not allowed");
+            return names::name_error(prefix, "has an object below it whose name is not allowed");
         }
-        self.trouble(prefix, "list what is there", error)
+        self.object_error(prefix, "list what is there", error)
     }
 
-    fn entry(&self, about: &ObjectMeta) -> Result<Option<Entry>, CloudError> {
+    fn object_from_meta(&self, about: &ObjectMeta) -> Result<Option<StoredObject>, CloudError> {
         let whole = about.location.as_ref();
         let name = match self.prefix.as_ref() {
             "" => Some(whole),
@@ -251,27 +251,27 @@ impl Bucket {
         };
         // The web pages of stores represent a folder by an empty object. It is skipped here.
         let Some(name) = name.filter(|name| !name.is_empty()) else { return Ok(None) };
-        names::check(name)?;
-        Ok(Some(Entry { name: name.to_owned(), bytes: about.size, version: version(about) }))
+        names::check_name(name)?;
+        Ok(Some(StoredObject { name: name.to_owned(), bytes: about.size, version: object_version(about) }))
     }
 
     /// Removes an object, if it exists.
     ///
     /// # Errors
     /// When the store cannot be used.
-    pub fn remove(&self, name: &str) -> Result<(), CloudError> {
-        let place = self.place(name)?;
-        self.wait(async {
+    pub fn remove_object(&self, name: &str) -> Result<(), CloudError> {
+        let place = self.object_path(name)?;
+        self.block_on_store(async {
             match self.store.delete(&place).await {
                 Ok(()) | Err(object_store::Error::NotFound { .. }) => Ok(()),
-                Err(error) => Err(self.trouble(name, "remove it", &error)),
+                Err(error) => Err(self.object_error(name, "remove it", &error)),
             }
         })
     }
 }
 
 /// The ETag without quotes: Azure gives it with them in one answer and without in another.
-pub(super) fn version(about: &ObjectMeta) -> Option<String> {
+pub(super) fn object_version(about: &ObjectMeta) -> Option<String> {
     let tag = about.e_tag.as_deref()?;
     let tag = tag.strip_prefix("W/").unwrap_or(tag).trim_matches('"');
     (!tag.is_empty() && tag.len() <= 256).then(|| tag.escape_debug().to_string())

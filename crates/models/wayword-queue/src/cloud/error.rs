@@ -129,7 +129,7 @@ pub enum CloudError {
 }
 
 impl CloudError {
-    pub(super) fn local(path: impl Into<PathBuf>, doing: &'static str) -> impl FnOnce(io::Error) -> Self {
+    pub(super) fn for_local_file(path: impl Into<PathBuf>, doing: &'static str) -> impl FnOnce(io::Error) -> Self {
         let path = path.into();
         move |source| Self::Local { path, doing, source }
     }

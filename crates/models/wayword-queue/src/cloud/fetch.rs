@@ -1,7 +1,7 @@
 //! Fetches all objects below a prefix into a folder, and continues an interrupted fetch. Names come from the store and are
 //! checked before any file is written.
 
-use super::{Bucket, CloudError, Entry, bucket, index::Index, lock, lock::Lock, names};
+use super::{CloudBucket, CloudError, StoredObject, bucket, index::FetchIndex, lock, lock::FetchLock, names};
 use futures_util::{StreamExt, stream};
 use object_store::{GetOptions, GetRange, ObjectStore};
 use std::{
@@ -13,20 +13,20 @@ use std::{
 };
 
 /// The file in which a folder's fetched files are listed.
-pub const INDEX: &str = ".wayword-fetched.json";
+pub const FETCH_INDEX_FILE: &str = ".wayword-fetched.json";
 
 /// How many files are fetched at the same time.
-const FILES: usize = 6;
+const CONCURRENT_FILES: usize = 6;
 
 /// The most bytes of one request. A larger file is asked for in pieces, so that a broken connection costs one of them.
-const PIECE: u64 = 32 << 20;
+const MAX_PIECE_BYTES: u64 = 32 << 20;
 
 /// How often the index is written. Files that are not yet in it when the program is killed are fetched again.
-const EVERY: Duration = Duration::from_secs(2);
+const INDEX_WRITE_INTERVAL: Duration = Duration::from_secs(2);
 
 /// Counts of a fetch.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Fetched {
+pub struct FetchSummary {
     /// How many files were fetched.
     pub files: usize,
     /// How many bytes they have.
@@ -36,8 +36,8 @@ pub struct Fetched {
 }
 
 /// One fetch.
-struct Fetching<'a> {
-    bucket: &'a Bucket,
+struct FolderFetch<'a> {
+    bucket: &'a CloudBucket,
     name: &'a str,
     local: &'a Path,
     progress: &'a dyn Fn(u64, u64),
@@ -46,9 +46,9 @@ struct Fetching<'a> {
     ending: String,
 }
 
-impl Bucket {
+impl CloudBucket {
     /// Fetches all objects below the prefix `name` (all of the bucket, if it is empty) into a folder, several at a
-    /// time. A file that was fetched before is kept if its size and the object's version are the same, which [`INDEX`]
+    /// time. A file that was fetched before is kept if its size and the object's version are the same, which [`FETCH_INDEX_FILE`]
     /// records. Each file is whole or absent. Files that are no longer in the store stay. Where several programs
     /// fetch into the same folder, one does and the others wait. `progress` gets the bytes that are there, and all
     /// bytes.
@@ -62,48 +62,54 @@ impl Bucket {
         local: &Path,
         most_bytes: u64,
         progress: &dyn Fn(u64, u64),
-    ) -> Result<Fetched, CloudError> {
-        let entries = below(name, self.list(name)?)?;
+    ) -> Result<FetchSummary, CloudError> {
+        let entries = objects_below(name, self.list_objects(name)?)?;
         let all_bytes = entries.iter().fold(0u64, |sum, entry| sum.saturating_add(entry.bytes));
         if all_bytes > most_bytes {
-            return Err(CloudError::TooLarge { at: self.shown(name), bytes: all_bytes, most: most_bytes });
+            return Err(CloudError::TooLarge { at: self.shown_address(name), bytes: all_bytes, most: most_bytes });
         }
-        fs::create_dir_all(local).map_err(CloudError::local(local, "make this folder"))?;
-        let lock = Lock::wait(local)?;
-        let mut index = Index::read(local, &self.shown(name))?;
-        let fetching = Fetching { bucket: self, name, local, progress, all_bytes, ending: lock.ending() };
-        let (kept, missing): (Vec<_>, Vec<_>) = entries.iter().partition(|entry| index.has(local, entry));
+        fs::create_dir_all(local).map_err(CloudError::for_local_file(local, "make this folder"))?;
+        let lock = FetchLock::wait_for(local)?;
+        let mut index = FetchIndex::read_index(local, &self.shown_address(name))?;
+        let fetching = FolderFetch { bucket: self, name, local, progress, all_bytes, ending: lock.unfinished_suffix() };
+        let (kept, missing): (Vec<_>, Vec<_>) = entries.iter().partition(|entry| index.has_object(local, entry));
         let done = kept.iter().map(|entry| entry.bytes).sum();
         progress(done, all_bytes);
-        let fetched = self.wait(fetching.all(&missing, done, &mut index));
+        let fetched = self.block_on_store(fetching.fetch_all(&missing, done, &mut index));
         // After a failure too, so that the files that arrived are not fetched again.
-        let written = index.write(local);
+        let written = index.write_index(local);
         let fetched = fetched?;
-        written.map(|()| Fetched { kept: kept.len(), ..fetched })
+        written.map(|()| FetchSummary { kept: kept.len(), ..fetched })
     }
 }
 
-impl Fetching<'_> {
-    async fn all(&self, missing: &[&Entry], mut done: u64, index: &mut Index) -> Result<Fetched, CloudError> {
-        let mut fetched = Fetched::default();
+impl FolderFetch<'_> {
+    async fn fetch_all(
+        &self,
+        missing: &[&StoredObject],
+        mut done: u64,
+        index: &mut FetchIndex,
+    ) -> Result<FetchSummary, CloudError> {
+        let mut fetched = FetchSummary::default();
         let mut written = Instant::now();
-        let mut arriving = stream::iter(missing.iter().map(|entry| self.one(entry))).buffer_unordered(FILES);
+        let mut arriving =
+            stream::iter(missing.iter().map(|entry| self.fetch_one(entry))).buffer_unordered(CONCURRENT_FILES);
         while let Some(entry) = arriving.next().await {
             let entry = entry?;
-            index.add(entry);
+            index.add_object(entry);
             fetched.files += 1;
             fetched.bytes += entry.bytes;
             done += entry.bytes;
             (self.progress)(done, self.all_bytes);
-            if written.elapsed() > EVERY {
-                index.write(self.local)?;
+            if written.elapsed() > INDEX_WRITE_INTERVAL {
+                index.write_index(self.local)?;
                 written = Instant::now();
             }
         }
         Ok(fetched)
     }
 
-    async fn one<'e>(&self, entry: &'e Entry) -> Result<&'e Entry, CloudError> {
+    async fn fetch_one<'e>(&self, entry: &'e StoredObject) -> Result<&'e StoredObject, CloudError> {
         let relative = names::file_of(&entry.name)?;
         let path = self.local.join(&relative);
         make_parents(self.local, &relative)?;
@@ -113,11 +119,11 @@ impl Fetching<'_> {
         // Removes the rest of a fetch that was killed, or a link.
         let _ = fs::remove_file(&part);
         let made = File::options().write(true).create_new(true).open(&part);
-        let got = match made.map_err(CloudError::local(&part, "write")) {
-            Ok(file) => self.fill(entry, &part, file).await,
+        let got = match made.map_err(CloudError::for_local_file(&part, "write")) {
+            Ok(file) => self.fetch_pieces(entry, &part, file).await,
             Err(error) => Err(error),
         };
-        let placed = got.and_then(|()| fs::rename(&part, &path).map_err(CloudError::local(&path, "write")));
+        let placed = got.and_then(|()| fs::rename(&part, &path).map_err(CloudError::for_local_file(&path, "write")));
         if placed.is_err() {
             // The first failure is the one to report.
             let _ = fs::remove_file(&part);
@@ -125,31 +131,31 @@ impl Fetching<'_> {
         placed.map(|()| entry)
     }
 
-    async fn fill(&self, entry: &Entry, part: &Path, mut file: File) -> Result<(), CloudError> {
+    async fn fetch_pieces(&self, entry: &StoredObject, part: &Path, mut file: File) -> Result<(), CloudError> {
         let mut start = 0;
         while start < entry.bytes {
-            let end = entry.bytes.min(start + PIECE);
-            self.piece(entry, part, &mut file, start..end).await?;
+            let end = entry.bytes.min(start + MAX_PIECE_BYTES);
+            self.fetch_piece(entry, part, &mut file, start..end).await?;
             start = end;
         }
-        file.sync_all().map_err(CloudError::local(part, "write"))
+        file.sync_all().map_err(CloudError::for_local_file(part, "write"))
     }
 
-    async fn piece(
+    async fn fetch_piece(
         &self,
-        entry: &Entry,
+        entry: &StoredObject,
         part: &Path,
         file: &mut File,
         range: std::ops::Range<u64>,
     ) -> Result<(), CloudError> {
         let name = if self.name.is_empty() { entry.name.clone() } else { format!("{}/{}", self.name, entry.name) };
-        let wrong = |error| self.bucket.trouble(&name, "read it", &error);
-        let changed = || CloudError::Changed { at: self.bucket.shown(&name) };
+        let wrong = |error| self.bucket.object_error(&name, "read it", &error);
+        let changed = || CloudError::Changed { at: self.bucket.shown_address(&name) };
         let mut left = range.end - range.start;
         let options = GetOptions { range: Some(GetRange::Bounded(range)), ..GetOptions::default() };
         let store: &dyn ObjectStore = &*self.bucket.store;
-        let found = store.get_opts(&self.bucket.place(&name)?, options).await.map_err(wrong)?;
-        let is_same = bucket::version(&found.meta) == entry.version && found.meta.size == entry.bytes;
+        let found = store.get_opts(&self.bucket.object_path(&name)?, options).await.map_err(wrong)?;
+        let is_same = bucket::object_version(&found.meta) == entry.version && found.meta.size == entry.bytes;
         if !is_same {
             return Err(changed());
         }
@@ -157,14 +163,14 @@ impl Fetching<'_> {
         while let Some(some) = bytes.next().await {
             let some = some.map_err(wrong)?;
             left = left.checked_sub(some.len() as u64).ok_or_else(changed)?;
-            file.write_all(&some).map_err(CloudError::local(part, "write"))?;
+            file.write_all(&some).map_err(CloudError::for_local_file(part, "write"))?;
         }
         if left == 0 { Ok(()) } else { Err(changed()) }
     }
 }
 
 /// The objects by their names below a prefix, all checked before anything is written.
-fn below(prefix: &str, entries: Vec<Entry>) -> Result<Vec<Entry>, CloudError> {
+fn objects_below(prefix: &str, entries: Vec<StoredObject>) -> Result<Vec<StoredObject>, CloudError> {
     let mut inside = Vec::with_capacity(entries.len());
     for mut entry in entries {
         if !prefix.is_empty() {
@@ -173,11 +179,11 @@ fn below(prefix: &str, entries: Vec<Entry>) -> Result<Vec<Entry>, CloudError> {
             entry.name = rest.to_owned();
         }
         names::file_of(&entry.name)?;
-        if entry.name.starts_with(INDEX) {
-            return Err(names::wrong(&entry.name, "is kept for the list of what was fetched"));
+        if entry.name.starts_with(FETCH_INDEX_FILE) {
+            return Err(names::name_error(&entry.name, "is kept for the list of what was fetched"));
         }
-        if entry.name.ends_with(lock::UNFINISHED) {
-            return Err(names::wrong(&entry.name, "is kept for files that are not whole yet"));
+        if entry.name.ends_with(lock::UNFINISHED_SUFFIX) {
+            return Err(names::name_error(&entry.name, "is kept for files that are not whole yet"));
         }
         inside.push(entry);
     }
@@ -186,15 +192,15 @@ fn below(prefix: &str, entries: Vec<Entry>) -> Result<Vec<Entry>, CloudError> {
 
 /// Leaves out the empty objects that represent folders. An object with content and other objects below it is an error,
 /// because it cannot be a file and a folder at once.
-fn without_folders(entries: Vec<Entry>) -> Result<Vec<Entry>, CloudError> {
+fn without_folders(entries: Vec<StoredObject>) -> Result<Vec<StoredObject>, CloudError> {
     let mut folders = BTreeSet::new();
     for entry in &entries {
         let ends = entry.name.match_indices('/').filter_map(|(end, _)| entry.name.get(..end));
         folders.extend(ends.map(str::to_owned));
     }
-    let is_folder = |entry: &Entry| folders.contains(&entry.name);
+    let is_folder = |entry: &StoredObject| folders.contains(&entry.name);
     if let Some(both) = entries.iter().find(|entry| is_folder(entry) && entry.bytes > 0) {
-        return Err(names::wrong(&both.name, "is a file and a folder at the same time"));
+        return Err(names::name_error(&both.name, "is a file and a folder at the same time"));
     }
     Ok(entries.into_iter().filter(|entry| !is_folder(entry)).collect())
 }
@@ -207,7 +213,7 @@ fn make_parents(local: &Path, relative: &Path) -> Result<(), CloudError> {
         match fs::create_dir(&folder) {
             Ok(()) => {}
             Err(error) if error.kind() == ErrorKind::AlreadyExists && is_folder(&folder) => {}
-            Err(error) => return Err(CloudError::local(&folder, "make this folder")(error)),
+            Err(error) => return Err(CloudError::for_local_file(&folder, "make this folder")(error)),
         }
     }
     Ok(())

@@ -1,7 +1,7 @@
 //! Results and data in object stores: S3 and compatible services, Google Cloud Storage, Azure Blob Storage, and folders
 //! (`file://`) for shared disks and tests.
 //!
-//! A [`Bucket`] is a bucket, or the part of it below a prefix. All calls block. Inside an asynchronous task a call returns
+//! A [`CloudBucket`] is a bucket, or the part of it below a prefix. All calls block. Inside an asynchronous task a call returns
 //! an error instead of hanging.
 //!
 //! # Credentials
@@ -18,9 +18,9 @@
 //! names.
 //!
 //! # Who wins
-//! [`Bucket::put_new`] makes one of several writers win. It holds on Amazon S3 (since 2024), Google Cloud Storage,
+//! [`CloudBucket::put_new`] makes one of several writers win. It holds on Amazon S3 (since 2024), Google Cloud Storage,
 //! Azure and folders on a file system with hard links. A store that is compatible with S3 may refuse the condition with
-//! an error, or ignore it silently: [`Bucket::check_put_new`] finds out.
+//! an error, or ignore it silently: [`CloudBucket::check_put_new`] finds out.
 //!
 //! # Tested stores
 //! The tests run on memory, on folders, and by `trials/scale/objects.sh` on two simulators, moto (S3) and Azurite
@@ -37,8 +37,8 @@ mod send;
 mod stored_run;
 mod trouble;
 
-pub use bucket::{Bucket, Entry, MOST_OBJECTS};
+pub use bucket::{CloudBucket, MOST_OBJECTS, StoredObject};
 pub use error::CloudError;
-pub use fetch::{Fetched, INDEX};
-pub use send::Sent;
-pub use stored_run::{Sending, StoredRun};
+pub use fetch::{FETCH_INDEX_FILE, FetchSummary};
+pub use send::SendSummary;
+pub use stored_run::{CloudRun, SendingBoard};

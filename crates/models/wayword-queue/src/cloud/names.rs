@@ -6,7 +6,7 @@ use object_store::path::Path;
 use std::path::PathBuf;
 
 /// The most bytes of a name: the limit of S3 and Azure.
-const LONGEST: usize = 1024;
+const MAX_NAME_BYTES: usize = 1024;
 
 /// The most bytes of a part: the limit of file systems, minus room for the ending of unfinished files.
 const LONGEST_PART: usize = 200;
@@ -15,7 +15,7 @@ fn problem_of(name: &str) -> Option<&'static str> {
     if name.is_empty() {
         return Some("is empty");
     }
-    if name.len() > LONGEST {
+    if name.len() > MAX_NAME_BYTES {
         return Some("is too long");
     }
     // Two names that look alike, or a text that changes its direction, are no risk for files. Control characters are:
@@ -32,45 +32,45 @@ fn problem_of(name: &str) -> Option<&'static str> {
 }
 
 /// Returns an error if the name cannot be used.
-pub(super) fn check(name: &str) -> Result<(), CloudError> {
-    problem_of(name).map_or(Ok(()), |problem| Err(wrong(name, problem)))
+pub(super) fn check_name(name: &str) -> Result<(), CloudError> {
+    problem_of(name).map_or(Ok(()), |problem| Err(name_error(name, problem)))
 }
 
-pub(super) fn wrong(name: &str, problem: &'static str) -> CloudError {
+pub(super) fn name_error(name: &str, problem: &'static str) -> CloudError {
     CloudError::Name { name: name.chars().take(80).collect(), problem }
 }
 
 /// The place of an object below a prefix. An empty name is the prefix.
-pub(super) fn below(prefix: &Path, name: &str) -> Result<Path, CloudError> {
+pub(super) fn path_below(prefix: &Path, name: &str) -> Result<Path, CloudError> {
     let whole = match (prefix.as_ref(), name) {
         ("", name) => name.to_owned(),
         (prefix, "") => prefix.to_owned(),
         (prefix, name) => format!("{prefix}/{name}"),
     };
-    if whole.len() > LONGEST {
-        return Err(wrong(name, "is too long"));
+    if whole.len() > MAX_NAME_BYTES {
+        return Err(name_error(name, "is too long"));
     }
-    Path::parse(whole).map_err(|_| wrong(name, "is not allowed in object stores"))
+    Path::parse(whole).map_err(|_| name_error(name, "is not allowed in object stores"))
 }
 
 /// The file that an object becomes, relative to a folder.
 pub(super) fn file_of(name: &str) -> Result<PathBuf, CloudError> {
-    check(name)?;
+    check_name(name)?;
     // A drive letter or a stream of a file on Windows.
     if cfg!(windows) && name.contains(':') {
-        return Err(wrong(name, "has a `:`"));
+        return Err(name_error(name, "has a `:`"));
     }
     Ok(name.split('/').collect())
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{check, file_of};
+    use super::{check_name, file_of};
 
     #[test]
     fn a_plain_name_is_taken_and_becomes_a_file_below_the_folder() {
         for name in ["a", "a/b.jsonl.gz", "chunk 7/ü.json", "a..b/...", "-", "~"] {
-            assert!(check(name).is_ok(), "{name}");
+            assert!(check_name(name).is_ok(), "{name}");
             assert!(file_of(name).unwrap().is_relative());
         }
     }
@@ -95,7 +95,7 @@ mod tests {
             &long,
         ];
         for name in hostile {
-            assert!(check(name).is_err(), "{name:?}");
+            assert!(check_name(name).is_err(), "{name:?}");
             assert!(file_of(name).is_err(), "{name:?}");
         }
     }

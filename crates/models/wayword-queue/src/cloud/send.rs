@@ -1,6 +1,6 @@
 //! Sends the files of a folder to an object store, large files in parts.
 
-use super::{Bucket, CloudError, INDEX, lock::UNFINISHED, names};
+use super::{CloudBucket, CloudError, FETCH_INDEX_FILE, lock::UNFINISHED_SUFFIX, names};
 use futures_util::{StreamExt, TryStreamExt, stream};
 use object_store::{ObjectStoreExt, PutPayload, WriteMultipart, path::Path as Place};
 use std::{
@@ -10,68 +10,68 @@ use std::{
 };
 
 /// How many files are sent at the same time.
-const FILES: usize = 6;
+const CONCURRENT_FILES: usize = 6;
 
 /// How many parts of one file are sent at the same time.
-const PARTS: usize = 2;
+const CONCURRENT_PARTS: usize = 2;
 
 /// The size of a part, and the largest file that is sent in one.
-const PART: u64 = 8 << 20;
+const PART_BYTES: u64 = 8 << 20;
 
 /// The most parts of a file, below the 10,000 of S3.
 const MOST_PARTS: u64 = 9_000;
 
 /// Counts of a send.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Sent {
+pub struct SendSummary {
     /// How many files.
     pub files: usize,
     /// How many bytes.
     pub bytes: u64,
 }
 
-struct Item {
+struct OutgoingFile {
     path: PathBuf,
     name: String,
     bytes: u64,
 }
 
-impl Bucket {
+impl CloudBucket {
     /// Sends every plain file of a folder and of the folders in it, below the prefix `name`, several at a time. Links
-    /// are neither followed nor sent, and neither are the index of fetched files ([`INDEX`]) and the rest of a killed fetch.
+    /// are neither followed nor sent, and neither are the index of fetched files ([`FETCH_INDEX_FILE`]) and the rest of a killed fetch.
     /// Objects of the same names are overwritten, so that a repeated call does no harm; give each attempt another prefix.
     ///
     /// After a crash some of the files are in the store, each of them whole. To mark a set as complete, make another object
-    /// with [`Bucket::put_new`] afterwards.
+    /// with [`CloudBucket::put_new`] afterwards.
     ///
     /// # Errors
     /// When a file cannot be read, has a name that stores do not take, changes meanwhile, or the store cannot be used.
-    pub fn send_folder(&self, local: &Path, name: &str) -> Result<Sent, CloudError> {
-        names::check(name)?;
+    pub fn send_folder(&self, local: &Path, name: &str) -> Result<SendSummary, CloudError> {
+        names::check_name(name)?;
         let items = files_of(local, name)?;
-        self.wait(async {
-            let sent = stream::iter(items.iter().map(|item| self.send(item))).buffer_unordered(FILES);
-            sent.try_fold(Sent::default(), |sum, bytes| async move {
-                Ok(Sent { files: sum.files + 1, bytes: sum.bytes.saturating_add(bytes) })
+        self.block_on_store(async {
+            let sent = stream::iter(items.iter().map(|item| self.send_file(item))).buffer_unordered(CONCURRENT_FILES);
+            sent.try_fold(SendSummary::default(), |sum, bytes| async move {
+                Ok(SendSummary { files: sum.files + 1, bytes: sum.bytes.saturating_add(bytes) })
             })
             .await
         })
     }
 
-    async fn send(&self, item: &Item) -> Result<u64, CloudError> {
-        let place = self.place(&item.name)?;
-        let file = File::open(&item.path).map_err(CloudError::local(&item.path, "open"))?;
-        if item.bytes > PART {
+    async fn send_file(&self, item: &OutgoingFile) -> Result<u64, CloudError> {
+        let place = self.object_path(&item.name)?;
+        let file = File::open(&item.path).map_err(CloudError::for_local_file(&item.path, "open"))?;
+        if item.bytes > PART_BYTES {
             return self.send_parts(item, &place, file).await;
         }
-        let bytes = piece(&file, item, item.bytes)?;
+        let bytes = read_piece(&file, item, item.bytes)?;
         is_at_end(&file, item)?;
         let put = self.store.put(&place, PutPayload::from(bytes)).await;
-        put.map(|_| item.bytes).map_err(|error| self.trouble(&item.name, "write it", &error))
+        put.map(|_| item.bytes).map_err(|error| self.object_error(&item.name, "write it", &error))
     }
 
-    async fn send_parts(&self, item: &Item, place: &Place, file: File) -> Result<u64, CloudError> {
-        let wrong = |error| self.trouble(&item.name, "write it", &error);
+    async fn send_parts(&self, item: &OutgoingFile, place: &Place, file: File) -> Result<u64, CloudError> {
+        let wrong = |error| self.object_error(&item.name, "write it", &error);
         let part = part_size(item.bytes);
         let upload = self.store.put_multipart(place).await.map_err(wrong)?;
         let mut writer = WriteMultipart::new_with_chunk_size(upload, usize::try_from(part).unwrap_or(usize::MAX));
@@ -86,15 +86,18 @@ impl Bucket {
     async fn write_parts(
         &self,
         writer: &mut WriteMultipart,
-        item: &Item,
+        item: &OutgoingFile,
         file: &File,
         part: u64,
     ) -> Result<(), CloudError> {
         let mut left = item.bytes;
         while left > 0 {
-            let bytes = piece(file, item, left.min(part))?;
+            let bytes = read_piece(file, item, left.min(part))?;
             left -= bytes.len() as u64;
-            writer.wait_for_capacity(PARTS).await.map_err(|error| self.trouble(&item.name, "write it", &error))?;
+            writer
+                .wait_for_capacity(CONCURRENT_PARTS)
+                .await
+                .map_err(|error| self.object_error(&item.name, "write it", &error))?;
             writer.put(bytes.into());
         }
         is_at_end(file, item)
@@ -103,17 +106,17 @@ impl Bucket {
 
 /// Parts of equal size, as some stores want them.
 fn part_size(bytes: u64) -> u64 {
-    PART.max(bytes.div_ceil(MOST_PARTS))
+    PART_BYTES.max(bytes.div_ceil(MOST_PARTS))
 }
 
-fn piece(mut file: &File, item: &Item, length: u64) -> Result<Vec<u8>, CloudError> {
+fn read_piece(mut file: &File, item: &OutgoingFile, length: u64) -> Result<Vec<u8>, CloudError> {
     let mut bytes = vec![0; usize::try_from(length).unwrap_or(usize::MAX)];
-    file.read_exact(&mut bytes).map_err(CloudError::local(&item.path, "read"))?;
+    file.read_exact(&mut bytes).map_err(CloudError::for_local_file(&item.path, "read"))?;
     Ok(bytes)
 }
 
-fn is_at_end(mut file: &File, item: &Item) -> Result<(), CloudError> {
-    match file.read(&mut [0]).map_err(CloudError::local(&item.path, "read"))? {
+fn is_at_end(mut file: &File, item: &OutgoingFile) -> Result<(), CloudError> {
+    match file.read(&mut [0]).map_err(CloudError::for_local_file(&item.path, "read"))? {
         0 => Ok(()),
         _ => Err(CloudError::Changed { at: item.path.display().to_string() }),
     }
@@ -121,30 +124,30 @@ fn is_at_end(mut file: &File, item: &Item) -> Result<(), CloudError> {
 
 /// Whether a file is there only because something was fetched into the folder, maybe by a program that was killed.
 fn is_of_fetch(name: &str, is_top: bool) -> bool {
-    name.ends_with(UNFINISHED) || (is_top && name.starts_with(INDEX))
+    name.ends_with(UNFINISHED_SUFFIX) || (is_top && name.starts_with(FETCH_INDEX_FILE))
 }
 
 /// The plain files below a folder, in the order of their names.
-fn files_of(local: &Path, name: &str) -> Result<Vec<Item>, CloudError> {
+fn files_of(local: &Path, name: &str) -> Result<Vec<OutgoingFile>, CloudError> {
     let mut items = Vec::new();
     let mut folders = vec![(local.to_owned(), name.to_owned())];
     while let Some((folder, prefix)) = folders.pop() {
-        let wrong = || CloudError::local(&folder, "list");
+        let wrong = || CloudError::for_local_file(&folder, "list");
         for inside in fs::read_dir(&folder).map_err(wrong())? {
             let inside = inside.map_err(wrong())?;
             let about = inside.file_type().map_err(wrong())?;
             let path = inside.path();
             let Some(last) = inside.file_name().to_str().map(str::to_owned) else {
-                return Err(names::wrong(&path.to_string_lossy(), "is not Unicode"));
+                return Err(names::name_error(&path.to_string_lossy(), "is not Unicode"));
             };
             let name = format!("{prefix}/{last}");
             if about.is_dir() {
-                names::check(&name)?;
+                names::check_name(&name)?;
                 folders.push((path, name));
             } else if about.is_file() && !is_of_fetch(&last, folder == local) {
-                names::check(&name)?;
-                let bytes = inside.metadata().map_err(CloudError::local(&path, "read"))?.len();
-                items.push(Item { path, name, bytes });
+                names::check_name(&name)?;
+                let bytes = inside.metadata().map_err(CloudError::for_local_file(&path, "read"))?.len();
+                items.push(OutgoingFile { path, name, bytes });
             }
         }
     }
@@ -154,11 +157,11 @@ fn files_of(local: &Path, name: &str) -> Result<Vec<Item>, CloudError> {
 
 #[cfg(test)]
 mod tests {
-    use super::{MOST_PARTS, PART, part_size};
+    use super::{MOST_PARTS, PART_BYTES, part_size};
 
     #[test]
     fn a_huge_file_has_no_more_parts_than_stores_take() {
-        assert_eq!(part_size(PART + 1), PART);
+        assert_eq!(part_size(PART_BYTES + 1), PART_BYTES);
         let huge = 4 << 40;
         assert!(huge_parts(huge) <= MOST_PARTS);
     }

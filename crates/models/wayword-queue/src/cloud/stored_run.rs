@@ -4,11 +4,11 @@
 //! mark is made with put-if-absent. The mark names the try that counts. If two workers make the same chunk, the results of
 //! the second one are never read.
 
-use super::{Bucket, CloudError};
+use super::{CloudBucket, CloudError};
 use crate::{
-    Board, Claimed, Done, Left, PLAN, Plan, QueueError, chunk_folder,
-    done::{CHUNKS, done_of, done_path, to_bytes},
-    folder::remove,
+    ChunkBoard, ChunkClaim, ChunkPlan, ChunkRecord, PLAN, QueueError, RemainingChunks, chunk_folder,
+    done::{CHUNKS_FOLDER, done_of, done_path, to_bytes},
+    folder::remove_if_there,
     put_whole,
 };
 use std::{
@@ -20,9 +20,9 @@ use std::{
 };
 
 /// The prefix of marks, the same as in the folder. Marks are listed often, so they must not be among the many results.
-const MARKS: &str = CHUNKS;
+const MARKS_FOLDER: &str = CHUNKS_FOLDER;
 /// The prefix of the results.
-const RESULTS: &str = "results";
+const RESULTS_FOLDER: &str = "results";
 /// Largest file that is written once, bytes: a plan of ten million items.
 const MOST_BYTES: u64 = 1 << 30;
 /// Largest results of a chunk that are fetched, bytes.
@@ -31,19 +31,19 @@ const MOST_CHUNK_BYTES: u64 = 1 << 40;
 /// A run in an object store. A worker works in a folder of its machine, sends each chunk's results when they are finished, and
 /// then makes a mark in the store. Each try has a prefix for its results, and the mark names that prefix.
 #[derive(Debug)]
-pub struct StoredRun {
-    bucket: Bucket,
+pub struct CloudRun {
+    bucket: CloudBucket,
     folder: PathBuf,
 }
 
-impl StoredRun {
+impl CloudRun {
     /// A run at an address, and the folder of this machine in which this worker, and no other, works on it.
     ///
     /// # Errors
     /// When the address cannot be used or the folder cannot be made.
     pub fn open(address: &str, folder: &Path) -> Result<Self, QueueError> {
-        let bucket = Bucket::open(address)?;
-        fs::create_dir_all(folder.join(CHUNKS)).map_err(QueueError::io(folder, "make the folder"))?;
+        let bucket = CloudBucket::open(address)?;
+        fs::create_dir_all(folder.join(CHUNKS_FOLDER)).map_err(QueueError::for_file(folder, "make the folder"))?;
         Ok(Self { bucket, folder: folder.to_owned() })
     }
 
@@ -51,7 +51,7 @@ impl StoredRun {
     ///
     /// # Errors
     /// When it does not, or cannot be used.
-    pub fn check(&self) -> Result<(), QueueError> {
+    pub fn check_store(&self) -> Result<(), QueueError> {
         Ok(self.bucket.check_put_new()?)
     }
 
@@ -60,7 +60,7 @@ impl StoredRun {
     /// # Errors
     /// When the store or the folder cannot be used.
     pub fn fetch_file(&self, name: &str) -> Result<(), QueueError> {
-        match self.bucket.get(name, MOST_BYTES)? {
+        match self.bucket.get_object(name, MOST_BYTES)? {
             Some(bytes) => put_whole(&self.folder.join(name), &bytes),
             None => Ok(()),
         }
@@ -70,9 +70,9 @@ impl StoredRun {
     ///
     /// # Errors
     /// When the file cannot be read or the store cannot be used.
-    pub fn publish(&self, name: &str) -> Result<(), QueueError> {
+    pub fn publish_file(&self, name: &str) -> Result<(), QueueError> {
         let path = self.folder.join(name);
-        let bytes = fs::read(&path).map_err(QueueError::io(&path, "read"))?;
+        let bytes = fs::read(&path).map_err(QueueError::for_file(&path, "read"))?;
         match self.bucket.put_new(name, bytes)? {
             true => Ok(()),
             false => self.fetch_file(name),
@@ -80,22 +80,23 @@ impl StoredRun {
     }
 
     /// The numbers of the chunks that have a mark in the store.
-    fn marked(&self, plan: &Plan) -> Result<BTreeSet<usize>, QueueError> {
-        let there: BTreeSet<String> = self.bucket.list(MARKS)?.into_iter().map(|entry| entry.name).collect();
-        Ok((0..plan.chunks()).filter(|chunk| there.contains(&self.mark(*chunk))).collect())
+    fn marked_chunks(&self, plan: &ChunkPlan) -> Result<BTreeSet<usize>, QueueError> {
+        let there: BTreeSet<String> =
+            self.bucket.list_objects(MARKS_FOLDER)?.into_iter().map(|entry| entry.name).collect();
+        Ok((0..plan.chunk_count()).filter(|chunk| there.contains(&self.mark_name(*chunk))).collect())
     }
 
     /// Fetches the marks of finished chunks, in place of those that are here.
     ///
     /// # Errors
     /// When the store or the folder cannot be used.
-    pub fn fetch_marks(&self, plan: &Plan) -> Result<(), QueueError> {
-        let marked = self.marked(plan)?;
-        for chunk in 0..plan.chunks() {
+    pub fn fetch_marks(&self, plan: &ChunkPlan) -> Result<(), QueueError> {
+        let marked = self.marked_chunks(plan)?;
+        for chunk in 0..plan.chunk_count() {
             match marked.contains(&chunk) {
-                true => self.fetch_file(&self.mark(chunk))?,
+                true => self.fetch_file(&self.mark_name(chunk))?,
                 // The chunk was opened again.
-                false => remove(&done_path(&self.folder, chunk))?,
+                false => remove_if_there(&done_path(&self.folder, chunk))?,
             }
         }
         Ok(())
@@ -106,11 +107,11 @@ impl StoredRun {
     ///
     /// # Errors
     /// When the store or the folder cannot be used.
-    pub fn send_marks(&self, plan: &Plan) -> Result<(), QueueError> {
-        let marked = self.marked(plan)?;
-        for chunk in (0..plan.chunks()).filter(|chunk| !marked.contains(chunk)) {
+    pub fn send_marks(&self, plan: &ChunkPlan) -> Result<(), QueueError> {
+        let marked = self.marked_chunks(plan)?;
+        for chunk in (0..plan.chunk_count()).filter(|chunk| !marked.contains(chunk)) {
             if let Some(done) = done_of(&self.folder, chunk)? {
-                self.put(&done)?;
+                self.put_mark(&done)?;
             }
         }
         Ok(())
@@ -120,16 +121,16 @@ impl StoredRun {
     ///
     /// # Errors
     /// When the store cannot be used.
-    pub fn reopen(&self, chunk: usize) -> Result<(), QueueError> {
-        Ok(self.bucket.remove(&self.mark(chunk))?)
+    pub fn reopen_chunk(&self, chunk: usize) -> Result<(), QueueError> {
+        Ok(self.bucket.remove_object(&self.mark_name(chunk))?)
     }
 
     /// Fetches the plan, the marks and the results that these name into the folder. Continues where it was stopped.
     ///
     /// # Errors
     /// When there is no run, the folder has another one, or the store or the folder cannot be used.
-    pub fn fetch(&self, progress: &dyn Fn(usize, usize)) -> Result<(), QueueError> {
-        let Some(bytes) = self.bucket.get(PLAN, MOST_BYTES)? else {
+    pub fn fetch_run(&self, progress: &dyn Fn(usize, usize)) -> Result<(), QueueError> {
+        let Some(bytes) = self.bucket.get_object(PLAN, MOST_BYTES)? else {
             return Err(QueueError::NoPlan(self.bucket.to_string().into()));
         };
         let path = self.folder.join(PLAN);
@@ -141,38 +142,38 @@ impl StoredRun {
             Ok(_) => {}
             Err(_) => put_whole(&path, &bytes)?,
         }
-        let plan = Plan::of(&self.folder)?;
+        let plan = ChunkPlan::for_folder(&self.folder)?;
         self.fetch_marks(&plan)?;
-        for chunk in 0..plan.chunks() {
+        for chunk in 0..plan.chunk_count() {
             if let Some(done) = done_of(&self.folder, chunk)? {
                 let local = chunk_folder(&self.folder, chunk, done.epoch);
-                self.bucket.fetch_folder(&self.results(&local), &local, MOST_CHUNK_BYTES, &|_, _| ())?;
+                self.bucket.fetch_folder(&self.results_name(&local), &local, MOST_CHUNK_BYTES, &|_, _| ())?;
             }
-            progress(chunk + 1, plan.chunks());
+            progress(chunk + 1, plan.chunk_count());
         }
         Ok(())
     }
 
     /// A board that sends the results of a chunk before it reports the chunk as finished.
     #[must_use]
-    pub fn sending<'a>(&'a self, board: &'a dyn Board) -> Sending<'a> {
-        Sending { run: self, board }
+    pub fn sending_board<'a>(&'a self, board: &'a dyn ChunkBoard) -> SendingBoard<'a> {
+        SendingBoard { run: self, board }
     }
 
     /// The name of a chunk's mark, here and in the store.
-    fn mark(&self, chunk: usize) -> String {
+    fn mark_name(&self, chunk: usize) -> String {
         name_in(&self.folder, &done_path(&self.folder, chunk))
     }
 
     /// Where the results of a try are, in the store.
-    fn results(&self, local: &Path) -> String {
-        format!("{RESULTS}/{}", name_in(&self.folder.join(CHUNKS), local))
+    fn results_name(&self, local: &Path) -> String {
+        format!("{RESULTS_FOLDER}/{}", name_in(&self.folder.join(CHUNKS_FOLDER), local))
     }
 
     /// Makes the mark of a chunk. Returns whether the store's mark is now this one. A mark of an earlier claim of a queue is
     /// replaced: it was left behind when the chunk was opened again.
-    fn put(&self, done: &Done) -> Result<bool, QueueError> {
-        let (name, path) = (self.mark(done.chunk), done_path(&self.folder, done.chunk));
+    fn put_mark(&self, done: &ChunkRecord) -> Result<bool, QueueError> {
+        let (name, path) = (self.mark_name(done.chunk), done_path(&self.folder, done.chunk));
         let bytes = to_bytes(&path, done)?;
         if self.bucket.put_new(&name, bytes.clone())? {
             return Ok(true);
@@ -182,7 +183,7 @@ impl StoredRun {
             Some(there) if there.epoch == done.epoch => Ok(true),
             Some(there) if is_try(done.epoch) || there.epoch > done.epoch => Ok(false),
             _ => {
-                self.bucket.put(&name, bytes)?;
+                self.bucket.put_object(&name, bytes)?;
                 Ok(true)
             }
         }
@@ -211,19 +212,19 @@ fn is_try(epoch: i64) -> bool {
 }
 
 /// The claim as the board knows it: a shard knows no tries.
-fn on_board(claimed: Claimed) -> Claimed {
-    if is_try(claimed.epoch) { Claimed { epoch: 0, ..claimed } } else { claimed }
+fn on_board(claimed: ChunkClaim) -> ChunkClaim {
+    if is_try(claimed.epoch) { ChunkClaim { epoch: 0, ..claimed } } else { claimed }
 }
 
 /// A board that sends the results of chunks into an object store.
-pub struct Sending<'a> {
-    run: &'a StoredRun,
-    board: &'a dyn Board,
+pub struct SendingBoard<'a> {
+    run: &'a CloudRun,
+    board: &'a dyn ChunkBoard,
 }
 
-impl Sending<'_> {
-    fn send(&self, claimed: Claimed, results: &Path) -> Result<(), QueueError> {
-        let sent = self.run.bucket.send_folder(results, &self.run.results(results));
+impl SendingBoard<'_> {
+    fn send_results(&self, claimed: ChunkClaim, results: &Path) -> Result<(), QueueError> {
+        let sent = self.run.bucket.send_folder(results, &self.run.results_name(results));
         sent.map(drop).or_else(|error: CloudError| {
             // The failure has no connection with the chunk, so it does not count as a try.
             self.board.hand_back(on_board(claimed))?;
@@ -232,66 +233,67 @@ impl Sending<'_> {
     }
 }
 
-impl Board for Sending<'_> {
-    fn take(&self) -> Result<Option<Claimed>, QueueError> {
-        let taken = self.board.take()?;
-        Ok(taken.map(|taken| if taken.epoch == 0 { Claimed { epoch: new_try(), ..taken } } else { taken }))
+impl ChunkBoard for SendingBoard<'_> {
+    fn take_chunk(&self) -> Result<Option<ChunkClaim>, QueueError> {
+        let taken = self.board.take_chunk()?;
+        Ok(taken.map(|taken| if taken.epoch == 0 { ChunkClaim { epoch: new_try(), ..taken } } else { taken }))
     }
 
-    fn complete(&self, claimed: Claimed, done: &Done) -> Result<bool, QueueError> {
+    fn complete_chunk(&self, claimed: ChunkClaim, done: &ChunkRecord) -> Result<bool, QueueError> {
         let results = chunk_folder(&self.run.folder, claimed.chunk, claimed.epoch);
-        self.send(claimed, &results)?;
-        let holds = self.board.complete(on_board(claimed), done)? && self.run.put(done)?;
+        self.send_results(claimed, &results)?;
+        let holds = self.board.complete_chunk(on_board(claimed), done)? && self.run.put_mark(done)?;
         if !is_try(claimed.epoch) {
             // The queue knows which chunks are finished, also after one was opened again. A local mark would be outdated then.
-            remove(&done_path(&self.run.folder, claimed.chunk))?;
+            remove_if_there(&done_path(&self.run.folder, claimed.chunk))?;
         }
         match fs::remove_dir_all(&results) {
-            Err(error) if error.kind() != ErrorKind::NotFound => Err(QueueError::io(&results, "remove")(error)),
+            Err(error) if error.kind() != ErrorKind::NotFound => Err(QueueError::for_file(&results, "remove")(error)),
             _ => Ok(holds),
         }
     }
 
-    fn hand_back(&self, claimed: Claimed) -> Result<(), QueueError> {
+    fn hand_back(&self, claimed: ChunkClaim) -> Result<(), QueueError> {
         self.board.hand_back(on_board(claimed))
     }
 
-    fn give_up(&self, claimed: Claimed, reason: &str) -> Result<(), QueueError> {
+    fn give_up(&self, claimed: ChunkClaim, reason: &str) -> Result<(), QueueError> {
         self.board.give_up(on_board(claimed), reason)
     }
 
-    fn left(&self) -> Result<Left, QueueError> {
-        self.board.left()
+    fn count_remaining(&self) -> Result<RemainingChunks, QueueError> {
+        self.board.count_remaining()
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Beat, FRESH, Heart, Part, Shard};
+    use crate::{HEARTBEAT_LEASE, HeartbeatThread, ShardBoard, ShardPart, WorkerHeartbeat};
 
     fn folder() -> tempfile::TempDir {
         tempfile::tempdir().unwrap()
     }
 
-    fn plan() -> Plan {
-        Plan::new("r".into(), 1, String::new(), vec![String::new(); 3])
+    fn plan() -> ChunkPlan {
+        ChunkPlan::new("r".into(), 1, String::new(), vec![String::new(); 3])
     }
 
     /// Makes the open chunks. Returns the number of each, and whether its results count.
-    fn make_all(run: &StoredRun, text: &str) -> Vec<(usize, bool)> {
-        let (plan, part) = (plan(), Part { k: 0, n: 1 });
-        let beat = Beat { worker: "w".into(), token: "t".into(), part: String::new() };
-        let heart = Heart::start(&run.folder, &part.name(), beat, FRESH, |_| false).unwrap();
-        let shard = Shard::new(&run.folder, &plan, part, &heart);
-        let board = run.sending(&shard);
+    fn make_all(run: &CloudRun, text: &str) -> Vec<(usize, bool)> {
+        let (plan, part) = (plan(), ShardPart { k: 0, n: 1 });
+        let beat = WorkerHeartbeat { worker: "w".into(), token: "t".into(), part: String::new() };
+        let heart =
+            HeartbeatThread::start(&run.folder, &part.heartbeat_name(), beat, HEARTBEAT_LEASE, |_| false).unwrap();
+        let shard = ShardBoard::new(&run.folder, &plan, part, &heart);
+        let board = run.sending_board(&shard);
         let mut made = Vec::new();
-        while let Some(claimed) = board.take().unwrap() {
+        while let Some(claimed) = board.take_chunk().unwrap() {
             let results = chunk_folder(&run.folder, claimed.chunk, claimed.epoch);
             fs::create_dir_all(&results).unwrap();
             fs::write(results.join("texts"), text).unwrap();
-            let done = Done { chunk: claimed.chunk, epoch: claimed.epoch, ..Done::default() };
-            made.push((claimed.chunk, board.complete(claimed, &done).unwrap()));
+            let done = ChunkRecord { chunk: claimed.chunk, epoch: claimed.epoch, ..ChunkRecord::default() };
+            made.push((claimed.chunk, board.complete_chunk(claimed, &done).unwrap()));
             assert!(!results.exists(), "a machine's disk need not hold the run");
         }
         made
@@ -302,24 +304,24 @@ mod tests {
         let (there, first, second, all) = (folder(), folder(), folder(), folder());
         let address = format!("file://{}", there.path().display());
         let [run, other, whole] =
-            [&first, &second, &all].map(|folder| StoredRun::open(&address, folder.path()).unwrap());
-        run.check().unwrap();
-        plan().put(first.path()).unwrap();
-        run.publish(PLAN).unwrap();
+            [&first, &second, &all].map(|folder| CloudRun::open(&address, folder.path()).unwrap());
+        run.check_store().unwrap();
+        plan().write_plan(first.path()).unwrap();
+        run.publish_file(PLAN).unwrap();
         // Another plan is not sent: the plan in the store is used.
-        Plan::new("other".into(), 1, String::new(), Vec::new()).put(second.path()).unwrap();
-        other.publish(PLAN).unwrap();
-        assert_eq!(Plan::of(second.path()).unwrap(), plan());
+        ChunkPlan::new("other".into(), 1, String::new(), Vec::new()).write_plan(second.path()).unwrap();
+        other.publish_file(PLAN).unwrap();
+        assert_eq!(ChunkPlan::for_folder(second.path()).unwrap(), plan());
 
         assert_eq!(make_all(&run, "first"), [(0, true), (1, true), (2, true)]);
         // Another worker of the same part, which does not see the first one: its results do not count.
         assert_eq!(make_all(&other, "second"), [(0, false), (1, false), (2, false)]);
-        other.reopen(1).unwrap();
+        other.reopen_chunk(1).unwrap();
         other.fetch_marks(&plan()).unwrap();
         assert_eq!(make_all(&other, "second"), [(1, true)]);
 
         let texts = || {
-            whole.fetch(&|_, _| ()).unwrap();
+            whole.fetch_run(&|_, _| ()).unwrap();
             (0..3)
                 .map(|chunk| {
                     let done = done_of(all.path(), chunk).unwrap()?;
@@ -329,21 +331,21 @@ mod tests {
         };
         let of = |text: &str| Some(text.to_owned());
         assert_eq!(texts(), [of("first"), of("second"), of("first")]);
-        other.reopen(2).unwrap();
+        other.reopen_chunk(2).unwrap();
         assert_eq!(texts(), [of("first"), of("second"), None], "what is to be made again is not there");
     }
 
     #[test]
     fn put_replaces_the_mark_of_an_earlier_claim() {
         let (there, here) = (folder(), folder());
-        let run = StoredRun::open(&format!("file://{}", there.path().display()), here.path()).unwrap();
-        let done = |epoch| Done { epoch, ..Done::default() };
-        let put = |epoch| run.put(&done(epoch)).unwrap();
+        let run = CloudRun::open(&format!("file://{}", there.path().display()), here.path()).unwrap();
+        let done = |epoch| ChunkRecord { epoch, ..ChunkRecord::default() };
+        let put = |epoch| run.put_mark(&done(epoch)).unwrap();
         assert_eq!([put(2), put(2), put(1), put(3), put(2)], [true, true, false, true, false]);
         run.fetch_marks(&plan()).unwrap();
         assert_eq!(done_of(here.path(), 0).unwrap().unwrap().epoch, 3);
         // The queue has the chunk as finished, and the store has no mark of it.
-        run.reopen(0).unwrap();
+        run.reopen_chunk(0).unwrap();
         run.send_marks(&plan()).unwrap();
         run.fetch_marks(&plan()).unwrap();
         assert_eq!(done_of(here.path(), 0).unwrap().unwrap().epoch, 3);

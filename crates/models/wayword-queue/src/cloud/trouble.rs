@@ -8,7 +8,7 @@ use super::CloudError;
 use object_store::client::{HttpError, HttpErrorKind};
 use std::{error::Error, io};
 
-const ASK: &str = "see what the store's own log says, and check the address";
+const STORE_LOG_HINT: &str = "see what the store's own log says, and check the address";
 
 /// Codes of answers to invalid credentials. They come with 400, 401 or 403.
 const BAD_CREDENTIALS: [&str; 9] = [
@@ -39,13 +39,13 @@ const NO_CREDENTIALS: [&str; 7] = [
 ];
 
 /// The error of a caller, without the texts of servers.
-pub(super) fn of(at: &str, doing: &'static str, error: &object_store::Error) -> CloudError {
+pub(super) fn from_store_error(at: &str, doing: &'static str, error: &object_store::Error) -> CloudError {
     use object_store::Error as E;
     // Every level has its own text; the variables of a level may be only in its debugging text.
     let text = format!("{error} {error:?}");
     let has = |codes: &[&str]| codes.iter().any(|code| text.contains(code));
     let at = at.to_owned();
-    let answer = answer(&text);
+    let answer = answer_code(&text);
     if has(&NO_BUCKET) {
         return CloudError::NoBucket { bucket: at };
     }
@@ -53,9 +53,10 @@ pub(super) fn of(at: &str, doing: &'static str, error: &object_store::Error) -> 
         return CloudError::Credentials { at, answer };
     }
     if matches!(error, E::NotFound { .. }) {
-        return CloudError::Refused { at, doing, answer: "it is not there".to_owned(), hint: ASK };
+        return CloudError::Refused { at, doing, answer: "it is not there".to_owned(), hint: STORE_LOG_HINT };
     }
-    if matches!(error, E::PermissionDenied { .. }) || system(error) == Some(io::ErrorKind::PermissionDenied) {
+    if matches!(error, E::PermissionDenied { .. }) || system_error_kind(error) == Some(io::ErrorKind::PermissionDenied)
+    {
         return CloudError::Permission { at, doing, answer };
     }
     if text.contains("BadScheme") {
@@ -66,14 +67,14 @@ pub(super) fn of(at: &str, doing: &'static str, error: &object_store::Error) -> 
         let hint = "check the endpoint; where an authority of your own signs, name the file of its certificate in SSL_CERT_FILE";
         return CloudError::Refused { at, doing, answer: "the store's certificate is not valid here".to_owned(), hint };
     }
-    if let Some(problem) = network(error).or_else(|| busy(&text)) {
+    if let Some(problem) = network_problem(error).or_else(|| overload_problem(&text)) {
         return CloudError::Network { at, doing, problem: problem.to_owned() };
     }
     if text.contains("incorrectly configured region") || text.contains("PermanentRedirect") {
         let hint = "set AWS_REGION to the region of the bucket";
         return CloudError::Refused { at, doing, answer: "the bucket is in another region".to_owned(), hint };
     }
-    CloudError::Refused { at, doing, answer, hint: ASK }
+    CloudError::Refused { at, doing, answer, hint: STORE_LOG_HINT }
 }
 
 /// The error of a store that could not be opened. Opening sends no request, so a setting is wrong.
@@ -98,7 +99,7 @@ pub(super) fn is_not_implemented(error: &object_store::Error) -> bool {
     use object_store::Error as E;
     matches!(error, E::NotImplemented { .. } | E::NotSupported { .. }) || {
         let text = error.to_string();
-        text.contains("<Code>NotImplemented</Code>") || status(&text) == Some("501")
+        text.contains("<Code>NotImplemented</Code>") || status_code(&text) == Some("501")
     }
 }
 
@@ -115,17 +116,17 @@ pub(super) fn is_no_bucket(error: &object_store::Error) -> bool {
     NO_BUCKET.iter().any(|code| text.contains(code))
 }
 
-fn chain<'a>(error: &'a (dyn Error + 'static)) -> impl Iterator<Item = &'a (dyn Error + 'static)> {
+fn error_chain<'a>(error: &'a (dyn Error + 'static)) -> impl Iterator<Item = &'a (dyn Error + 'static)> {
     // No error has so many levels; a loop in one must not hang the program.
     std::iter::successors(Some(error), |level: &&'a (dyn Error + 'static)| (*level).source()).take(32)
 }
 
-fn system(error: &object_store::Error) -> Option<io::ErrorKind> {
-    chain(error).find_map(|level| Some(level.downcast_ref::<io::Error>()?.kind()))
+fn system_error_kind(error: &object_store::Error) -> Option<io::ErrorKind> {
+    error_chain(error).find_map(|level| Some(level.downcast_ref::<io::Error>()?.kind()))
 }
 
-fn network(error: &object_store::Error) -> Option<&'static str> {
-    let kind = chain(error).find_map(|level| Some(level.downcast_ref::<HttpError>()?.kind()))?;
+fn network_problem(error: &object_store::Error) -> Option<&'static str> {
+    let kind = error_chain(error).find_map(|level| Some(level.downcast_ref::<HttpError>()?.kind()))?;
     Some(match kind {
         HttpErrorKind::Connect => "no connection",
         HttpErrorKind::Timeout => "no answer in time",
@@ -135,27 +136,27 @@ fn network(error: &object_store::Error) -> Option<&'static str> {
     })
 }
 
-fn busy(text: &str) -> Option<&'static str> {
-    match status(text)? {
+fn overload_problem(text: &str) -> Option<&'static str> {
+    match status_code(text)? {
         "429" | "503" => Some("the store is overloaded"),
         "500" | "502" | "504" => Some("the store has a failure"),
         _ => None,
     }
 }
 
-fn status(text: &str) -> Option<&str> {
+fn status_code(text: &str) -> Option<&str> {
     let digits = text.split_once("status code: ")?.1.get(..3)?;
     digits.bytes().all(|byte| byte.is_ascii_digit()).then_some(digits)
 }
 
 /// The status and the code of an answer. Both have a form that cannot contain a secret: three digits, and a word of letters.
-fn answer(text: &str) -> String {
+fn answer_code(text: &str) -> String {
     let code = text
         .split_once("<Code>")
         .and_then(|(_, rest)| rest.split_once("</Code>"))
         .map(|(code, _)| code)
         .filter(|code| (1..=40).contains(&code.len()) && code.bytes().all(|byte| byte.is_ascii_alphabetic()));
-    match (status(text), code) {
+    match (status_code(text), code) {
         (Some(status), Some(code)) => format!("answer {status} {code}"),
         (Some(status), None) => format!("answer {status}"),
         (None, Some(code)) => format!("answer {code}"),
@@ -165,7 +166,7 @@ fn answer(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{CloudError, of};
+    use super::{CloudError, from_store_error};
     use object_store::Error;
 
     fn generic(text: &str) -> Error {
@@ -175,7 +176,7 @@ mod tests {
     #[test]
     fn an_answer_is_known_by_its_code_and_never_repeated() {
         let body = "status code: 403 Forbidden: <Error><Code>SignatureDoesNotMatch</Code><AWSAccessKeyId>AKIASECRET</AWSAccessKeyId>";
-        let error = of("s3://b/a", "write it", &generic(body));
+        let error = from_store_error("s3://b/a", "write it", &generic(body));
         assert!(matches!(error, CloudError::Credentials { .. }));
         let text = format!("{error} {error:?}");
         assert!(!text.contains("AKIASECRET") && text.contains("answer 403 SignatureDoesNotMatch"), "{text}");
@@ -184,19 +185,19 @@ mod tests {
     #[test]
     fn a_missing_bucket_is_distinguished_from_a_missing_object() {
         let source = || "status code: 404: <Code>NoSuchBucket</Code>".into();
-        let error = of("s3://b/a", "read it", &Error::NotFound { path: "a".into(), source: source() });
+        let error = from_store_error("s3://b/a", "read it", &Error::NotFound { path: "a".into(), source: source() });
         assert!(matches!(error, CloudError::NoBucket { .. }));
     }
 
     #[test]
     fn an_overloaded_store_may_work_later() {
-        assert!(of("s3://b/a", "write it", &generic("status code: 503 Slow Down")).is_lost());
-        assert!(!of("s3://b/a", "write it", &generic("status code: 400 Bad")).is_lost());
+        assert!(from_store_error("s3://b/a", "write it", &generic("status code: 503 Slow Down")).is_lost());
+        assert!(!from_store_error("s3://b/a", "write it", &generic("status code: 400 Bad")).is_lost());
     }
 
     #[test]
     fn a_code_that_could_hide_a_key_is_left_out() {
-        let error = of("s3://b/a", "write it", &generic("status code: 400: <Code>key=AKIA12345</Code>"));
+        let error = from_store_error("s3://b/a", "write it", &generic("status code: 400: <Code>key=AKIA12345</Code>"));
         assert!(!error.to_string().contains("AKIA"), "{error}");
     }
 }

@@ -8,31 +8,35 @@ pub(super) fn has_control(text: &str) -> bool {
 }
 
 /// An error about a value. Control characters are shown escaped.
-pub(super) fn wrong(option: &'static str, value: &str, problem: &str, hint: &'static str) -> LaunchError {
+pub(super) fn value_error(option: &'static str, value: &str, problem: &str, hint: &'static str) -> LaunchError {
     let shown: String = value.chars().take(100).collect();
     LaunchError::Value { option, problem: format!("{shown:?} {problem}"), hint }
 }
 
 /// A text that is not empty and has no control characters.
-pub(super) fn text(option: &'static str, value: &str) -> Result<(), LaunchError> {
+pub(super) fn check_text(option: &'static str, value: &str) -> Result<(), LaunchError> {
     match value.is_empty() || has_control(value) {
-        true => Err(wrong(option, value, "is empty, or has a line break or another control character", "take it out")),
+        true => {
+            Err(value_error(option, value, "is empty, or has a line break or another control character", "take it out"))
+        }
         false => Ok(()),
     }
 }
 
 /// A text of ASCII letters, digits and some marks.
-pub(super) fn word(option: &'static str, value: &str, marks: &str) -> Result<(), LaunchError> {
+pub(super) fn check_word(option: &'static str, value: &str, marks: &str) -> Result<(), LaunchError> {
     let fits = |c: char| c.is_ascii_alphanumeric() || marks.contains(c);
     match !value.is_empty() && !value.starts_with('-') && value.chars().all(fits) {
         true => Ok(()),
-        false => Err(wrong(option, value, "has a character that is not allowed here", "use ASCII letters and digits")),
+        false => {
+            Err(value_error(option, value, "has a character that is not allowed here", "use ASCII letters and digits"))
+        }
     }
 }
 
 /// The name of an environment variable.
-pub(super) fn variable(option: &'static str, value: &str) -> Result<(), LaunchError> {
-    match !value.starts_with(|c: char| c.is_ascii_digit()) && word(option, value, "_").is_ok() {
+pub(super) fn check_variable(option: &'static str, value: &str) -> Result<(), LaunchError> {
+    match !value.starts_with(|c: char| c.is_ascii_digit()) && check_word(option, value, "_").is_ok() {
         true => Ok(()),
         false => Err(LaunchError::Value {
             option,
@@ -44,10 +48,10 @@ pub(super) fn variable(option: &'static str, value: &str) -> Result<(), LaunchEr
 }
 
 /// A name as DNS has its labels, with room for what Kubernetes appends.
-pub(super) fn label(option: &'static str, value: &str, most: usize) -> Result<(), LaunchError> {
+pub(super) fn check_label(option: &'static str, value: &str, most: usize) -> Result<(), LaunchError> {
     match is_label(value) && value.len() <= most {
         true => Ok(()),
-        false => Err(wrong(
+        false => Err(value_error(
             option,
             value,
             &format!("is no name in Kubernetes of at most {most} characters"),
@@ -57,10 +61,10 @@ pub(super) fn label(option: &'static str, value: &str, most: usize) -> Result<()
 }
 
 /// Names of secrets and claims may have dots.
-pub(super) fn dotted(option: &'static str, value: &str) -> Result<(), LaunchError> {
+pub(super) fn check_dotted(option: &'static str, value: &str) -> Result<(), LaunchError> {
     match value.len() <= 253 && value.split('.').all(is_label) {
         true => Ok(()),
-        false => Err(wrong(
+        false => Err(value_error(
             option,
             value,
             "is no name in Kubernetes",
@@ -75,7 +79,12 @@ fn is_label(value: &str) -> bool {
 }
 
 /// An amount as Kubernetes writes it: digits, perhaps with a fraction, and a unit. Zero is refused.
-pub(super) fn amount(option: &'static str, value: &str, units: &[&str], hint: &'static str) -> Result<(), LaunchError> {
+pub(super) fn check_amount(
+    option: &'static str,
+    value: &str,
+    units: &[&str],
+    hint: &'static str,
+) -> Result<(), LaunchError> {
     let number = value.trim_end_matches(|c: char| c.is_ascii_alphabetic());
     let unit = value.get(number.len()..).unwrap_or_default();
     let digits = |text: &str| !text.is_empty() && text.len() <= 15 && text.chars().all(|c| c.is_ascii_digit());
@@ -84,7 +93,7 @@ pub(super) fn amount(option: &'static str, value: &str, units: &[&str], hint: &'
     let is_some = number.contains(|c: char| matches!(c, '1'..='9'));
     match is_number && is_some && (unit.is_empty() || units.contains(&unit)) {
         true => Ok(()),
-        false => Err(wrong(option, value, "is no amount", hint)),
+        false => Err(value_error(option, value, "is no amount", hint)),
     }
 }
 
@@ -95,32 +104,32 @@ mod tests {
     #[test]
     fn names_in_kubernetes_are_labels() {
         for right in ["a", "wayword-2", "0"] {
-            label("--name", right, 63).unwrap();
+            check_label("--name", right, 63).unwrap();
         }
         for wrong in ["", "-a", "a-", "A", "a.b", "a_b", "ä", "a b", &"a".repeat(64)] {
-            label("--name", wrong, 63).unwrap_err();
+            check_label("--name", wrong, 63).unwrap_err();
         }
-        dotted("--secret", "a.b-c").unwrap();
+        check_dotted("--secret", "a.b-c").unwrap();
         for wrong in ["a..b", ".a", "a.", "a/b"] {
-            dotted("--secret", wrong).unwrap_err();
+            check_dotted("--secret", wrong).unwrap_err();
         }
     }
 
     #[test]
     fn amounts_have_a_number_and_a_known_unit() {
         for right in ["1", "0.5", "500m"] {
-            amount("--cpu", right, &["m"], "").unwrap();
+            check_amount("--cpu", right, &["m"], "").unwrap();
         }
         for wrong in ["", "m", "0", "0.0m", "1.", ".5", "-1", "1 m", "1Gi", "1e3", "1\n"] {
-            amount("--cpu", wrong, &["m"], "").unwrap_err();
+            check_amount("--cpu", wrong, &["m"], "").unwrap_err();
         }
     }
 
     #[test]
     fn variable_refuses_a_value_and_does_not_repeat_it() {
-        variable("--export", "PGPASSFILE").unwrap();
+        check_variable("--export", "PGPASSFILE").unwrap();
         for wrong in ["", "A=geheim", "1A", "A B", "A-B", "ALL,geheim"] {
-            let error = variable("--export", wrong).unwrap_err().to_string();
+            let error = check_variable("--export", wrong).unwrap_err().to_string();
             assert!(!error.contains("geheim"), "{error}");
         }
     }

@@ -1,6 +1,6 @@
 //! Errors of the launchers.
 
-use super::WORKERS;
+use super::MAX_WORKERS;
 
 /// No text can be made for a launcher.
 #[derive(Debug, thiserror::Error)]
@@ -16,7 +16,7 @@ pub enum LaunchError {
         hint: &'static str,
     },
     /// There would be no worker, or too many.
-    #[error("--workers {0}: this is no number of workers\nhint: give a number from 1 to {WORKERS}")]
+    #[error("--workers {0}: this is no number of workers\nhint: give a number from 1 to {MAX_WORKERS}")]
     Workers(u32),
     /// An argument of the worker has a character that must not be in a script.
     #[error("argument {position} of the worker has a line break or another control character\nhint: take it out")]

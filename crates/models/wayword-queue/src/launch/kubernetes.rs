@@ -8,30 +8,30 @@
 //! forbids it (0440 instead of 0400). Wayword accepts these files; libpq refuses them.
 
 use super::{
-    LaunchError, Worker,
-    check::{amount, dotted, label, text, variable, word, wrong},
-    quote::render,
+    LaunchError, LaunchWorker,
+    check::{check_amount, check_dotted, check_label, check_text, check_variable, check_word, value_error},
+    quote::render_template,
 };
 use serde::Serialize;
 
-const TEMPLATE: &str = include_str!("kubernetes.j2");
+const KUBERNETES_TEMPLATE: &str = include_str!("kubernetes.j2");
 
 /// Most characters of a label.
-const LABEL: usize = 63;
+const MAX_LABEL_CHARS: usize = 63;
 /// How often an index is started again after its worker failed for a temporary reason.
-const TRIES: u32 = 3;
+const MAX_INDEX_RESTARTS: u32 = 3;
 /// How long a worker may take to hand its work back, seconds.
 const GRACE_S: u32 = 120;
 /// Where the password file is mounted.
-const SECRETS: &str = "/run/wayword";
+const SECRETS_FOLDER: &str = "/run/wayword";
 /// The user of Wayword's image.
-const USER: u32 = 65532;
+const IMAGE_USER_ID: u32 = 65532;
 
 /// Workers in Kubernetes.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct KubernetesJob {
     /// What each worker runs.
-    pub worker: Worker,
+    pub worker: LaunchWorker,
     /// The job's name.
     pub name: String,
     /// Its namespace; without it, the one that `kubectl` is set to.
@@ -86,7 +86,7 @@ pub struct SecretFile {
 impl KubernetesJob {
     /// Workers with one CPU, 2 GiB and no GPU each.
     #[must_use]
-    pub fn new(worker: Worker, image: &str) -> Self {
+    pub fn new(worker: LaunchWorker, image: &str) -> Self {
         Self {
             worker,
             name: "wayword".to_owned(),
@@ -95,43 +95,43 @@ impl KubernetesJob {
             cpus: "1".to_owned(),
             memory: "2Gi".to_owned(),
             gpus: 0,
-            user: USER,
+            user: IMAGE_USER_ID,
             shared: None,
             secrets: Vec::new(),
             pass_file: None,
         }
     }
 
-    fn check(&self) -> Result<(), LaunchError> {
-        self.worker.check()?;
-        label("--name", &self.name, self.longest_name())?;
-        self.namespace.as_deref().map_or(Ok(()), |name| label("--namespace", name, LABEL))?;
-        word("--image", &self.image, "./:@_-")?;
-        amount("--cpus", &self.cpus, &["m"], "write a number, as in 2, 0.5 or 500m")?;
+    fn check_job(&self) -> Result<(), LaunchError> {
+        self.worker.check_worker()?;
+        check_label("--name", &self.name, self.longest_name())?;
+        self.namespace.as_deref().map_or(Ok(()), |name| check_label("--namespace", name, MAX_LABEL_CHARS))?;
+        check_word("--image", &self.image, "./:@_-")?;
+        check_amount("--cpus", &self.cpus, &["m"], "write a number, as in 2, 0.5 or 500m")?;
         let units = ["Ki", "Mi", "Gi", "Ti", "k", "M", "G", "T"];
-        amount("--memory", &self.memory, &units, "write a number and a unit, as in 16Gi")?;
+        check_amount("--memory", &self.memory, &units, "write a number and a unit, as in 16Gi")?;
         if self.user == 0 {
-            return Err(wrong("--user", "0", "is root", "give the number of another user; no worker needs root"));
+            return Err(value_error("--user", "0", "is root", "give the number of another user; no worker needs root"));
         }
-        self.shared.as_ref().map_or(Ok(()), SharedFolder::check)?;
+        self.shared.as_ref().map_or(Ok(()), SharedFolder::check_folder)?;
         self.check_secrets()
     }
 
     /// A pod's host is named after the job and the index, and that name is a label too.
     fn longest_name(&self) -> usize {
         let index = self.worker.workers.saturating_sub(1).to_string();
-        LABEL.saturating_sub(1 + index.len())
+        MAX_LABEL_CHARS.saturating_sub(1 + index.len())
     }
 
     fn check_secrets(&self) -> Result<(), LaunchError> {
         let mut names = Vec::new();
         for secret in &self.secrets {
-            variable("--secret", &secret.name)?;
+            check_variable("--secret", &secret.name)?;
             check_secret(&secret.secret, &secret.key)?;
             let is_ours =
                 secret.name == "JOB_COMPLETION_INDEX" || (self.pass_file.is_some() && secret.name == "PGPASSFILE");
             if is_ours || names.contains(&&secret.name) {
-                return Err(wrong("--secret", &secret.name, "would be set twice", "leave one of the two out"));
+                return Err(value_error("--secret", &secret.name, "would be set twice", "leave one of the two out"));
             }
             names.push(&secret.name);
         }
@@ -140,14 +140,14 @@ impl KubernetesJob {
 }
 
 impl SharedFolder {
-    fn check(&self) -> Result<(), LaunchError> {
-        dotted("--claim", &self.claim)?;
-        text("--mount", &self.mount)?;
+    fn check_folder(&self) -> Result<(), LaunchError> {
+        check_dotted("--claim", &self.claim)?;
+        check_text("--mount", &self.mount)?;
         let is_inner = self.mount.split('/').skip(1).all(|part| !matches!(part, "" | "." | ".."));
-        let is_ours = self.mount == SECRETS || self.mount.starts_with(&format!("{SECRETS}/"));
+        let is_ours = self.mount == SECRETS_FOLDER || self.mount.starts_with(&format!("{SECRETS_FOLDER}/"));
         match self.mount.starts_with('/') && is_inner && !is_ours && !self.mount.contains(':') {
             true => Ok(()),
-            false => Err(wrong(
+            false => Err(value_error(
                 "--mount",
                 &self.mount,
                 "is no folder to mount at",
@@ -158,16 +158,18 @@ impl SharedFolder {
 }
 
 fn check_secret(secret: &str, key: &str) -> Result<(), LaunchError> {
-    dotted("--secret", secret)?;
+    check_dotted("--secret", secret)?;
     match key.len() <= 253 && !matches!(key, "." | "..") {
-        true => word("--secret", key, "._-"),
-        false => Err(wrong("--secret", key, "is no key of a secret", "see the keys with `kubectl describe secret`")),
+        true => check_word("--secret", key, "._-"),
+        false => {
+            Err(value_error("--secret", key, "is no key of a secret", "see the keys with `kubectl describe secret`"))
+        }
     }
 }
 
 /// The values of the template.
 #[derive(Debug, Serialize)]
-struct View<'a> {
+struct KubernetesTemplateValues<'a> {
     name: &'a str,
     namespace: Option<&'a str>,
     image: &'a str,
@@ -192,12 +194,12 @@ struct View<'a> {
 ///
 /// # Errors
 /// When a value cannot or must not be in a manifest: see [`LaunchError`].
-pub fn manifest(job: &KubernetesJob) -> Result<String, LaunchError> {
-    job.check()?;
+pub fn write_manifest(job: &KubernetesJob) -> Result<String, LaunchError> {
+    job.check_job()?;
     let workers = job.worker.workers;
-    render(
-        TEMPLATE,
-        View {
+    render_template(
+        KUBERNETES_TEMPLATE,
+        KubernetesTemplateValues {
             name: &job.name,
             namespace: job.namespace.as_deref(),
             image: &job.image,
@@ -208,14 +210,14 @@ pub fn manifest(job: &KubernetesJob) -> Result<String, LaunchError> {
             shared: job.shared.as_ref(),
             secrets: &job.secrets,
             pass_file: job.pass_file.as_ref(),
-            pass_folder: SECRETS,
+            pass_folder: SECRETS_FOLDER,
             program: &job.worker.program,
             arguments: &job.worker.arguments,
             workers,
             needs_part: job.worker.needs_part(),
             // From 10^5 indexes on, a server takes 10^4 at most.
             lost_indexes: (workers / 4).clamp(1, 10_000),
-            tries: TRIES,
+            tries: MAX_INDEX_RESTARTS,
             grace_s: GRACE_S,
         },
     )

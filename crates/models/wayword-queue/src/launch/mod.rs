@@ -20,4 +20,4 @@ pub mod slurm;
 mod worker;
 
 pub use error::LaunchError;
-pub use worker::{WORKERS, Worker};
+pub use worker::{LaunchWorker, MAX_WORKERS};

@@ -3,13 +3,13 @@
 //! Slurm does not make the folder of the logs; make it before you submit the script.
 
 use super::{
-    LaunchError, Worker,
-    check::{text, variable, word, wrong},
-    quote::render,
+    LaunchError, LaunchWorker,
+    check::{check_text, check_variable, check_word, value_error},
+    quote::render_template,
 };
 use serde::Serialize;
 
-const TEMPLATE: &str = include_str!("slurm.j2");
+const SLURM_TEMPLATE: &str = include_str!("slurm.j2");
 
 /// The default of a cluster's `MaxArraySize`: 1001 workers, of which the last has index 1000.
 const USUAL_ARRAY: u32 = 1001;
@@ -20,15 +20,15 @@ const PATIENCE_S: u32 = 90;
 /// By how much Slurm may send that signal too early, seconds.
 const EARLY_S: u32 = 60;
 /// How often a worker is started again after it lost the simulator, a service or the disk.
-const TRIES: u32 = 3;
+const MAX_WORKER_RESTARTS: u32 = 3;
 /// The environment variables that every program needs. The user names all others.
-const ALWAYS: [&str; 4] = ["HOME", "LANG", "PATH", "USER"];
+const USUAL_VARIABLES: [&str; 4] = ["HOME", "LANG", "PATH", "USER"];
 
 /// An array of workers in Slurm.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SlurmJob {
     /// What each worker runs.
-    pub worker: Worker,
+    pub worker: LaunchWorker,
     /// The array's name.
     pub name: String,
     /// How long one start of a worker may take, as Slurm writes it: `4:00:00`, `90`, `1-12`.
@@ -52,7 +52,7 @@ pub struct SlurmJob {
 impl SlurmJob {
     /// An array that asks for one CPU and no GPU for each worker, and writes its logs into the folder it is submitted from.
     #[must_use]
-    pub fn new(worker: Worker, time: &str) -> Self {
+    pub fn new(worker: LaunchWorker, time: &str) -> Self {
         Self {
             worker,
             name: "wayword".to_owned(),
@@ -67,24 +67,24 @@ impl SlurmJob {
         }
     }
 
-    fn check(&self) -> Result<(), LaunchError> {
-        self.worker.check()?;
-        text("the program", &self.worker.program)?;
-        word("--name", &self.name, "._-")?;
+    fn check_job(&self) -> Result<(), LaunchError> {
+        self.worker.check_worker()?;
+        check_text("the program", &self.worker.program)?;
+        check_word("--name", &self.name, "._-")?;
         check_time(&self.time)?;
         if self.cpus == 0 {
-            return Err(wrong("--cpus", "0", "is no number of CPUs", "give at least 1"));
+            return Err(value_error("--cpus", "0", "is no number of CPUs", "give at least 1"));
         }
         self.memory.as_deref().map_or(Ok(()), check_memory)?;
-        self.partition.as_deref().map_or(Ok(()), |name| word("--partition", name, "._,-"))?;
-        self.account.as_deref().map_or(Ok(()), |name| word("--account", name, "._-"))?;
+        self.partition.as_deref().map_or(Ok(()), |name| check_word("--partition", name, "._,-"))?;
+        self.account.as_deref().map_or(Ok(()), |name| check_word("--account", name, "._-"))?;
         check_logs(&self.logs)?;
-        self.export.iter().try_for_each(|name| variable("--export", name))
+        self.export.iter().try_for_each(|name| check_variable("--export", name))
     }
 
     /// The names of variables that workers get, each once.
-    fn names(&self) -> Vec<&str> {
-        let mut names = ALWAYS.to_vec();
+    fn variable_names(&self) -> Vec<&str> {
+        let mut names = USUAL_VARIABLES.to_vec();
         for name in &self.export {
             if !names.contains(&name.as_str()) {
                 names.push(name);
@@ -96,7 +96,7 @@ impl SlurmJob {
 
 /// The values of the template.
 #[derive(Debug, Serialize)]
-struct View<'a> {
+struct SlurmTemplateValues<'a> {
     name: &'a str,
     time: &'a str,
     gpus: u32,
@@ -122,14 +122,14 @@ struct View<'a> {
 ///
 /// # Errors
 /// When a value cannot or must not be in a script: see [`LaunchError`].
-pub fn script(job: &SlurmJob) -> Result<String, LaunchError> {
-    job.check()?;
+pub fn write_script(job: &SlurmJob) -> Result<String, LaunchError> {
+    job.check_job()?;
     let workers = job.worker.workers;
     let folder = job.logs.replace('%', "%%");
     let folder = folder.trim_end_matches('/');
-    render(
-        TEMPLATE,
-        View {
+    render_template(
+        SLURM_TEMPLATE,
+        SlurmTemplateValues {
             name: &job.name,
             time: &job.time,
             gpus: job.gpus,
@@ -138,7 +138,7 @@ pub fn script(job: &SlurmJob) -> Result<String, LaunchError> {
             partition: job.partition.as_deref(),
             account: job.account.as_deref(),
             log: format!("{folder}/{}-%A_%a.log", job.name),
-            export: job.names().join(","),
+            export: job.variable_names().join(","),
             program: &job.worker.program,
             arguments: &job.worker.arguments,
             workers,
@@ -148,7 +148,7 @@ pub fn script(job: &SlurmJob) -> Result<String, LaunchError> {
             usual_array: USUAL_ARRAY,
             warning_s: WARNING_S,
             patience_s: PATIENCE_S,
-            tries: TRIES,
+            tries: MAX_WORKER_RESTARTS,
         },
     )
 }
@@ -157,9 +157,9 @@ pub fn script(job: &SlurmJob) -> Result<String, LaunchError> {
 /// possible warning to the end.
 fn check_time(time: &str) -> Result<(), LaunchError> {
     let least = WARNING_S + EARLY_S;
-    match seconds(time) {
-        None => Err(wrong("--time", time, "is no time", "write minutes, H:MM:SS, or D-HH:MM:SS, as in 4:00:00")),
-        Some(total) if total <= u64::from(least) => Err(wrong(
+    match parse_seconds(time) {
+        None => Err(value_error("--time", time, "is no time", "write minutes, H:MM:SS, or D-HH:MM:SS, as in 4:00:00")),
+        Some(total) if total <= u64::from(least) => Err(value_error(
             "--time",
             time,
             &format!("is too short: a worker is told {WARNING_S} to {least} s before its time is up"),
@@ -170,7 +170,7 @@ fn check_time(time: &str) -> Result<(), LaunchError> {
 }
 
 /// `MINUTES`, `MM:SS`, `HH:MM:SS`, `D-HH`, `D-HH:MM` or `D-HH:MM:SS` in seconds.
-fn seconds(time: &str) -> Option<u64> {
+fn parse_seconds(time: &str) -> Option<u64> {
     let number = |text: &str| -> Option<u64> {
         let is_number = (1..=6).contains(&text.len()) && text.chars().all(|c| c.is_ascii_digit());
         if is_number { text.parse().ok() } else { None }
@@ -192,17 +192,22 @@ fn check_memory(memory: &str) -> Result<(), LaunchError> {
     let digits = memory.strip_suffix(['K', 'M', 'G', 'T']).unwrap_or(memory);
     match (1..=9).contains(&digits.len()) && digits.chars().all(|c| c.is_ascii_digit()) {
         true => Ok(()),
-        false => Err(wrong("--memory", memory, "is no amount of memory", "write a whole number and a unit, as in 16G")),
+        false => {
+            Err(value_error("--memory", memory, "is no amount of memory", "write a whole number and a unit, as in 16G"))
+        }
     }
 }
 
 /// Refuses quotes and backslashes, which sbatch reads by its own rules.
 fn check_logs(logs: &str) -> Result<(), LaunchError> {
-    text("--logs", logs)?;
+    check_text("--logs", logs)?;
     match logs.contains(['"', '\\']) {
-        true => {
-            Err(wrong("--logs", logs, "has a quote or a backslash, which sbatch reads otherwise", "rename the folder"))
-        }
+        true => Err(value_error(
+            "--logs",
+            logs,
+            "has a quote or a backslash, which sbatch reads otherwise",
+            "rename the folder",
+        )),
         false => Ok(()),
     }
 }
@@ -221,10 +226,10 @@ mod tests {
             ("1-12:30", 131_400),
             ("2-00:00:01", 172_801),
         ] {
-            assert_eq!(seconds(time), Some(expected), "{time}");
+            assert_eq!(parse_seconds(time), Some(expected), "{time}");
         }
         for wrong in ["", "4h", "1:2:3:4", "-1", "1-", "1-2-3", ":", "1:", "4:00:00\n", "9999999"] {
-            assert_eq!(seconds(wrong), None, "{wrong:?}");
+            assert_eq!(parse_seconds(wrong), None, "{wrong:?}");
         }
     }
 

@@ -3,11 +3,11 @@
 use super::{LaunchError, check::has_control};
 
 /// Most workers of one launch. Kubernetes has other rules above it, and Slurm's arrays end long before.
-pub const WORKERS: u32 = 100_000;
+pub const MAX_WORKERS: u32 = 100_000;
 
 /// The command that each worker runs.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Worker {
+pub struct LaunchWorker {
     /// The program: a name on the `PATH`, or a path. In Kubernetes it may be empty: then the image's own entry point runs.
     pub program: String,
     /// Its arguments, the command first.
@@ -16,7 +16,7 @@ pub struct Worker {
     pub workers: u32,
 }
 
-impl Worker {
+impl LaunchWorker {
     /// Whether the script must add each worker's part, because the arguments name neither a queue nor a part.
     pub(super) fn needs_part(&self) -> bool {
         let names = |argument: &String, option: &str| {
@@ -27,8 +27,8 @@ impl Worker {
 
     /// # Errors
     /// When there is no worker or too many, or when an argument has a control character or a password.
-    pub(super) fn check(&self) -> Result<(), LaunchError> {
-        if !(1..=WORKERS).contains(&self.workers) {
+    pub(super) fn check_worker(&self) -> Result<(), LaunchError> {
+        if !(1..=MAX_WORKERS).contains(&self.workers) {
             return Err(LaunchError::Workers(self.workers));
         }
         for (position, text) in [&self.program].into_iter().chain(&self.arguments).enumerate() {
@@ -64,9 +64,9 @@ fn has_user_with_password(rest: &str) -> bool {
 mod tests {
     use super::*;
 
-    fn worker(arguments: &[&str]) -> Worker {
+    fn worker(arguments: &[&str]) -> LaunchWorker {
         let arguments = arguments.iter().map(|&text| text.to_owned()).collect();
-        Worker { program: "wayword".to_owned(), arguments, workers: 2 }
+        LaunchWorker { program: "wayword".to_owned(), arguments, workers: 2 }
     }
 
     #[test]
@@ -90,7 +90,7 @@ mod tests {
             "postgresql://me@host/db?sslpassword=geheim",
             "--db-password=geheim",
         ] {
-            let error = worker(&["generate", wrong]).check().unwrap_err();
+            let error = worker(&["generate", wrong]).check_worker().unwrap_err();
             assert!(matches!(error, LaunchError::Password { position: 2 }), "{wrong}: {error}");
             assert!(!error.to_string().contains("geheim") && !format!("{error:?}").contains("geheim"), "{error}");
         }
@@ -106,18 +106,18 @@ mod tests {
             "me@host",
             "password",
         ] {
-            worker(&["generate", right]).check().unwrap();
+            worker(&["generate", right]).check_worker().unwrap();
         }
     }
 
     #[test]
     fn control_characters_and_wrong_numbers_of_workers_are_refused() {
         for wrong in ["a\nb", "a\r", "\0", "\u{1b}[2J", "a\u{85}b", "a\u{2028}b"] {
-            let error = worker(&[wrong]).check().unwrap_err();
+            let error = worker(&[wrong]).check_worker().unwrap_err();
             assert!(matches!(error, LaunchError::Control { position: 1 }), "{wrong:?}: {error}");
         }
-        for wrong in [0, WORKERS + 1] {
-            let error = Worker { workers: wrong, ..worker(&[]) }.check().unwrap_err();
+        for wrong in [0, MAX_WORKERS + 1] {
+            let error = LaunchWorker { workers: wrong, ..worker(&[]) }.check_worker().unwrap_err();
             assert!(error.to_string().starts_with(&format!("--workers {wrong}:")), "{error}");
         }
     }

@@ -13,21 +13,21 @@ use std::{
     },
 };
 use tempfile::TempDir;
-use wayword_queue::cloud::{Bucket, CloudError, Fetched, INDEX, Sent};
+use wayword_queue::cloud::{CloudBucket, CloudError, FETCH_INDEX_FILE, FetchSummary, SendSummary};
 
 /// A bucket, and the folder that it may be in.
 struct Place {
-    bucket: Bucket,
+    bucket: CloudBucket,
     folder: Option<TempDir>,
 }
 
 fn memory() -> Option<Place> {
-    Some(Place { bucket: Bucket::in_memory().unwrap(), folder: None })
+    Some(Place { bucket: CloudBucket::in_memory().unwrap(), folder: None })
 }
 
 fn folder() -> Option<Place> {
     let folder = tempfile::tempdir().unwrap();
-    let bucket = Bucket::open(&format!("file://{}/new/folder", folder.path().display())).unwrap();
+    let bucket = CloudBucket::open(&format!("file://{}/new/folder", folder.path().display())).unwrap();
     Some(Place { bucket, folder: Some(folder) })
 }
 
@@ -40,7 +40,7 @@ fn named(variable: &str) -> Option<Place> {
         return None;
     };
     let url = format!("{url}/{}-{}", std::process::id(), NUMBER.fetch_add(1, Ordering::Relaxed));
-    Some(Place { bucket: Bucket::open(&url).unwrap(), folder: None })
+    Some(Place { bucket: CloudBucket::open(&url).unwrap(), folder: None })
 }
 
 fn s3() -> Option<Place> {
@@ -97,17 +97,17 @@ fn fill(folder: &Path) {
 
 fn an_object_that_was_written_is_read_listed_and_removed(place: &Place) {
     let bucket = &place.bucket;
-    assert_eq!(bucket.get("chunks/1", 10).unwrap(), None);
-    bucket.put("chunks/1", "one").unwrap();
-    bucket.put("chunks/1", "two").unwrap();
-    assert_eq!(bucket.get("chunks/1", 3).unwrap().unwrap(), b"two");
-    let entries = bucket.list("").unwrap();
+    assert_eq!(bucket.get_object("chunks/1", 10).unwrap(), None);
+    bucket.put_object("chunks/1", "one").unwrap();
+    bucket.put_object("chunks/1", "two").unwrap();
+    assert_eq!(bucket.get_object("chunks/1", 3).unwrap().unwrap(), b"two");
+    let entries = bucket.list_objects("").unwrap();
     assert_eq!(entries.len(), 1);
     assert_eq!((entries[0].name.as_str(), entries[0].bytes), ("chunks/1", 3));
     assert!(entries[0].version.is_some());
-    bucket.remove("chunks/1").unwrap();
-    bucket.remove("chunks/1").unwrap();
-    assert_eq!(bucket.list("").unwrap(), []);
+    bucket.remove_object("chunks/1").unwrap();
+    bucket.remove_object("chunks/1").unwrap();
+    assert_eq!(bucket.list_objects("").unwrap(), []);
 }
 
 fn of_eight_writers_of_a_new_object_one_wins(place: &Place) {
@@ -126,27 +126,27 @@ fn of_eight_writers_of_a_new_object_one_wins(place: &Place) {
         });
         let winners = winners.into_inner().unwrap();
         assert_eq!(winners.len(), 1, "winners: {winners:?}");
-        let there = place.bucket.get(&name, 100).unwrap().unwrap();
+        let there = place.bucket.get_object(&name, 100).unwrap().unwrap();
         assert_eq!(there, format!("writer {}", winners[0]).as_bytes());
     }
 }
 
 fn the_store_lets_one_writer_win(place: &Place) {
     place.bucket.check_put_new().unwrap();
-    assert_eq!(place.bucket.list("").unwrap(), [], "the check leaves nothing");
+    assert_eq!(place.bucket.list_objects("").unwrap(), [], "the check leaves nothing");
 }
 
 fn an_object_that_is_too_large_is_not_read(place: &Place) {
-    place.bucket.put("big", vec![0; 1000]).unwrap();
-    let error = place.bucket.get("big", 999).unwrap_err();
+    place.bucket.put_object("big", vec![0; 1000]).unwrap();
+    let error = place.bucket.get_object("big", 999).unwrap_err();
     assert!(matches!(error, CloudError::TooLarge { bytes: 1000, most: 999, .. }), "{error}");
 }
 
 fn list_returns_only_objects_below_the_prefix(place: &Place) {
     for name in ["run/b", "run/a/1", "run-2/c", "runner"] {
-        place.bucket.put(name, "x").unwrap();
+        place.bucket.put_object(name, "x").unwrap();
     }
-    let names: Vec<_> = place.bucket.list("run").unwrap().into_iter().map(|entry| entry.name).collect();
+    let names: Vec<_> = place.bucket.list_objects("run").unwrap().into_iter().map(|entry| entry.name).collect();
     assert_eq!(names, ["run/a/1", "run/b"]);
 }
 
@@ -156,12 +156,12 @@ fn a_folder_that_was_sent_is_fetched_again(place: &Place) {
     #[cfg(unix)]
     std::os::unix::fs::symlink("/etc/hostname", from.path().join("link")).unwrap();
     let sent = place.bucket.send_folder(from.path(), "attempt-1").unwrap();
-    assert_eq!(sent, Sent { files: 3, bytes: 100_002 }, "links are not sent");
+    assert_eq!(sent, SendSummary { files: 3, bytes: 100_002 }, "links are not sent");
     assert_eq!(place.bucket.send_folder(from.path(), "attempt-1").unwrap(), sent, "once more does no harm");
     let seen = Mutex::new(Vec::new());
     let fetched =
         place.bucket.fetch_folder("attempt-1", to.path(), MANY, &|done, all| seen.lock().unwrap().push((done, all)));
-    assert_eq!(fetched.unwrap(), Fetched { files: 3, bytes: 100_002, kept: 0 });
+    assert_eq!(fetched.unwrap(), FetchSummary { files: 3, bytes: 100_002, kept: 0 });
     for name in ["a.json", "deep/empty", "deep/er/b.bin"] {
         assert_eq!(fs::read(from.path().join(name)).unwrap(), fs::read(to.path().join(name)).unwrap());
     }
@@ -185,15 +185,15 @@ fn a_fetch_takes_only_what_is_missing_or_changed(place: &Place) {
     place.bucket.send_folder(from.path(), "data").unwrap();
     let fetch = || place.bucket.fetch_folder("data", to.path(), MANY, &quiet).unwrap();
     assert_eq!(fetch().files, 3);
-    assert_eq!(fetch(), Fetched { files: 0, bytes: 0, kept: 3 });
+    assert_eq!(fetch(), FetchSummary { files: 0, bytes: 0, kept: 3 });
     // The same size, another content.
-    place.bucket.put("data/a.json", "[]").unwrap();
+    place.bucket.put_object("data/a.json", "[]").unwrap();
     fs::remove_file(to.path().join("deep/empty")).unwrap();
     fs::write(to.path().join("deep/er/b.bin"), "half").unwrap();
     assert_eq!(fetch().files, 3);
     assert_eq!(fs::read(to.path().join("a.json")).unwrap(), b"[]");
     assert_eq!(fs::read(to.path().join("deep/er/b.bin")).unwrap().len(), 100_000);
-    fs::write(to.path().join(INDEX), "broken").unwrap();
+    fs::write(to.path().join(FETCH_INDEX_FILE), "broken").unwrap();
     assert_eq!(fetch().files, 3, "a broken index is no index");
     fs::write(to.path().join("deep/b.bin.wayword-part"), "ha").unwrap();
     let sent = place.bucket.send_folder(to.path(), "again").unwrap();
@@ -202,8 +202,8 @@ fn a_fetch_takes_only_what_is_missing_or_changed(place: &Place) {
 
 fn a_fetch_that_would_be_too_large_takes_nothing(place: &Place) {
     let to = tempfile::tempdir().unwrap();
-    place.bucket.put("data/a", vec![0; 600]).unwrap();
-    place.bucket.put("data/b", vec![0; 600]).unwrap();
+    place.bucket.put_object("data/a", vec![0; 600]).unwrap();
+    place.bucket.put_object("data/b", vec![0; 600]).unwrap();
     let error = place.bucket.fetch_folder("data", to.path(), 1000, &quiet).unwrap_err();
     assert!(matches!(error, CloudError::TooLarge { bytes: 1200, most: 1000, .. }), "{error}");
     assert_eq!(fs::read_dir(to.path()).unwrap().count(), 0);
@@ -211,8 +211,8 @@ fn a_fetch_that_would_be_too_large_takes_nothing(place: &Place) {
 
 fn a_fetch_does_not_follow_a_link_out_of_its_folder(place: &Place) {
     let (to, elsewhere) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
-    place.bucket.put("data/a", "1").unwrap();
-    place.bucket.put("data/sub/b", "2").unwrap();
+    place.bucket.put_object("data/a", "1").unwrap();
+    place.bucket.put_object("data/sub/b", "2").unwrap();
     #[cfg(unix)]
     {
         std::os::unix::fs::symlink(elsewhere.path(), to.path().join("sub")).unwrap();
@@ -232,11 +232,11 @@ fn a_hostile_name_is_refused_by_every_call(place: &Place) {
     let here = tempfile::tempdir().unwrap();
     for name in ["../a", "/a", "a//b", "a/./b", "a\\b", "a\x1b[2J", "a/"] {
         let refused = [
-            bucket.put(name, "x").unwrap_err(),
+            bucket.put_object(name, "x").unwrap_err(),
             bucket.put_new(name, "x").unwrap_err(),
-            bucket.get(name, 1).unwrap_err(),
-            bucket.list(name).unwrap_err(),
-            bucket.remove(name).unwrap_err(),
+            bucket.get_object(name, 1).unwrap_err(),
+            bucket.list_objects(name).unwrap_err(),
+            bucket.remove_object(name).unwrap_err(),
             bucket.send_folder(here.path(), name).unwrap_err(),
             bucket.fetch_folder(name, here.path(), 1, &quiet).unwrap_err(),
         ];
@@ -250,7 +250,7 @@ fn a_hostile_name_is_refused_by_every_call(place: &Place) {
 fn names_with_spaces_percents_and_letters_of_all_kinds_are_kept(place: &Place) {
     let names = ["a b", "a%20b", "a+b", "k=v&x", "wohn zimmer/übersicht.json", "客厅"];
     for name in names {
-        place.bucket.put(&format!("all/{name}"), name).unwrap();
+        place.bucket.put_object(&format!("all/{name}"), name).unwrap();
     }
     let to = tempfile::tempdir().unwrap();
     place.bucket.fetch_folder("all", to.path(), MANY, &quiet).unwrap();
@@ -263,11 +263,11 @@ fn fetch_folder_skips_empty_objects_that_represent_folders(place: &Place) {
     if place.folder.is_some() {
         return;
     }
-    place.bucket.put("data/sub", "").unwrap();
-    place.bucket.put("data/sub/a", "x").unwrap();
+    place.bucket.put_object("data/sub", "").unwrap();
+    place.bucket.put_object("data/sub/a", "x").unwrap();
     let to = tempfile::tempdir().unwrap();
     assert_eq!(place.bucket.fetch_folder("data", to.path(), MANY, &quiet).unwrap().files, 1);
-    place.bucket.put("data/sub", "y").unwrap();
+    place.bucket.put_object("data/sub", "y").unwrap();
     let error = place.bucket.fetch_folder("data", to.path(), MANY, &quiet).unwrap_err();
     assert!(matches!(error, CloudError::Name { .. }), "{error}");
 }
@@ -277,7 +277,7 @@ fn fetch_folder_skips_empty_objects_that_represent_folders(place: &Place) {
 fn a_hostile_name_in_the_store_is_not_fetched() {
     let place = folder().unwrap();
     let root = place.folder.as_ref().unwrap().path().join("new/folder/data");
-    for name in ["a\\..\\b", "a\nb", INDEX, "a.wayword-part"] {
+    for name in ["a\\..\\b", "a\nb", FETCH_INDEX_FILE, "a.wayword-part"] {
         fs::create_dir_all(&root).unwrap();
         fs::write(root.join(name), "x").unwrap();
         let to = tempfile::tempdir().unwrap();
@@ -305,7 +305,7 @@ fn an_address_with_a_secret_is_refused_and_not_repeated() {
         "s3://AKIAHIDDEN:hunter2/x@bucket/a",
     ];
     for url in secrets {
-        let error = Bucket::open(url).unwrap_err();
+        let error = CloudBucket::open(url).unwrap_err();
         let text = format!("{error} {error:?}");
         assert!(matches!(error, CloudError::Address { .. }), "{text}");
         assert!(!text.contains("hunter2") && text.contains("hint"), "{text}");
@@ -315,7 +315,7 @@ fn an_address_with_a_secret_is_refused_and_not_repeated() {
 #[test]
 fn a_server_of_another_kind_is_refused() {
     for url in ["https://example.org/data", "http://example.org/data", "ftp://example.org", "memory:///a", "s3:///a"] {
-        assert!(matches!(Bucket::open(url).unwrap_err(), CloudError::Address { .. }), "{url}");
+        assert!(matches!(CloudBucket::open(url).unwrap_err(), CloudError::Address { .. }), "{url}");
     }
 }
 
@@ -327,8 +327,8 @@ fn a_bucket_shows_its_address_and_none_of_its_settings() {
 
 #[test]
 fn a_call_inside_an_asynchronous_task_is_an_error_and_no_panic() {
-    let bucket = Bucket::in_memory().unwrap();
+    let bucket = CloudBucket::in_memory().unwrap();
     let runtime = tokio::runtime::Builder::new_current_thread().build().unwrap();
-    let answer = runtime.block_on(async { bucket.list("") });
+    let answer = runtime.block_on(async { bucket.list_objects("") });
     assert!(matches!(answer.unwrap_err(), CloudError::InsideAsync));
 }

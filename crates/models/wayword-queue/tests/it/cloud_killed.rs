@@ -10,16 +10,16 @@ use std::{
     process::{Command, Stdio},
     sync::Mutex,
 };
-use wayword_queue::cloud::{Bucket, Fetched};
+use wayword_queue::cloud::{CloudBucket, FetchSummary};
 
 const FILES: usize = 40;
 const SIZE: usize = 4_000_000;
 
-fn bucket(folder: &Path) -> Bucket {
-    Bucket::open(&format!("file://{}/store", folder.display())).unwrap()
+fn bucket(folder: &Path) -> CloudBucket {
+    CloudBucket::open(&format!("file://{}/store", folder.display())).unwrap()
 }
 
-fn fetch(folder: &Path, progress: &dyn Fn(u64, u64)) -> Fetched {
+fn fetch(folder: &Path, progress: &dyn Fn(u64, u64)) -> FetchSummary {
     bucket(folder).fetch_folder("data", &folder.join("here"), 1 << 40, progress).unwrap()
 }
 
@@ -33,7 +33,7 @@ fn names_in(folder: &Path) -> Vec<String> {
 fn a_fetch_that_was_killed_leaves_whole_files_and_is_continued() {
     let folder = tempfile::tempdir().unwrap();
     for number in 0..FILES {
-        bucket(folder.path()).put(&format!("data/{number}"), vec![7; SIZE]).unwrap();
+        bucket(folder.path()).put_object(&format!("data/{number}"), vec![7; SIZE]).unwrap();
     }
     let mut child = Command::new(std::env::current_exe().unwrap())
         .args(["--exact", "cloud_killed::fetches", "--ignored", "--nocapture"])
@@ -64,7 +64,7 @@ fn a_fetch_that_was_killed_leaves_whole_files_and_is_continued() {
 fn of_four_fetches_into_one_folder_three_find_everything_there() {
     let folder = tempfile::tempdir().unwrap();
     for number in 0..FILES {
-        bucket(folder.path()).put(&format!("data/{number}"), vec![7; 100_000]).unwrap();
+        bucket(folder.path()).put_object(&format!("data/{number}"), vec![7; 100_000]).unwrap();
     }
     let fetched = Mutex::new(Vec::new());
     std::thread::scope(|scope| {

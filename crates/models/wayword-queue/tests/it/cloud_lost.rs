@@ -9,7 +9,7 @@ use std::{
     net::TcpListener,
     process::Command,
 };
-use wayword_queue::cloud::{Bucket, CloudError};
+use wayword_queue::cloud::{CloudBucket, CloudError};
 
 const SECRET: &str = "hunter2hunter2";
 
@@ -104,7 +104,7 @@ fn a_store_that_ignores_the_condition_is_found_out() {
 #[test]
 #[ignore = "run by another test, with variables"]
 fn says_no_permission() {
-    let error = Bucket::open("s3://bucket/a").unwrap().put("b", "x").unwrap_err();
+    let error = CloudBucket::open("s3://bucket/a").unwrap().put_object("b", "x").unwrap_err();
     assert!(matches!(error, CloudError::Permission { .. }), "{error:?}");
     assert!(error.to_string().contains("s3://bucket/a/b"), "{error}");
     println!("{error} {error:?}");
@@ -113,7 +113,7 @@ fn says_no_permission() {
 #[test]
 #[ignore = "run by another test, with variables"]
 fn says_no_credentials() {
-    let error = Bucket::open("s3://bucket/a").unwrap().get("b", 1).unwrap_err();
+    let error = CloudBucket::open("s3://bucket/a").unwrap().get_object("b", 1).unwrap_err();
     assert!(matches!(error, CloudError::Credentials { .. }), "{error:?}");
     println!("{error} {error:?}");
 }
@@ -121,8 +121,12 @@ fn says_no_credentials() {
 #[test]
 #[ignore = "run by another test, with variables"]
 fn says_no_bucket() {
-    let bucket = Bucket::open("s3://bucket/a").unwrap();
-    for error in [bucket.get("b", 1).unwrap_err(), bucket.put("b", "x").unwrap_err(), bucket.list("").unwrap_err()] {
+    let bucket = CloudBucket::open("s3://bucket/a").unwrap();
+    for error in [
+        bucket.get_object("b", 1).unwrap_err(),
+        bucket.put_object("b", "x").unwrap_err(),
+        bucket.list_objects("").unwrap_err(),
+    ] {
         assert!(matches!(error, CloudError::NoBucket { .. }), "{error:?}");
     }
 }
@@ -130,42 +134,42 @@ fn says_no_bucket() {
 #[test]
 #[ignore = "run by another test, with variables"]
 fn says_no_put_new() {
-    let error = Bucket::open("s3://bucket/a").unwrap().put_new("b", "x").unwrap_err();
+    let error = CloudBucket::open("s3://bucket/a").unwrap().put_new("b", "x").unwrap_err();
     assert!(matches!(error, CloudError::NoPutNew { .. }), "{error:?}");
 }
 
 #[test]
 #[ignore = "run by another test, with variables"]
 fn check_says_no_put_new() {
-    let error = Bucket::open("s3://bucket/a").unwrap().check_put_new().unwrap_err();
+    let error = CloudBucket::open("s3://bucket/a").unwrap().check_put_new().unwrap_err();
     assert!(matches!(error, CloudError::NoPutNew { .. }), "{error:?}");
 }
 
 #[test]
 #[ignore = "run by another test, with variables"]
 fn says_no_tls() {
-    let error = Bucket::open("s3://bucket/a").unwrap().put("b", "x").unwrap_err();
+    let error = CloudBucket::open("s3://bucket/a").unwrap().put_object("b", "x").unwrap_err();
     assert!(error.to_string().contains("has no TLS") && !error.is_lost(), "{error:?}");
 }
 
 #[test]
 #[ignore = "run by another test, with variables"]
 fn says_no_connection() {
-    let error = Bucket::open("s3://bucket/a").unwrap().put("b", "x").unwrap_err();
+    let error = CloudBucket::open("s3://bucket/a").unwrap().put_object("b", "x").unwrap_err();
     assert!(matches!(error, CloudError::Network { .. }) && error.is_lost(), "{error:?}");
 }
 
 #[test]
 #[ignore = "run by another test, with variables"]
 fn says_try_again() {
-    let error = Bucket::open("s3://bucket/a").unwrap().put_new("b", "x").unwrap_err();
+    let error = CloudBucket::open("s3://bucket/a").unwrap().put_new("b", "x").unwrap_err();
     assert!(error.is_lost(), "{error:?}");
 }
 
 #[test]
 #[ignore = "run by another test, with variables"]
 fn says_no_bucket_to_a_new_object() {
-    let error = Bucket::open("s3://bucket/a").unwrap().put_new("b", "x").unwrap_err();
+    let error = CloudBucket::open("s3://bucket/a").unwrap().put_new("b", "x").unwrap_err();
     assert!(matches!(error, CloudError::NoBucket { .. }), "{error:?}");
 }
 
@@ -173,7 +177,7 @@ fn says_no_bucket_to_a_new_object() {
 #[ignore = "run by another test, with variables"]
 fn refuses_the_name() {
     let here = tempfile::tempdir().unwrap();
-    let bucket = Bucket::open("s3://bucket/a").unwrap();
+    let bucket = CloudBucket::open("s3://bucket/a").unwrap();
     let error = bucket.fetch_folder("data", here.path(), 1 << 30, &|_, _| {}).unwrap_err();
     assert!(matches!(error, CloudError::Name { .. }), "{error:?}");
     assert_eq!(std::fs::read_dir(here.path()).unwrap().count(), 0);
@@ -182,6 +186,6 @@ fn refuses_the_name() {
 #[test]
 #[ignore = "run by another test, with variables"]
 fn says_wrong_variable() {
-    let error = Bucket::open("s3://bucket/a").unwrap_err();
+    let error = CloudBucket::open("s3://bucket/a").unwrap_err();
     assert!(error.to_string().contains("variable of the provider"), "{error:?}");
 }

@@ -1,6 +1,6 @@
 //! A model of many workers on one board and one ledger. The model checker stateright tries every course of events.
 //!
-//! Workers claim chunks by the rules of `Row`, make a call that costs money, and complete. Each may be suspended until its lease
+//! Workers claim chunks by the rules of `ChunkRow`, make a call that costs money, and complete. Each may be suspended until its lease
 //! is over and go on later, or be killed and come back; a completion may arrive late and twice. Whatever happens, each chunk is
 //! recorded once, by the claim that held, and a call is paid again only if it was in flight when its worker was killed or
 //! suspended.
@@ -8,7 +8,7 @@
 #![allow(clippy::print_stderr, reason = "the test tells how many states there are")]
 
 use stateright::{Checker, HasDiscoveries, Model, Property};
-use wayword_queue::{Row, State};
+use wayword_queue::{ChunkRow, ChunkState};
 
 const WORKERS: usize = 2;
 const CHUNKS: usize = 2;
@@ -30,7 +30,7 @@ enum Doing {
 
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 struct World {
-    board: [Row<usize>; CHUNKS],
+    board: [ChunkRow<usize>; CHUNKS],
     workers: [Doing; WORKERS],
     /// Workers with a heartbeat that is too old.
     is_gone: [bool; WORKERS],
@@ -124,7 +124,7 @@ impl Model for Rules {
                     .board
                     .iter_mut()
                     .enumerate()
-                    .find_map(|(chunk, row)| Some((chunk, row.claim(&worker, is_free)?)))?;
+                    .find_map(|(chunk, row)| Some((chunk, row.claim_chunk(&worker, is_free)?)))?;
                 world.workers[worker] = Doing::Begun { chunk, epoch };
             }
             Event::Ask(worker) => {
@@ -163,8 +163,9 @@ impl Model for Rules {
                     world.sent.retain(|sent| *sent != (chunk, epoch));
                 }
                 let row = &mut world.board[chunk];
-                let epoch_seen = if *self == Rules::NoEpoch && row.state == State::Running { row.epoch } else { epoch };
-                if row.complete(epoch_seen) || (*self == Rules::NoEpoch && row.state == State::Done) {
+                let epoch_seen =
+                    if *self == Rules::NoEpoch && row.state == ChunkState::Running { row.epoch } else { epoch };
+                if row.complete_claim(epoch_seen) || (*self == Rules::NoEpoch && row.state == ChunkState::Done) {
                     // Once a fault shows, its consequences need not be followed.
                     if world.recorded[chunk].len() > 1 {
                         return None;
@@ -206,17 +207,18 @@ impl Model for Rules {
                 world.recorded.iter().all(|results| results.len() <= 1)
             }),
             Property::always("the result is of the claim that held", |_, world: &World| {
-                let of = |(row, results): (&Row<usize>, &Vec<i64>)| results.iter().all(|epoch| *epoch == row.epoch);
+                let of =
+                    |(row, results): (&ChunkRow<usize>, &Vec<i64>)| results.iter().all(|epoch| *epoch == row.epoch);
                 world.board.iter().zip(&world.recorded).all(of)
             }),
             Property::always("a call is paid again only if its worker was struck in flight", |_, world: &World| {
                 (0..CHUNKS).all(|chunk| world.paid[chunk] <= 1 + world.struck[chunk])
             }),
             Property::sometimes("everything is done", |_, world: &World| {
-                world.board.iter().all(|row| row.state == State::Done)
+                world.board.iter().all(|row| row.state == ChunkState::Done)
             }),
             Property::sometimes("a late result is dropped", |_, world: &World| {
-                world.board.iter().any(|row| row.state == State::Done && row.epoch > 1)
+                world.board.iter().any(|row| row.state == ChunkState::Done && row.epoch > 1)
             }),
         ]
     }

@@ -6,9 +6,9 @@
 
 use rand::{Rng, SeedableRng, rngs::StdRng, seq::IndexedRandom};
 use std::{path::Path, thread, time::Duration};
-use wayword_database::{Database, postgres};
-use wayword_queue::{Board, Claimed, Done, Plan, Queue, Row, State};
-use wayword_testkit::Postgres;
+use wayword_database::{PostgresDatabase, postgres};
+use wayword_queue::{ChunkBoard, ChunkClaim, ChunkPlan, ChunkQueue, ChunkRecord, ChunkRow, ChunkState};
+use wayword_testkit::PostgresServer;
 
 const CHUNKS: usize = 4;
 const WORKERS: usize = 3;
@@ -20,7 +20,7 @@ const LEASE: Duration = Duration::from_secs(10);
 /// A worker, and every claim that it or its killed forerunners ever had.
 struct Worker {
     name: String,
-    queue: Queue,
+    queue: ChunkQueue,
 }
 
 #[test]
@@ -29,35 +29,35 @@ fn the_queue_follows_the_rules_of_the_model() {
         eprintln!("skipped: the_queue_follows_the_rules_of_the_model needs WAYWORD_TEST_POSTGRES=1");
         return;
     }
-    let server = Postgres::start().unwrap();
+    let server = PostgresServer::start().unwrap();
     // No worker counts as gone until the server has been up for a whole lease.
     thread::sleep(LEASE);
     let url = server.new_database();
     let mut died = 0;
     for seed in 0..ORDERS {
         let rows = one_order(&url, seed);
-        died += rows.iter().filter(|row| row.state == State::Dead).count();
+        died += rows.iter().filter(|row| row.state == ChunkState::Dead).count();
     }
     assert!(died > 0, "some chunk is given up");
 }
 
-fn one_order(url: &str, seed: u64) -> Vec<Row<String>> {
+fn one_order(url: &str, seed: u64) -> Vec<ChunkRow<String>> {
     let mut rng = StdRng::seed_from_u64(seed);
     let folder = tempfile::tempdir().unwrap();
     let run = format!("run-{seed}");
-    let plan = Plan::new(run.clone(), 1, String::new(), vec![String::new(); CHUNKS]);
+    let plan = ChunkPlan::new(run.clone(), 1, String::new(), vec![String::new(); CHUNKS]);
     std::fs::create_dir_all(folder.path().join("chunks")).unwrap();
     let mut table = postgres::Client::connect(url, postgres::NoTls).unwrap();
     let mut names = 0..;
     let mut join = || {
         let name = format!("worker-{}", names.next().unwrap_or(0));
-        let queue = Queue::open(Database::named(url, None).unwrap(), folder.path(), &plan).unwrap();
-        Worker { queue: queue.join(&name, LEASE).unwrap(), name }
+        let queue = ChunkQueue::open(PostgresDatabase::from_name(url, None).unwrap(), folder.path(), &plan).unwrap();
+        Worker { queue: queue.join_as(&name, LEASE).unwrap(), name }
     };
     let mut workers: Vec<Worker> = (0..WORKERS).map(|_| join()).collect();
-    let mut rows: Vec<Row<String>> = vec![Row::default(); CHUNKS];
+    let mut rows: Vec<ChunkRow<String>> = vec![ChunkRow::default(); CHUNKS];
     // Claims of living and of killed workers: a report of each may still arrive, or arrive again.
-    let mut claims: Vec<Claimed> = Vec::new();
+    let mut claims: Vec<ChunkClaim> = Vec::new();
     for event in 0..EVENTS {
         let at = rng.random_range(0..WORKERS);
         let living: Vec<String> = workers.iter().map(|worker| worker.name.clone()).collect();
@@ -76,36 +76,37 @@ fn one_order(url: &str, seed: u64) -> Vec<Row<String>> {
 }
 
 /// A worker asks for a chunk. A worker that has one gets the same one again, and this does not count as a claim.
-fn claim(worker: &Worker, rows: &mut [Row<String>], living: &[String]) -> Option<Claimed> {
+fn claim(worker: &Worker, rows: &mut [ChunkRow<String>], living: &[String]) -> Option<ChunkClaim> {
     let name = &worker.name;
-    let given = worker.queue.take().unwrap();
+    let given = worker.queue.take_chunk().unwrap();
     let is_gone = |other: &String| !living.contains(other);
-    if let Some(has) = rows.iter().position(|row| row.state == State::Running && row.worker.as_ref() == Some(name)) {
-        assert_eq!(given, Some(Claimed { chunk: has, epoch: rows[has].epoch }));
+    if let Some(has) = rows.iter().position(|row| row.state == ChunkState::Running && row.worker.as_ref() == Some(name))
+    {
+        assert_eq!(given, Some(ChunkClaim { chunk: has, epoch: rows[has].epoch }));
         return None;
     }
     // A worker that asks for a chunk first gives up those that were begun too often.
     for row in rows.iter_mut() {
         let mut tried = row.clone();
-        if tried.claim(name, is_gone).is_none() {
+        if tried.claim_chunk(name, is_gone).is_none() {
             *row = tried;
         }
     }
     match given {
-        Some(claimed) => assert_eq!(rows[claimed.chunk].claim(name, is_gone), Some(claimed.epoch)),
-        None => assert!(rows.iter().all(|row| row.clone().claim(name, is_gone).is_none()), "{rows:?}"),
+        Some(claimed) => assert_eq!(rows[claimed.chunk].claim_chunk(name, is_gone), Some(claimed.epoch)),
+        None => assert!(rows.iter().all(|row| row.clone().claim_chunk(name, is_gone).is_none()), "{rows:?}"),
     }
     given
 }
 
 /// Sends a report about a claim, which may be outdated, and compares the answer with the rules.
-fn say(kind: i32, queue: &Queue, row: &mut Row<String>, claimed: Claimed) {
+fn say(kind: i32, queue: &ChunkQueue, row: &mut ChunkRow<String>, claimed: ChunkClaim) {
     match kind {
         5 | 6 => {
-            let again = row.state == State::Done && row.epoch == claimed.epoch;
-            let done = Done { chunk: claimed.chunk, epoch: claimed.epoch, ..Done::default() };
+            let again = row.state == ChunkState::Done && row.epoch == claimed.epoch;
+            let done = ChunkRecord { chunk: claimed.chunk, epoch: claimed.epoch, ..ChunkRecord::default() };
             // A repeated completion gets the answer that the first one counts.
-            assert_eq!(queue.complete(claimed, &done).unwrap(), row.complete(claimed.epoch) || again);
+            assert_eq!(queue.complete_chunk(claimed, &done).unwrap(), row.complete_claim(claimed.epoch) || again);
         }
         7 => {
             queue.hand_back(claimed).unwrap();
@@ -119,14 +120,14 @@ fn say(kind: i32, queue: &Queue, row: &mut Row<String>, claimed: Claimed) {
 }
 
 /// The rows of a run in the database.
-fn kept(table: &mut postgres::Client, run: &str) -> Vec<Row<String>> {
+fn kept(table: &mut postgres::Client, run: &str) -> Vec<ChunkRow<String>> {
     let sql = "SELECT state, epoch, tries, worker FROM wayword_queue.chunks WHERE run = $1 ORDER BY chunk";
-    let row = |row: &postgres::Row| Row {
+    let row = |row: &postgres::Row| ChunkRow {
         state: match row.get(0) {
-            "open" => State::Open,
-            "running" => State::Running,
-            "done" => State::Done,
-            _ => State::Dead,
+            "open" => ChunkState::Open,
+            "running" => ChunkState::Running,
+            "done" => ChunkState::Done,
+            _ => ChunkState::Dead,
         },
         epoch: row.get(1),
         tries: row.get(2),
@@ -136,10 +137,10 @@ fn kept(table: &mut postgres::Client, run: &str) -> Vec<Row<String>> {
 }
 
 /// Checks that exactly the finished chunks have a mark, each with the number of the claim that counted.
-fn assert_marks(folder: &Path, rows: &[Row<String>]) {
+fn assert_marks(folder: &Path, rows: &[ChunkRow<String>]) {
     for (chunk, row) in rows.iter().enumerate() {
         let mark = wayword_queue::done_of(folder, chunk).unwrap();
-        let expected = (row.state == State::Done).then_some(row.epoch);
+        let expected = (row.state == ChunkState::Done).then_some(row.epoch);
         assert_eq!(mark.map(|done| done.epoch), expected, "chunk {chunk}");
     }
 }

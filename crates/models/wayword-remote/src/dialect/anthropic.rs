@@ -1,18 +1,20 @@
 //! Anthropic's messages (<https://docs.anthropic.com/en/api/messages>).
 
-use super::{Asked, End, Heard, Line, Missing, Wire, called, content};
-use crate::picture::Picture;
+use super::{
+    DialectReply, DialectRequest, MissingField, RemoteMessage, ReplyEnd, WireRequest, content_text, tool_call_line,
+};
+use crate::picture::EncodedPicture;
 use serde_json::{Map, Value, json};
 use std::sync::Arc;
-use wayword_core::{Role, Tool};
+use wayword_core::{MessageRole, ModelTool};
 
 /// The version of the API that this file implements.
-pub(super) const VERSION: &str = "2023-06-01";
+pub(super) const API_VERSION: &str = "2023-06-01";
 
 /// Turns a request into a body for this API.
-pub(super) fn to_wire(asked: Asked<'_>) -> Wire {
+pub(super) fn to_wire(asked: DialectRequest<'_>) -> WireRequest {
     let system: Vec<&str> =
-        asked.lines.iter().filter(|line| line.role == Role::System).map(|line| line.text.as_str()).collect();
+        asked.lines.iter().filter(|line| line.role == MessageRole::System).map(|line| line.text.as_str()).collect();
     let mut body = Map::new();
     body.insert("model".to_owned(), asked.model.into());
     // `omit` does not apply: the service refuses a request without this field.
@@ -20,33 +22,33 @@ pub(super) fn to_wire(asked: Asked<'_>) -> Wire {
     if !system.is_empty() {
         body.insert("system".to_owned(), system.join("\n\n").into());
     }
-    let spoken = asked.lines.iter().filter(|line| line.role != Role::System);
-    body.insert("messages".to_owned(), spoken.map(message).collect());
-    if asked.provider.sends("temperature") {
+    let spoken = asked.lines.iter().filter(|line| line.role != MessageRole::System);
+    body.insert("messages".to_owned(), spoken.map(message_json).collect());
+    if asked.provider.sends_field("temperature") {
         body.insert("temperature".to_owned(), asked.sampling.temperature.clamp(0.0, 1.0).into());
     }
-    let tool = |(tool, arguments): (&'static Tool, Value)| json!({ "name": tool.name, "description": tool.does, "input_schema": arguments });
-    let tools: Vec<Value> = asked.tools().into_iter().map(tool).collect();
+    let tool = |(tool, arguments): (&'static ModelTool, Value)| json!({ "name": tool.name, "description": tool.does, "input_schema": arguments });
+    let tools: Vec<Value> = asked.callable_tools().into_iter().map(tool).collect();
     if !tools.is_empty() {
         body.insert("tools".to_owned(), tools.into());
         body.insert("tool_choice".to_owned(), json!({ "type": "any" }));
     }
-    Wire { path: "/messages".to_owned(), body: body.into() }
+    WireRequest { path: "/messages".to_owned(), body: body.into() }
 }
 
 /// The tools that a reply calls, each as a line.
 pub(super) fn tool_calls(body: &Value) -> Vec<String> {
     let parts = body.get("content").and_then(Value::as_array).into_iter().flatten();
     let calls = parts.filter(|part| part.get("type").and_then(Value::as_str) == Some("tool_use"));
-    calls.filter_map(|part| called(part.get("name"), part.get("input"))).collect()
+    calls.filter_map(|part| tool_call_line(part.get("name"), part.get("input"))).collect()
 }
 
-fn message(line: &Line) -> Value {
-    let role = if line.role == Role::Assistant { "assistant" } else { "user" };
+fn message_json(line: &RemoteMessage) -> Value {
+    let role = if line.role == MessageRole::Assistant { "assistant" } else { "user" };
     if line.pictures.is_empty() {
         return json!({ "role": role, "content": line.text });
     }
-    let picture = |picture: &Arc<Picture>| {
+    let picture = |picture: &Arc<EncodedPicture>| {
         let source = json!({ "type": "base64", "media_type": "image/jpeg", "data": picture.base64 });
         json!({ "type": "image", "source": source })
     };
@@ -59,13 +61,13 @@ fn message(line: &Line) -> Value {
 }
 
 /// Reads a reply's body.
-pub(super) fn from_wire(body: &Value) -> Result<Heard, Missing> {
-    let text = content(body.get("content").filter(|parts| parts.is_array()).ok_or(Missing("content"))?);
+pub(super) fn from_wire(body: &Value) -> Result<DialectReply, MissingField> {
+    let text = content_text(body.get("content").filter(|parts| parts.is_array()).ok_or(MissingField("content"))?);
     let end = match body.get("stop_reason").and_then(Value::as_str) {
-        Some("max_tokens" | "model_context_window_exceeded") => End::Length,
-        Some("refusal") => End::Refused("refusal".to_owned()),
-        _ => End::Stop,
+        Some("max_tokens" | "model_context_window_exceeded") => ReplyEnd::Length,
+        Some("refusal") => ReplyEnd::Refused("refusal".to_owned()),
+        _ => ReplyEnd::Stop,
     };
     let tokens = |field: &str| body.get("usage")?.get(field)?.as_u64();
-    Ok(Heard { text, end, tokens_in: tokens("input_tokens"), tokens_out: tokens("output_tokens") })
+    Ok(DialectReply { text, end, tokens_in: tokens("input_tokens"), tokens_out: tokens("output_tokens") })
 }

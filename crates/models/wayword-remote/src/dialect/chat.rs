@@ -1,40 +1,43 @@
 //! OpenAI's chat completions (<https://platform.openai.com/docs/api-reference/chat>).
 
-use super::{Asked, End, Heard, Line, Missing, Wire, called, content, seed};
-use crate::Json;
+use super::{
+    DialectReply, DialectRequest, MissingField, RemoteMessage, ReplyEnd, WireRequest, content_text, seed_of_31_bits,
+    tool_call_line,
+};
+use crate::JsonMode;
 use serde_json::{Map, Value, json};
-use wayword_core::{Role, Tool};
+use wayword_core::{MessageRole, ModelTool};
 
 /// Turns a request into a body for this API.
-pub(super) fn to_wire(asked: Asked<'_>) -> Wire {
+pub(super) fn to_wire(asked: DialectRequest<'_>) -> WireRequest {
     let mut body = Map::new();
     body.insert("model".to_owned(), asked.model.into());
-    body.insert("messages".to_owned(), asked.lines.iter().map(message).collect());
-    sampling(asked, &mut body);
-    if let Some((way, name, schema)) = asked.json() {
+    body.insert("messages".to_owned(), asked.lines.iter().map(message_json).collect());
+    insert_sampling(asked, &mut body);
+    if let Some((way, name, schema)) = asked.json_form() {
         let format = match way {
-            Json::Schema => {
+            JsonMode::Schema => {
                 json!({ "type": "json_schema", "json_schema": { "name": name, "strict": true, "schema": schema } })
             }
-            Json::Object | Json::Prompt => json!({ "type": "json_object" }),
+            JsonMode::Object | JsonMode::Prompt => json!({ "type": "json_object" }),
         };
         body.insert("response_format".to_owned(), format);
     }
-    let tools = tools(asked);
+    let tools = tools_json(asked);
     if !tools.is_empty() {
         body.insert("tools".to_owned(), tools.into());
         body.insert("tool_choice".to_owned(), "required".into());
     }
-    Wire { path: "/chat/completions".to_owned(), body: body.into() }
+    WireRequest { path: "/chat/completions".to_owned(), body: body.into() }
 }
 
 /// The tools, in the form that this dialect and Ollama's share.
-pub(super) fn tools(asked: Asked<'_>) -> Vec<Value> {
-    let tool = |(tool, arguments): (&'static Tool, Value)| {
+pub(super) fn tools_json(asked: DialectRequest<'_>) -> Vec<Value> {
+    let tool = |(tool, arguments): (&'static ModelTool, Value)| {
         let function = json!({ "name": tool.name, "description": tool.does, "parameters": arguments });
         json!({ "type": "function", "function": function })
     };
-    asked.tools().into_iter().map(tool).collect()
+    asked.callable_tools().into_iter().map(tool).collect()
 }
 
 /// The tools that a reply calls, each as a line.
@@ -48,30 +51,30 @@ pub(super) fn calls_of(message: &Value) -> Vec<String> {
     let calls = message.get("tool_calls").and_then(Value::as_array);
     let function = |call: &Value| {
         let function = call.get("function")?;
-        called(function.get("name"), function.get("arguments"))
+        tool_call_line(function.get("name"), function.get("arguments"))
     };
     calls.into_iter().flatten().filter_map(function).collect()
 }
 
 /// The sampling fields that this dialect and the completions share.
-pub(super) fn sampling(asked: Asked<'_>, body: &mut Map<String, Value>) {
+pub(super) fn insert_sampling(asked: DialectRequest<'_>, body: &mut Map<String, Value>) {
     let (provider, sampling) = (asked.provider, asked.sampling);
-    if provider.sends("temperature") {
+    if provider.sends_field("temperature") {
         body.insert("temperature".to_owned(), sampling.temperature.into());
     }
-    if provider.sends("max_tokens") {
+    if provider.sends_field("max_tokens") {
         body.insert(provider.max_tokens_field.clone(), sampling.max_tokens.into());
     }
-    if provider.sends("seed") {
-        body.insert(provider.seed_field.clone(), seed(sampling).into());
+    if provider.sends_field("seed") {
+        body.insert(provider.seed_field.clone(), seed_of_31_bits(sampling).into());
     }
 }
 
-fn message(line: &Line) -> Value {
+fn message_json(line: &RemoteMessage) -> Value {
     let role = match line.role {
-        Role::System => "system",
-        Role::User => "user",
-        Role::Assistant => "assistant",
+        MessageRole::System => "system",
+        MessageRole::User => "user",
+        MessageRole::Assistant => "assistant",
     };
     if line.pictures.is_empty() {
         return json!({ "role": role, "content": line.text });
@@ -85,34 +88,34 @@ fn message(line: &Line) -> Value {
 }
 
 /// Reads a reply's body.
-pub(super) fn from_wire(body: &Value) -> Result<Heard, Missing> {
-    let choice = body.get("choices").and_then(|choices| choices.get(0)).ok_or(Missing("choices"))?;
-    let message = choice.get("message").ok_or(Missing("message"))?;
+pub(super) fn from_wire(body: &Value) -> Result<DialectReply, MissingField> {
+    let choice = body.get("choices").and_then(|choices| choices.get(0)).ok_or(MissingField("choices"))?;
+    let message = choice.get("message").ok_or(MissingField("message"))?;
     let refusal = message.get("refusal").and_then(Value::as_str).filter(|why| !why.is_empty());
-    let end = refusal.map_or_else(|| end(choice), |why| Ok(End::Refused(why.to_owned())))?;
-    let text = message.get("content").map(content).unwrap_or_default();
+    let end = refusal.map_or_else(|| reply_end(choice), |why| Ok(ReplyEnd::Refused(why.to_owned())))?;
+    let text = message.get("content").map(content_text).unwrap_or_default();
     Ok(with_usage(body, text, end))
 }
 
 /// Why a choice ended. If an error ended it, which OpenRouter reports here, it has no end: the text until then is not
 /// an answer.
-pub(super) fn end(choice: &Value) -> Result<End, Missing> {
+pub(super) fn reply_end(choice: &Value) -> Result<ReplyEnd, MissingField> {
     if choice.get("error").is_some_and(|error| !error.is_null()) {
-        return Err(Missing("end"));
+        return Err(MissingField("end"));
     }
     match choice.get("finish_reason").and_then(Value::as_str) {
-        Some("error") => Err(Missing("end")),
-        Some("length") => Ok(End::Length),
-        Some("content_filter") => Ok(End::Filtered("content_filter".to_owned())),
-        _ => Ok(End::Stop),
+        Some("error") => Err(MissingField("end")),
+        Some("length") => Ok(ReplyEnd::Length),
+        Some("content_filter") => Ok(ReplyEnd::Filtered("content_filter".to_owned())),
+        _ => Ok(ReplyEnd::Stop),
     }
 }
 
 /// A reply with its token counts. Thinking is paid for too. Most services count it in the tokens of the completion, but
 /// xAI counts it in the total alone.
-pub(super) fn with_usage(body: &Value, text: String, end: End) -> Heard {
+pub(super) fn with_usage(body: &Value, text: String, end: ReplyEnd) -> DialectReply {
     let tokens = |field: &str| body.get("usage")?.get(field)?.as_u64();
     let tokens_in = tokens("prompt_tokens");
     let beside_the_prompt = tokens("total_tokens").zip(tokens_in).map(|(total, prompt)| total.saturating_sub(prompt));
-    Heard { text, end, tokens_in, tokens_out: tokens("completion_tokens").max(beside_the_prompt) }
+    DialectReply { text, end, tokens_in, tokens_out: tokens("completion_tokens").max(beside_the_prompt) }
 }

@@ -1,47 +1,47 @@
 //! OpenAI's legacy completions: one prompt, and the text that a model adds to it.
 
-use super::{Asked, Heard, Line, Missing, Wire, chat};
+use super::{DialectReply, DialectRequest, MissingField, RemoteMessage, WireRequest, chat};
 use serde_json::{Map, Value, json};
-use wayword_core::Role;
+use wayword_core::MessageRole;
 
 /// Turns a request into a body for this API.
 ///
 /// # Errors
 /// When there is a picture.
-pub(super) fn to_wire(asked: Asked<'_>) -> Result<Wire, &'static str> {
+pub(super) fn to_wire(asked: DialectRequest<'_>) -> Result<WireRequest, &'static str> {
     if asked.lines.iter().any(|line| !line.pictures.is_empty()) {
         return Err("the completions endpoint takes no pictures: for --see, choose a model behind a chat endpoint");
     }
     let mut body = Map::new();
     body.insert("model".to_owned(), asked.model.into());
-    if let [only @ Line { role: Role::User, .. }] = asked.lines {
+    if let [only @ RemoteMessage { role: MessageRole::User, .. }] = asked.lines {
         // Instruction models take a single request as it is.
         body.insert("prompt".to_owned(), only.text.clone().into());
     } else {
-        body.insert("prompt".to_owned(), flattened(asked.lines).into());
+        body.insert("prompt".to_owned(), conversation_script(asked.lines).into());
         // Otherwise a model writes the user's next lines too.
         body.insert("stop".to_owned(), json!(["\nUser:"]));
     }
-    chat::sampling(asked, &mut body);
-    Ok(Wire { path: "/completions".to_owned(), body: body.into() })
+    chat::insert_sampling(asked, &mut body);
+    Ok(WireRequest { path: "/completions".to_owned(), body: body.into() })
 }
 
 /// A conversation as a script that ends where the model is to answer.
-fn flattened(lines: &[Line]) -> String {
+fn conversation_script(lines: &[RemoteMessage]) -> String {
     let mut prompt = String::new();
     for line in lines {
         match line.role {
-            Role::System => prompt.push_str(&format!("{}\n\n", line.text)),
-            Role::User => prompt.push_str(&format!("User: {}\n", line.text)),
-            Role::Assistant => prompt.push_str(&format!("Assistant: {}\n", line.text)),
+            MessageRole::System => prompt.push_str(&format!("{}\n\n", line.text)),
+            MessageRole::User => prompt.push_str(&format!("User: {}\n", line.text)),
+            MessageRole::Assistant => prompt.push_str(&format!("Assistant: {}\n", line.text)),
         }
     }
     prompt + "Assistant:"
 }
 
 /// Reads a reply's body.
-pub(super) fn from_wire(body: &Value) -> Result<Heard, Missing> {
-    let choice = body.get("choices").and_then(|choices| choices.get(0)).ok_or(Missing("choices"))?;
-    let text = choice.get("text").and_then(Value::as_str).ok_or(Missing("text"))?;
-    Ok(chat::with_usage(body, text.to_owned(), chat::end(choice)?))
+pub(super) fn from_wire(body: &Value) -> Result<DialectReply, MissingField> {
+    let choice = body.get("choices").and_then(|choices| choices.get(0)).ok_or(MissingField("choices"))?;
+    let text = choice.get("text").and_then(Value::as_str).ok_or(MissingField("text"))?;
+    Ok(chat::with_usage(body, text.to_owned(), chat::reply_end(choice)?))
 }

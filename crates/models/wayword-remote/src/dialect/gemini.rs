@@ -1,49 +1,55 @@
 //! Gemini's `generateContent` (<https://ai.google.dev/api/generate-content>).
 
-use super::{Asked, End, Heard, Line, Missing, Wire, called, seed};
-use crate::Json;
+use super::{
+    DialectReply, DialectRequest, MissingField, RemoteMessage, ReplyEnd, WireRequest, seed_of_31_bits, tool_call_line,
+};
+use crate::JsonMode;
 use serde_json::{Map, Value, json};
-use wayword_core::{Role, Tool};
+use wayword_core::{MessageRole, ModelTool};
 
 /// Turns a request into a body for this API.
-pub(super) fn to_wire(asked: Asked<'_>) -> Wire {
+pub(super) fn to_wire(asked: DialectRequest<'_>) -> WireRequest {
     let (provider, sampling) = (asked.provider, asked.sampling);
     let mut body = Map::new();
-    let system: Vec<Value> =
-        asked.lines.iter().filter(|line| line.role == Role::System).map(|line| json!({ "text": line.text })).collect();
+    let system: Vec<Value> = asked
+        .lines
+        .iter()
+        .filter(|line| line.role == MessageRole::System)
+        .map(|line| json!({ "text": line.text }))
+        .collect();
     if !system.is_empty() {
         body.insert("systemInstruction".to_owned(), json!({ "parts": system }));
     }
-    let spoken = asked.lines.iter().filter(|line| line.role != Role::System);
-    body.insert("contents".to_owned(), spoken.map(message).collect());
+    let spoken = asked.lines.iter().filter(|line| line.role != MessageRole::System);
+    body.insert("contents".to_owned(), spoken.map(message_json).collect());
     let mut generation = Map::new();
-    if provider.sends("temperature") {
+    if provider.sends_field("temperature") {
         generation.insert("temperature".to_owned(), sampling.temperature.into());
     }
-    if provider.sends("max_tokens") {
+    if provider.sends_field("max_tokens") {
         generation.insert("maxOutputTokens".to_owned(), sampling.max_tokens.into());
     }
-    if provider.sends("seed") {
-        generation.insert("seed".to_owned(), seed(sampling).into());
+    if provider.sends_field("seed") {
+        generation.insert("seed".to_owned(), seed_of_31_bits(sampling).into());
     }
-    if let Some((way, _, mut schema)) = asked.json() {
+    if let Some((way, _, mut schema)) = asked.json_form() {
         generation.insert("responseMimeType".to_owned(), "application/json".into());
-        if way == Json::Schema {
+        if way == JsonMode::Schema {
             to_open_api(&mut schema);
             generation.insert("responseSchema".to_owned(), schema);
         }
     }
     body.insert("generationConfig".to_owned(), generation.into());
-    let tool = |(tool, mut arguments): (&'static Tool, Value)| {
+    let tool = |(tool, mut arguments): (&'static ModelTool, Value)| {
         to_open_api(&mut arguments);
         json!({ "name": tool.name, "description": tool.does, "parameters": arguments })
     };
-    let tools: Vec<Value> = asked.tools().into_iter().map(tool).collect();
+    let tools: Vec<Value> = asked.callable_tools().into_iter().map(tool).collect();
     if !tools.is_empty() {
         body.insert("tools".to_owned(), json!([{ "functionDeclarations": tools }]));
         body.insert("toolConfig".to_owned(), json!({ "functionCallingConfig": { "mode": "ANY" } }));
     }
-    Wire { path: format!("/models/{}:generateContent", in_path(asked.model)), body: body.into() }
+    WireRequest { path: format!("/models/{}:generateContent", in_path(asked.model)), body: body.into() }
 }
 
 /// Rewrites a JSON schema into the subset of OpenAPI that the service reads: types in capitals, and no
@@ -62,8 +68,8 @@ fn to_open_api(schema: &mut Value) {
     }
 }
 
-fn message(line: &Line) -> Value {
-    let role = if line.role == Role::Assistant { "model" } else { "user" };
+fn message_json(line: &RemoteMessage) -> Value {
+    let role = if line.role == MessageRole::Assistant { "model" } else { "user" };
     let mut parts = vec![json!({ "text": line.text })];
     let inline = |data: &str| json!({ "inlineData": { "mimeType": "image/jpeg", "data": data } });
     parts.extend(line.pictures.iter().map(|picture| inline(&picture.base64)));
@@ -82,29 +88,29 @@ pub(super) fn tool_calls(body: &Value) -> Vec<String> {
     let candidate = body.get("candidates").and_then(|all| all.get(0));
     let parts = candidate.and_then(|candidate| candidate.get("content")?.get("parts")?.as_array());
     let calls = parts.into_iter().flatten().filter_map(|part| part.get("functionCall"));
-    calls.filter_map(|call| called(call.get("name"), call.get("args"))).collect()
+    calls.filter_map(|call| tool_call_line(call.get("name"), call.get("args"))).collect()
 }
 
 /// Reads a reply's body.
-pub(super) fn from_wire(body: &Value) -> Result<Heard, Missing> {
+pub(super) fn from_wire(body: &Value) -> Result<DialectReply, MissingField> {
     let tokens = |field: &str| body.get("usageMetadata")?.get(field)?.as_u64();
     let spoken = tokens("candidatesTokenCount");
     let thought = tokens("thoughtsTokenCount");
     let tokens_out = spoken.or(thought).map(|_| spoken.unwrap_or(0).saturating_add(thought.unwrap_or(0)));
-    let heard = |text, end| Heard { text, end, tokens_in: tokens("promptTokenCount"), tokens_out };
+    let heard = |text, end| DialectReply { text, end, tokens_in: tokens("promptTokenCount"), tokens_out };
     if let Some(why) = body.get("promptFeedback").and_then(|feedback| feedback.get("blockReason")?.as_str()) {
-        return Ok(heard(String::new(), End::Filtered(why.to_owned())));
+        return Ok(heard(String::new(), ReplyEnd::Filtered(why.to_owned())));
     }
-    let candidate = body.get("candidates").and_then(|all| all.get(0)).ok_or(Missing("candidates"))?;
+    let candidate = body.get("candidates").and_then(|all| all.get(0)).ok_or(MissingField("candidates"))?;
     let parts = candidate.get("content").and_then(|content| content.get("parts")?.as_array());
     let said = |part: &&Value| part.get("thought").and_then(Value::as_bool) != Some(true);
     let text = parts.into_iter().flatten().filter(said).filter_map(|part| part.get("text")?.as_str()).collect();
     let end = match candidate.get("finishReason").and_then(Value::as_str) {
-        Some("MAX_TOKENS") => End::Length,
+        Some("MAX_TOKENS") => ReplyEnd::Length,
         Some(
             why @ ("SAFETY" | "RECITATION" | "BLOCKLIST" | "PROHIBITED_CONTENT" | "SPII" | "LANGUAGE" | "IMAGE_SAFETY"),
-        ) => End::Filtered(why.to_owned()),
-        _ => End::Stop,
+        ) => ReplyEnd::Filtered(why.to_owned()),
+        _ => ReplyEnd::Stop,
     };
     Ok(heard(text, end))
 }

@@ -7,16 +7,16 @@ mod completions;
 mod gemini;
 mod ollama;
 
-use crate::{Json, picture::Picture, provider::Provider};
+use crate::{JsonMode, picture::EncodedPicture, provider::RemoteProvider};
 use serde::Deserialize;
 use serde_json::{Map, Value};
 use std::sync::Arc;
-use wayword_core::{Role, Sampling, Schema, Tool, tool_line};
+use wayword_core::{MessageRole, ModelTool, ReplySchema, SamplingOptions, tool_line};
 
 /// A service's API.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Dialect {
+pub enum ServiceDialect {
     /// OpenAI's chat completions, which most other servers offer too.
     #[serde(rename = "openai")]
     OpenAi,
@@ -32,28 +32,28 @@ pub enum Dialect {
 
 /// A message that is ready to be sent.
 #[derive(Debug, Clone)]
-pub(crate) struct Line {
-    pub(crate) role: Role,
+pub(crate) struct RemoteMessage {
+    pub(crate) role: MessageRole,
     pub(crate) text: String,
-    pub(crate) pictures: Vec<Arc<Picture>>,
+    pub(crate) pictures: Vec<Arc<EncodedPicture>>,
 }
 
 /// A request to a model.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Asked<'a> {
-    pub(crate) provider: &'a Provider,
+pub(crate) struct DialectRequest<'a> {
+    pub(crate) provider: &'a RemoteProvider,
     pub(crate) model: &'a str,
-    pub(crate) lines: &'a [Line],
-    pub(crate) sampling: &'a Sampling,
+    pub(crate) lines: &'a [RemoteMessage],
+    pub(crate) sampling: &'a SamplingOptions,
     /// The form of the reply, where it is to be JSON.
-    pub(crate) schema: Option<Schema>,
+    pub(crate) schema: Option<ReplySchema>,
     /// The tools that the model may call.
-    pub(crate) tools: &'static [Tool],
+    pub(crate) tools: &'static [ModelTool],
 }
 
 /// A request as it is sent, without the key.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Wire {
+pub(crate) struct WireRequest {
     /// The path after the base URL.
     pub(crate) path: String,
     pub(crate) body: Value,
@@ -61,17 +61,17 @@ pub(crate) struct Wire {
 
 /// A model's reply.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Heard {
+pub(crate) struct DialectReply {
     /// The text, without the model's thinking. Each call of a tool is a line at its end.
     pub(crate) text: String,
-    pub(crate) end: End,
+    pub(crate) end: ReplyEnd,
     pub(crate) tokens_in: Option<u64>,
     pub(crate) tokens_out: Option<u64>,
 }
 
 /// Why a reply ended.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) enum End {
+pub(crate) enum ReplyEnd {
     Stop,
     Length,
     /// The service's filter cut it off or blocked it, with the reason.
@@ -82,11 +82,11 @@ pub(crate) enum End {
 
 /// The name of a field that every reply must have and this one lacks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Missing(pub(crate) &'static str);
+pub(crate) struct MissingField(pub(crate) &'static str);
 
-impl Dialect {
+impl ServiceDialect {
     /// The path that is added to a base URL without one.
-    pub(crate) fn version(self) -> &'static str {
+    pub(crate) fn default_version_path(self) -> &'static str {
         match self {
             Self::Anthropic => "/v1",
             Self::Gemini => "/v1beta",
@@ -104,9 +104,9 @@ impl Dialect {
     }
 
     /// Headers of every request, in addition to the key's.
-    pub(crate) fn headers(self) -> &'static [(&'static str, &'static str)] {
+    pub(crate) fn extra_headers(self) -> &'static [(&'static str, &'static str)] {
         match self {
-            Self::Anthropic => &[("anthropic-version", anthropic::VERSION)],
+            Self::Anthropic => &[("anthropic-version", anthropic::API_VERSION)],
             _ => &[],
         }
     }
@@ -126,7 +126,7 @@ impl Dialect {
     ///
     /// # Errors
     /// When the dialect cannot express it: completions take no pictures.
-    pub(crate) fn to_wire(self, asked: Asked<'_>) -> Result<Wire, &'static str> {
+    pub(crate) fn to_wire(self, asked: DialectRequest<'_>) -> Result<WireRequest, &'static str> {
         let mut wire = match self {
             Self::OpenAi => chat::to_wire(asked),
             Self::Completions => completions::to_wire(asked)?,
@@ -134,7 +134,7 @@ impl Dialect {
             Self::Gemini => gemini::to_wire(asked),
             Self::Ollama => ollama::to_wire(asked),
         };
-        merge(&mut wire.body, &asked.provider.extra);
+        merge_fields(&mut wire.body, &asked.provider.extra);
         Ok(wire)
     }
 
@@ -142,7 +142,7 @@ impl Dialect {
     ///
     /// # Errors
     /// When it has no answer.
-    pub(crate) fn heard(self, body: &Value) -> Result<Heard, Missing> {
+    pub(crate) fn read_reply(self, body: &Value) -> Result<DialectReply, MissingField> {
         let mut heard = match self {
             Self::OpenAi => chat::from_wire(body),
             Self::Completions => completions::from_wire(body),
@@ -179,7 +179,7 @@ impl Dialect {
     }
 
     /// The request for a model's capabilities, for services that have one.
-    pub(crate) fn to_describe(self, model: &str) -> Option<Wire> {
+    pub(crate) fn to_describe(self, model: &str) -> Option<WireRequest> {
         (self == Self::Ollama).then(|| ollama::to_describe(model))
     }
 
@@ -189,7 +189,7 @@ impl Dialect {
     }
 
     /// The models in the service's list.
-    pub(crate) fn models(self, body: &Value) -> Option<Vec<&str>> {
+    pub(crate) fn listed_models(self, body: &Value) -> Option<Vec<&str>> {
         let (list, name) = match self {
             Self::OpenAi | Self::Completions | Self::Anthropic => ("data", "id"),
             Self::Gemini | Self::Ollama => ("models", "name"),
@@ -220,25 +220,25 @@ impl Dialect {
 ///
 /// Some servers put the opening tag into their prompt template, so that the text has only the closing tag.
 fn after_thinking(text: &str) -> &str {
-    const OPEN: &str = "<think>";
-    const CLOSE: &str = "</think>";
+    const OPENING_TAG: &str = "<think>";
+    const CLOSING_TAG: &str = "</think>";
     let text = text.trim_start();
-    match (text.strip_prefix(OPEN), text.find(CLOSE)) {
-        (Some(_), Some(at)) => &text[at + CLOSE.len()..],
+    match (text.strip_prefix(OPENING_TAG), text.find(CLOSING_TAG)) {
+        (Some(_), Some(at)) => &text[at + CLOSING_TAG.len()..],
         // The model was still thinking when it was cut off.
         (Some(_), None) => "",
-        (None, Some(at)) if !text[..at].contains(OPEN) => &text[at + CLOSE.len()..],
+        (None, Some(at)) if !text[..at].contains(OPENING_TAG) => &text[at + CLOSING_TAG.len()..],
         _ => text,
     }
 }
 
 /// A seed of 31 bits, which every service takes.
-fn seed(sampling: &Sampling) -> u64 {
+fn seed_of_31_bits(sampling: &SamplingOptions) -> u64 {
     sampling.seed & 0x7fff_ffff
 }
 
 /// A call of a tool as a line. Some services give the arguments as an object, others as a text with JSON.
-fn called(name: Option<&Value>, arguments: Option<&Value>) -> Option<String> {
+fn tool_call_line(name: Option<&Value>, arguments: Option<&Value>) -> Option<String> {
     let arguments = match arguments {
         Some(Value::String(text)) => {
             serde_json::from_str::<Value>(text).map_or_else(|_| text.clone(), |value| value.to_string())
@@ -249,26 +249,26 @@ fn called(name: Option<&Value>, arguments: Option<&Value>) -> Option<String> {
     Some(tool_line(name?.as_str()?, &arguments))
 }
 
-impl Asked<'_> {
+impl DialectRequest<'_> {
     /// Each tool of the request with the schema of its arguments; none where the service has no tool calls.
-    fn tools(&self) -> Vec<(&'static Tool, Value)> {
+    fn callable_tools(&self) -> Vec<(&'static ModelTool, Value)> {
         let told = self.tools.iter().filter(|_| self.provider.tools);
         told.filter_map(|tool| Some((tool, serde_json::from_str(tool.arguments).ok()?))).collect()
     }
 
     /// How the request asks for JSON: the mode, the schema's name, and the schema. `None` if only the prompt asks for it.
-    fn json(&self) -> Option<(Json, &'static str, Value)> {
-        let schema = self.schema.filter(|_| self.provider.json != Json::Prompt)?;
+    fn json_form(&self) -> Option<(JsonMode, &'static str, Value)> {
+        let schema = self.schema.filter(|_| self.provider.json != JsonMode::Prompt)?;
         Some((self.provider.json, schema.name, serde_json::from_str(schema.json).ok()?))
     }
 }
 
 /// Puts a user's fields into a body. Tables are merged, all other values are replaced.
-fn merge(body: &mut Value, extra: &Map<String, Value>) {
+fn merge_fields(body: &mut Value, extra: &Map<String, Value>) {
     let Value::Object(body) = body else { return };
     for (field, value) in extra {
         match (body.get_mut(field), value) {
-            (Some(inner @ Value::Object(_)), Value::Object(extra)) => merge(inner, extra),
+            (Some(inner @ Value::Object(_)), Value::Object(extra)) => merge_fields(inner, extra),
             _ => {
                 body.insert(field.clone(), value.clone());
             }
@@ -277,7 +277,7 @@ fn merge(body: &mut Value, extra: &Map<String, Value>) {
 }
 
 /// The text of a message's content: a string, or the parts of type `text`.
-fn content(value: &Value) -> String {
+fn content_text(value: &Value) -> String {
     match value {
         Value::String(text) => text.clone(),
         Value::Array(parts) => parts

@@ -1,43 +1,56 @@
 use super::*;
-use crate::{Config, provider::Table};
+use crate::{RemoteConfig, provider::ProviderTable};
 use serde_json::json;
 
-fn provider(name: &str, own: &str) -> Provider {
-    let mut config: Config = toml::from_str(own).unwrap();
+fn provider(name: &str, own: &str) -> RemoteProvider {
+    let mut config: RemoteConfig = toml::from_str(own).unwrap();
     if ["server", "completions"].contains(&name) {
         config.base_url = Some("http://127.0.0.1:1/v1".to_owned());
     }
-    Table::new(&config.providers).resolve(name, &config).unwrap()
+    ProviderTable::new(&config.providers).resolve_provider(name, &config).unwrap()
 }
 
-fn line(role: Role, text: &str) -> Line {
-    Line { role, text: text.to_owned(), pictures: Vec::new() }
+fn line(role: MessageRole, text: &str) -> RemoteMessage {
+    RemoteMessage { role, text: text.to_owned(), pictures: Vec::new() }
 }
 
-fn seen(text: &str) -> Line {
-    let picture = Picture { base64: "QUJD".to_owned(), sha256: "00".to_owned() };
-    Line { pictures: vec![Arc::new(picture)], ..line(Role::User, text) }
+fn seen(text: &str) -> RemoteMessage {
+    let picture = EncodedPicture { base64: "QUJD".to_owned(), sha256: "00".to_owned() };
+    RemoteMessage { pictures: vec![Arc::new(picture)], ..line(MessageRole::User, text) }
 }
 
-fn conversation() -> Vec<Line> {
-    vec![line(Role::System, "Be brief."), line(Role::User, "Hi."), line(Role::Assistant, "Yes?"), seen("What is this?")]
+fn conversation() -> Vec<RemoteMessage> {
+    vec![
+        line(MessageRole::System, "Be brief."),
+        line(MessageRole::User, "Hi."),
+        line(MessageRole::Assistant, "Yes?"),
+        seen("What is this?"),
+    ]
 }
 
-fn wire(provider: &Provider, lines: &[Line]) -> Result<Wire, &'static str> {
-    let sampling = Sampling { temperature: 0.5, max_tokens: 30, seed: u64::MAX };
-    provider.dialect.to_wire(Asked { provider, model: "m/1", lines, sampling: &sampling, schema: None, tools: &[] })
+fn wire(provider: &RemoteProvider, lines: &[RemoteMessage]) -> Result<WireRequest, &'static str> {
+    let sampling = SamplingOptions { temperature: 0.5, max_tokens: 30, seed: u64::MAX };
+    provider.dialect.to_wire(DialectRequest {
+        provider,
+        model: "m/1",
+        lines,
+        sampling: &sampling,
+        schema: None,
+        tools: &[],
+    })
 }
 
-const SCHEMA: Schema = Schema {
+const SCHEMA: ReplySchema = ReplySchema {
     name: "view",
     json: r#"{"type": "object", "additionalProperties": false, "properties": {"type": {"type": "string"}}}"#,
 };
 
 /// The body of a request for a reply in JSON.
-fn body_for_json(provider: &Provider) -> Value {
-    let sampling = Sampling { temperature: 0.0, max_tokens: 30, seed: 0 };
-    let lines = [line(Role::User, "Hi.")];
-    let asked = Asked { provider, model: "m", lines: &lines, sampling: &sampling, schema: Some(SCHEMA), tools: &[] };
+fn body_for_json(provider: &RemoteProvider) -> Value {
+    let sampling = SamplingOptions { temperature: 0.0, max_tokens: 30, seed: 0 };
+    let lines = [line(MessageRole::User, "Hi.")];
+    let asked =
+        DialectRequest { provider, model: "m", lines: &lines, sampling: &sampling, schema: Some(SCHEMA), tools: &[] };
     provider.dialect.to_wire(asked).unwrap().body
 }
 
@@ -67,17 +80,17 @@ fn to_wire_sends_no_schema_to_other_services() {
     assert_eq!(strict["response_format"]["type"], "json_schema");
 }
 
-const TOOLS: &[Tool] = &[Tool {
+const TOOLS: &[ModelTool] = &[ModelTool {
     name: "step",
     does: "walks",
     arguments: r#"{"type": "object", "properties": {"way": {"type": "integer"}}}"#,
 }];
 
 /// The body of a request to a model that may call a tool.
-fn body_with_tools(provider: &Provider) -> Value {
-    let sampling = Sampling { temperature: 0.0, max_tokens: 30, seed: 0 };
-    let lines = [line(Role::User, "Hi.")];
-    let asked = Asked { provider, model: "m", lines: &lines, sampling: &sampling, schema: None, tools: TOOLS };
+fn body_with_tools(provider: &RemoteProvider) -> Value {
+    let sampling = SamplingOptions { temperature: 0.0, max_tokens: 30, seed: 0 };
+    let lines = [line(MessageRole::User, "Hi.")];
+    let asked = DialectRequest { provider, model: "m", lines: &lines, sampling: &sampling, schema: None, tools: TOOLS };
     provider.dialect.to_wire(asked).unwrap().body
 }
 
@@ -106,7 +119,7 @@ fn to_wire_describes_tools_in_each_dialect() {
 
 #[test]
 fn heard_appends_tool_calls_as_lines() {
-    let heard = |dialect: Dialect, body: Value| dialect.heard(&body).unwrap().text;
+    let heard = |dialect: ServiceDialect, body: Value| dialect.read_reply(&body).unwrap().text;
     let calls = json!([
         { "id": "1", "type": "function", "function": { "name": "step", "arguments": "{\"way\":\n 2}" } },
         { "id": "2", "type": "function", "function": { "name": "observe", "arguments": "not\nJSON" } },
@@ -114,18 +127,18 @@ fn heard_appends_tool_calls_as_lines() {
     ]);
     let message = json!({ "role": "assistant", "content": null, "tool_calls": calls });
     let body = json!({ "choices": [{ "message": message, "finish_reason": "tool_calls" }] });
-    assert_eq!(heard(Dialect::OpenAi, body), "step {\"way\":2}\nobserve not JSON");
+    assert_eq!(heard(ServiceDialect::OpenAi, body), "step {\"way\":2}\nobserve not JSON");
     let body = json!({ "content": [
         { "type": "text", "text": "I turn left." },
         { "type": "tool_use", "id": "1", "name": "step", "input": { "way": 2 } },
     ], "stop_reason": "tool_use" });
-    assert_eq!(heard(Dialect::Anthropic, body), "I turn left.\nstep {\"way\":2}");
+    assert_eq!(heard(ServiceDialect::Anthropic, body), "I turn left.\nstep {\"way\":2}");
     let parts = json!([{ "functionCall": { "name": "stop", "args": { "why": "there" } } }]);
     let body = json!({ "candidates": [{ "content": { "parts": parts }, "finishReason": "STOP" }] });
-    assert_eq!(heard(Dialect::Gemini, body), "stop {\"why\":\"there\"}");
+    assert_eq!(heard(ServiceDialect::Gemini, body), "stop {\"why\":\"there\"}");
     let calls = json!([{ "function": { "name": "step", "arguments": { "way": 1 } } }]);
     let message = json!({ "role": "assistant", "content": "<think>hm</think>", "tool_calls": calls });
-    assert_eq!(heard(Dialect::Ollama, json!({ "message": message })), "step {\"way\":1}");
+    assert_eq!(heard(ServiceDialect::Ollama, json!({ "message": message })), "step {\"way\":1}");
 }
 
 #[test]
@@ -153,11 +166,11 @@ fn openai_takes_pictures_as_data_urls() {
 #[test]
 fn fields_are_named_left_out_and_added_as_a_provider_wants() {
     let own = "[providers.openai]\nomit = [\"temperature\"]\nextra = { reasoning_effort = \"low\" }";
-    let body = wire(&provider("openai", own), &[line(Role::User, "Hi.")]).unwrap().body;
+    let body = wire(&provider("openai", own), &[line(MessageRole::User, "Hi.")]).unwrap().body;
     assert_eq!(body["max_completion_tokens"], 30);
     assert_eq!(body["reasoning_effort"], "low");
     assert!(body.get("max_tokens").is_none() && body.get("temperature").is_none());
-    let body = wire(&provider("mistral", ""), &[line(Role::User, "Hi.")]).unwrap().body;
+    let body = wire(&provider("mistral", ""), &[line(MessageRole::User, "Hi.")]).unwrap().body;
     assert_eq!(body["random_seed"], 0x7fff_ffff);
     assert!(body.get("seed").is_none());
 }
@@ -205,7 +218,7 @@ fn gemini_puts_the_model_only_into_its_path() {
 #[test]
 fn gemini_merges_a_users_tables_with_its_own() {
     let own = "[providers.gemini]\nextra = { generationConfig = { thinkingConfig = { thinkingBudget = 0 } } }";
-    let body = wire(&provider("gemini", own), &[line(Role::User, "Hi.")]).unwrap().body;
+    let body = wire(&provider("gemini", own), &[line(MessageRole::User, "Hi.")]).unwrap().body;
     assert_eq!(body["generationConfig"]["thinkingConfig"]["thinkingBudget"], 0);
     assert_eq!(body["generationConfig"]["maxOutputTokens"], 30);
 }
@@ -238,7 +251,7 @@ fn ollama_does_not_think_unless_the_settings_ask_for_it() {
 #[test]
 fn completions_get_one_prompt() {
     let completions = provider("completions", "");
-    let lone = wire(&completions, &[line(Role::User, "Write a haiku.")]).unwrap();
+    let lone = wire(&completions, &[line(MessageRole::User, "Write a haiku.")]).unwrap();
     assert_eq!(lone.path, "/completions");
     assert_eq!(lone.body["prompt"], "Write a haiku.");
     let lines = &conversation()[..3];
@@ -248,48 +261,49 @@ fn completions_get_one_prompt() {
     assert!(wire(&completions, &conversation()).unwrap_err().contains("no pictures"));
 }
 
-fn heard(dialect: Dialect, body: &Value) -> Heard {
-    dialect.heard(body).unwrap()
+fn heard(dialect: ServiceDialect, body: &Value) -> DialectReply {
+    dialect.read_reply(body).unwrap()
 }
 
 #[test]
 fn every_dialects_reply_is_understood() {
     let replies = [
         (
-            Dialect::OpenAi,
+            ServiceDialect::OpenAi,
             json!({ "choices": [{ "message": { "role": "assistant", "content": "<think>sofa?</think>\nA sofa.",
                 "reasoning_content": "hm" }, "finish_reason": "stop" }],
                 "usage": { "prompt_tokens": 7, "completion_tokens": 3 } }),
         ),
         (
-            Dialect::OpenAi,
+            ServiceDialect::OpenAi,
             json!({ "choices": [{ "message": { "content": [{ "type": "thinking", "thinking": [] },
                 { "type": "text", "text": "A sofa." }] }, "finish_reason": "stop" }],
                 "usage": { "prompt_tokens": 7, "completion_tokens": 3 } }),
         ),
         (
-            Dialect::Completions,
+            ServiceDialect::Completions,
             json!({ "choices": [{ "text": " A sofa.\n", "finish_reason": "stop" }],
                 "usage": { "prompt_tokens": 7, "completion_tokens": 3 } }),
         ),
         (
-            Dialect::Anthropic,
+            ServiceDialect::Anthropic,
             json!({ "content": [{ "type": "thinking", "thinking": "hm" }, { "type": "text", "text": "A sofa." }],
                 "stop_reason": "end_turn", "usage": { "input_tokens": 7, "output_tokens": 3 } }),
         ),
         (
-            Dialect::Gemini,
+            ServiceDialect::Gemini,
             json!({ "candidates": [{ "content": { "parts": [{ "text": "hm", "thought": true }, { "text": "A sofa." }] },
                 "finishReason": "STOP" }],
                 "usageMetadata": { "promptTokenCount": 7, "candidatesTokenCount": 2, "thoughtsTokenCount": 1 } }),
         ),
         (
-            Dialect::Ollama,
+            ServiceDialect::Ollama,
             json!({ "message": { "role": "assistant", "content": "A sofa.", "thinking": "hm" }, "done_reason": "stop",
                 "prompt_eval_count": 7, "eval_count": 3 }),
         ),
     ];
-    let expected = Heard { text: "A sofa.".to_owned(), end: End::Stop, tokens_in: Some(7), tokens_out: Some(3) };
+    let expected =
+        DialectReply { text: "A sofa.".to_owned(), end: ReplyEnd::Stop, tokens_in: Some(7), tokens_out: Some(3) };
     for (dialect, body) in replies {
         assert_eq!(heard(dialect, &body), expected, "{dialect:?}");
     }
@@ -299,32 +313,38 @@ fn every_dialects_reply_is_understood() {
 fn every_way_to_end_is_understood() {
     let chat = |message: Value, reason: &str| json!({ "choices": [{ "message": message, "finish_reason": reason }] });
     let said = json!({ "content": "A" });
-    assert_eq!(heard(Dialect::OpenAi, &chat(said.clone(), "length")).end, End::Length);
-    assert!(matches!(heard(Dialect::OpenAi, &chat(said, "content_filter")).end, End::Filtered(_)));
+    assert_eq!(heard(ServiceDialect::OpenAi, &chat(said.clone(), "length")).end, ReplyEnd::Length);
+    assert!(matches!(heard(ServiceDialect::OpenAi, &chat(said, "content_filter")).end, ReplyEnd::Filtered(_)));
     let refusal = json!({ "content": null, "refusal": "I won't." });
-    assert_eq!(heard(Dialect::OpenAi, &chat(refusal, "stop")).end, End::Refused("I won't.".to_owned()));
+    assert_eq!(heard(ServiceDialect::OpenAi, &chat(refusal, "stop")).end, ReplyEnd::Refused("I won't.".to_owned()));
     let message = |reason: &str| json!({ "content": [], "stop_reason": reason });
-    assert_eq!(heard(Dialect::Anthropic, &message("max_tokens")).end, End::Length);
-    assert!(matches!(heard(Dialect::Anthropic, &message("refusal")).end, End::Refused(_)));
+    assert_eq!(heard(ServiceDialect::Anthropic, &message("max_tokens")).end, ReplyEnd::Length);
+    assert!(matches!(heard(ServiceDialect::Anthropic, &message("refusal")).end, ReplyEnd::Refused(_)));
     let candidate = |reason: &str| json!({ "candidates": [{ "finishReason": reason }] });
-    assert_eq!(heard(Dialect::Gemini, &candidate("MAX_TOKENS")).end, End::Length);
-    assert_eq!(heard(Dialect::Gemini, &candidate("SAFETY")).end, End::Filtered("SAFETY".to_owned()));
+    assert_eq!(heard(ServiceDialect::Gemini, &candidate("MAX_TOKENS")).end, ReplyEnd::Length);
+    assert_eq!(heard(ServiceDialect::Gemini, &candidate("SAFETY")).end, ReplyEnd::Filtered("SAFETY".to_owned()));
     let blocked = json!({ "promptFeedback": { "blockReason": "OTHER" } });
-    assert!(matches!(heard(Dialect::Gemini, &blocked).end, End::Filtered(_)));
+    assert!(matches!(heard(ServiceDialect::Gemini, &blocked).end, ReplyEnd::Filtered(_)));
     let done = json!({ "message": { "content": "A" }, "done_reason": "length" });
-    assert_eq!(heard(Dialect::Ollama, &done).end, End::Length);
+    assert_eq!(heard(ServiceDialect::Ollama, &done).end, ReplyEnd::Length);
 }
 
 #[test]
 fn heard_names_the_field_that_a_reply_lacks() {
-    for dialect in [Dialect::OpenAi, Dialect::Completions, Dialect::Anthropic, Dialect::Gemini, Dialect::Ollama] {
+    for dialect in [
+        ServiceDialect::OpenAi,
+        ServiceDialect::Completions,
+        ServiceDialect::Anthropic,
+        ServiceDialect::Gemini,
+        ServiceDialect::Ollama,
+    ] {
         for body in [
             json!({}),
             json!([]),
             json!("x"),
             json!({ "choices": [], "candidates": [], "content": 3, "message": null }),
         ] {
-            assert!(dialect.heard(&body).is_err(), "{dialect:?} {body}");
+            assert!(dialect.read_reply(&body).is_err(), "{dialect:?} {body}");
         }
     }
 }
@@ -332,10 +352,10 @@ fn heard_names_the_field_that_a_reply_lacks() {
 #[test]
 fn models_are_listed() {
     let openai = json!({ "data": [{ "id": "a" }, { "x": 1 }, { "id": "b" }] });
-    assert_eq!(Dialect::OpenAi.models(&openai), Some(vec!["a", "b"]));
+    assert_eq!(ServiceDialect::OpenAi.listed_models(&openai), Some(vec!["a", "b"]));
     let gemini = json!({ "models": [{ "name": "models/gemini-2.5-flash" }] });
-    assert_eq!(Dialect::Gemini.models(&gemini), Some(vec!["gemini-2.5-flash"]));
-    assert_eq!(Dialect::Ollama.models(&json!({})), None);
+    assert_eq!(ServiceDialect::Gemini.listed_models(&gemini), Some(vec!["gemini-2.5-flash"]));
+    assert_eq!(ServiceDialect::Ollama.listed_models(&json!({})), None);
 }
 
 /// If its provider fails, OpenRouter sends the text until then, with the error in the choice.
@@ -343,16 +363,16 @@ fn models_are_listed() {
 fn a_choice_that_broke_is_no_answer() {
     let said = json!({ "content": "A so" });
     let choices = [
-        (Dialect::OpenAi, json!({ "message": said, "finish_reason": "error", "error": { "code": 502 } })),
-        (Dialect::OpenAi, json!({ "message": said, "error": { "message": "died" } })),
-        (Dialect::OpenAi, json!({ "message": said, "finish_reason": "error" })),
-        (Dialect::Completions, json!({ "text": "A so", "finish_reason": "error" })),
+        (ServiceDialect::OpenAi, json!({ "message": said, "finish_reason": "error", "error": { "code": 502 } })),
+        (ServiceDialect::OpenAi, json!({ "message": said, "error": { "message": "died" } })),
+        (ServiceDialect::OpenAi, json!({ "message": said, "finish_reason": "error" })),
+        (ServiceDialect::Completions, json!({ "text": "A so", "finish_reason": "error" })),
     ];
     for (dialect, choice) in choices {
-        assert!(dialect.heard(&json!({ "choices": [choice] })).is_err(), "{choice}");
+        assert!(dialect.read_reply(&json!({ "choices": [choice] })).is_err(), "{choice}");
     }
     let whole = json!({ "message": said, "finish_reason": "stop", "error": null });
-    assert_eq!(heard(Dialect::OpenAi, &json!({ "choices": [whole] })).text, "A so");
+    assert_eq!(heard(ServiceDialect::OpenAi, &json!({ "choices": [whole] })).text, "A so");
 }
 
 /// xAI counts thinking in the total alone.
@@ -360,7 +380,7 @@ fn a_choice_that_broke_is_no_answer() {
 fn thinking_that_only_the_total_counts_is_counted() {
     let tokens_out = |usage: Value| {
         let body = json!({ "choices": [{ "message": { "content": "A" } }], "usage": usage });
-        heard(Dialect::OpenAi, &body).tokens_out
+        heard(ServiceDialect::OpenAi, &body).tokens_out
     };
     assert_eq!(tokens_out(json!({ "prompt_tokens": 12, "completion_tokens": 1, "total_tokens": 399 })), Some(387));
     assert_eq!(tokens_out(json!({ "prompt_tokens": 12, "completion_tokens": 3, "total_tokens": 15 })), Some(3));
@@ -380,8 +400,8 @@ fn thinking_is_removed_where_it_comes_first() {
 
 #[test]
 fn several_pictures_of_a_message_are_sent_in_their_order() {
-    let picture = |data: &str| Arc::new(Picture { base64: data.to_owned(), sha256: data.to_owned() });
-    let lines = [Line { pictures: vec![picture("QQ"), picture("Qg")], ..line(Role::User, "Write.") }];
+    let picture = |data: &str| Arc::new(EncodedPicture { base64: data.to_owned(), sha256: data.to_owned() });
+    let lines = [RemoteMessage { pictures: vec![picture("QQ"), picture("Qg")], ..line(MessageRole::User, "Write.") }];
     for name in ["openai", "anthropic", "gemini", "ollama"] {
         let body = wire(&provider(name, ""), &lines).unwrap().body.to_string();
         let places = ["QQ", "Qg"].map(|data| body.find(&format!("{data}\"")).unwrap());

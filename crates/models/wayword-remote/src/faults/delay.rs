@@ -1,12 +1,12 @@
 //! Reads from a response how long the service asks the program to wait. Services use several headers and forms of time
 //! for this.
 
-use super::{said::Said, times};
+use super::{said::ServiceErrorBody, times};
 use std::time::{Duration, SystemTime};
 use ureq::http::HeaderMap;
 
 /// Pairs of headers: how much of a limit is left, and when the limit is reset.
-const LIMITS: [(&str, &str); 8] = [
+const LIMIT_HEADERS: [(&str, &str); 8] = [
     ("x-ratelimit-remaining-requests", "x-ratelimit-reset-requests"),
     ("x-ratelimit-remaining-tokens", "x-ratelimit-reset-tokens"),
     ("anthropic-ratelimit-requests-remaining", "anthropic-ratelimit-requests-reset"),
@@ -19,25 +19,25 @@ const LIMITS: [(&str, &str); 8] = [
 
 /// The wait that a response asks for: `retry-after-ms`, then `retry-after`, then the body's own, then the reset of a
 /// limit.
-pub(super) fn asked(headers: &HeaderMap, said: &Said, now: SystemTime) -> Option<Duration> {
+pub(super) fn requested_wait(headers: &HeaderMap, said: &ServiceErrorBody, now: SystemTime) -> Option<Duration> {
     let header = |name: &str| headers.get(name).and_then(|value| value.to_str().ok());
     let ms = || header("retry-after-ms").and_then(times::bare_seconds).map(|ms| ms / 1000);
     let plain = || header("retry-after").and_then(|text| retry_after(text, now));
-    ms().or_else(plain).or(said.retry_delay).or_else(|| resets(header, now))
+    ms().or_else(plain).or(said.retry_delay).or_else(|| limit_reset_wait(header, now))
 }
 
 fn retry_after(text: &str, now: SystemTime) -> Option<Duration> {
     times::until_unix(text, now)
         .or_else(|| times::bare_seconds(text))
-        .or_else(|| times::duration(text))
+        .or_else(|| times::parse_duration(text))
         .or_else(|| times::until_http_date(text, now))
         .or_else(|| times::until_rfc_3339(text, now))
 }
 
 /// The latest reset of the limits that are used up. If none is, the request was too large for the rest of a limit, so
 /// the earliest reset counts.
-fn resets<'a>(header: impl Fn(&str) -> Option<&'a str>, now: SystemTime) -> Option<Duration> {
-    let resets = LIMITS.iter().filter_map(|(remaining, reset)| {
+fn limit_reset_wait<'a>(header: impl Fn(&str) -> Option<&'a str>, now: SystemTime) -> Option<Duration> {
+    let resets = LIMIT_HEADERS.iter().filter_map(|(remaining, reset)| {
         let left = header(remaining).and_then(|text| text.trim().parse::<f64>().ok());
         Some((left, retry_after(header(reset)?, now)?))
     });
@@ -60,7 +60,8 @@ mod tests {
     fn wait_s(pairs: &[(&'static str, &str)], body: &str) -> Option<f64> {
         let headers =
             pairs.iter().map(|(name, value)| (HeaderName::from_static(name), HeaderValue::from_str(value).unwrap()));
-        asked(&headers.collect(), &Said::read(body.as_bytes()), now()).map(|wait| wait.as_secs_f64())
+        requested_wait(&headers.collect(), &ServiceErrorBody::from_body(body.as_bytes()), now())
+            .map(|wait| wait.as_secs_f64())
     }
 
     #[test]
@@ -108,7 +109,7 @@ mod tests {
     proptest! {
         #[test]
         fn asked_reads_any_header_without_panic(value in "[ -~]{0,70}", which in 0_usize..8) {
-            let (remaining, reset) = LIMITS[which];
+            let (remaining, reset) = LIMIT_HEADERS[which];
             let _ = wait_s(&[("retry-after", &value), ("retry-after-ms", &value), (remaining, &value), (reset, &value)], &value);
         }
     }

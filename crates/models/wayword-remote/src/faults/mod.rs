@@ -1,15 +1,15 @@
 //! Classifies a fault of a service into one of three reactions: try again, give up this call, or stop the run.
 //!
 //! The status alone is not enough. A 429, for example, may mean "slow down" (try again) or "your account is empty" (stop),
-//! and a 200 may carry an error in its body. So the body's codes and words are read first ([`Said`]).
+//! and a 200 may carry an error in its body. So the body's codes and words are read first ([`ServiceErrorBody`]).
 
 mod delay;
 mod said;
 mod times;
 
-use crate::{secret::Secret, transport::LARGEST_BODY};
-use said::Said;
-pub(crate) use said::short;
+use crate::{secret::ServiceSecret, transport::LARGEST_BODY};
+use said::ServiceErrorBody;
+pub(crate) use said::one_line;
 use std::{
     io::ErrorKind,
     time::{Duration, SystemTime},
@@ -21,9 +21,9 @@ const LONGEST_WAIT: Duration = Duration::from_secs(600);
 
 /// The reaction to a request without an answer.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Fault {
+pub(crate) enum RemoteFault {
     /// Another attempt makes sense.
-    Retry(Retry),
+    Retry(RetryFault),
     /// This call fails. Other calls may succeed.
     Final {
         /// The cause, for people.
@@ -42,20 +42,20 @@ pub(crate) enum Fault {
 
 /// An attempt that may be repeated.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Retry {
+pub(crate) struct RetryFault {
     /// The cause, for people.
     pub(crate) reason: String,
     /// How long the service asks the program to wait.
     pub(crate) after: Option<Duration>,
     /// How loaded the service is, as far as the fault shows it.
-    pub(crate) load: Load,
+    pub(crate) load: ServiceLoad,
     /// Whether the request may cost money nevertheless.
     pub(crate) maybe_paid: bool,
 }
 
 /// How loaded a service is, as far as a fault shows it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Load {
+pub(crate) enum ServiceLoad {
     /// Unknown: the fault happens at any load.
     Unknown,
     /// The service did not answer in time.
@@ -66,71 +66,77 @@ pub(crate) enum Load {
 
 /// The provider, as reasons and hints need it.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Who<'a> {
+pub(crate) struct FaultContext<'a> {
     pub(crate) provider: &'a str,
     pub(crate) key_env: Option<&'a str>,
-    pub(crate) secret: Option<&'a Secret>,
+    pub(crate) secret: Option<&'a ServiceSecret>,
 }
 
-impl Fault {
+impl RemoteFault {
     /// A fault after which another attempt may succeed.
-    pub(crate) fn again(reason: impl Into<String>, maybe_paid: bool) -> Self {
-        Self::Retry(Retry { reason: reason.into(), after: None, load: Load::Unknown, maybe_paid })
+    pub(crate) fn retry_without_wait(reason: impl Into<String>, maybe_paid: bool) -> Self {
+        Self::Retry(RetryFault { reason: reason.into(), after: None, load: ServiceLoad::Unknown, maybe_paid })
     }
 
     /// The cause, for people.
     pub(crate) fn reason(&self) -> &str {
         match self {
-            Self::Retry(Retry { reason, .. }) | Self::Final { reason, .. } | Self::Stop { reason, .. } => reason,
+            Self::Retry(RetryFault { reason, .. }) | Self::Final { reason, .. } | Self::Stop { reason, .. } => reason,
         }
     }
 }
 
 /// Whether a JSON body that is not an answer reports an error.
 pub(crate) fn error_inside(body: &serde_json::Value) -> bool {
-    Said::of_json(body).is_error()
+    ServiceErrorBody::of_json(body).is_error()
 }
 
 /// The fault of a response that is not an answer, by its status or its body. Dates in headers are compared with `now`.
-pub(crate) fn of_response(status: u16, headers: &HeaderMap, body: &[u8], now: SystemTime, who: Who<'_>) -> Fault {
-    let said = Said::read(body);
+pub(crate) fn of_response(
+    status: u16,
+    headers: &HeaderMap,
+    body: &[u8],
+    now: SystemTime,
+    who: FaultContext<'_>,
+) -> RemoteFault {
+    let said = ServiceErrorBody::from_body(body);
     // Some services send an error with status 200, and the real status in the body.
     let status = if (200..300).contains(&status) { said.status.unwrap_or(status) } else { status };
-    let message = who.told(&said.message);
+    let message = who.safe_text(&said.message);
     let reason = match message.as_str() {
         "" => format!("status {status}"),
         message => format!("status {status}: {message}"),
     };
-    if let Some(hint) = stops(status, &said, who) {
-        return Fault::Stop { reason: format!("{} says {reason}", who.provider), hint };
+    if let Some(hint) = stop_hint(status, &said, who) {
+        return RemoteFault::Stop { reason: format!("{} says {reason}", who.provider), hint };
     }
     match status {
-        429 | 529 => overloaded(reason, delay::asked(headers, &said, now), who),
-        503 => match delay::asked(headers, &said, now) {
-            Some(after) => overloaded(reason, Some(after), who),
-            None => Fault::again(reason, false),
+        429 | 529 => overload_fault(reason, delay::requested_wait(headers, &said, now), who),
+        503 => match delay::requested_wait(headers, &said, now) {
+            Some(after) => overload_fault(reason, Some(after), who),
+            None => RemoteFault::retry_without_wait(reason, false),
         },
-        408 | 409 | 425 | 500..=599 => Fault::again(reason, false),
+        408 | 409 | 425 | 500..=599 => RemoteFault::retry_without_wait(reason, false),
         // An error with a success status, and no status in the body: the service may have worked on the request.
-        200..=299 if said.overloaded() => overloaded(reason, None, who),
-        200..=299 => Fault::again(reason, true),
-        400 | 422 => Fault::Final { reason: reason + unsupported(&message), maybe_paid: false },
-        _ => Fault::Final { reason, maybe_paid: false },
+        200..=299 if said.is_overloaded() => overload_fault(reason, None, who),
+        200..=299 => RemoteFault::retry_without_wait(reason, true),
+        400 | 422 => RemoteFault::Final { reason: reason + unsupported_field_hint(&message), maybe_paid: false },
+        _ => RemoteFault::Final { reason, maybe_paid: false },
     }
 }
 
-fn overloaded(reason: String, after: Option<Duration>, who: Who<'_>) -> Fault {
+fn overload_fault(reason: String, after: Option<Duration>, who: FaultContext<'_>) -> RemoteFault {
     match after {
-        Some(after) if after > LONGEST_WAIT => Fault::Stop {
+        Some(after) if after > LONGEST_WAIT => RemoteFault::Stop {
             reason: format!("{} asks to wait {} minutes: {reason}", who.provider, after.as_secs() / 60),
             hint: "all answers are kept: to continue, run the same command later".to_owned(),
         },
-        after => Fault::Retry(Retry { reason, after, load: Load::Over, maybe_paid: false }),
+        after => RemoteFault::Retry(RetryFault { reason, after, load: ServiceLoad::Over, maybe_paid: false }),
     }
 }
 
 /// A hint for the user, if the service will answer no further request.
-fn stops(status: u16, said: &Said, who: Who<'_>) -> Option<String> {
+fn stop_hint(status: u16, said: &ServiceErrorBody, who: FaultContext<'_>) -> Option<String> {
     if said.out_of_money() || status == 402 {
         return Some(format!(
             "pay for more at {}, or wait until its quota is renewed; then run the same command to continue",
@@ -144,7 +150,7 @@ fn stops(status: u16, said: &Said, who: Who<'_>) -> Option<String> {
     }
     match status {
         // The moderation of one request has the same status as a key without permission.
-        403 if said.moderated() => None,
+        403 if said.is_moderated() => None,
         401 | 403 => Some(who.key_hint()),
         400 if said.bad_key() => Some(who.key_hint()),
         300..=399 => Some(format!(
@@ -156,7 +162,7 @@ fn stops(status: u16, said: &Said, who: Who<'_>) -> Option<String> {
 }
 
 /// The setting that helps if a service does not know a field of the request; empty for other messages.
-fn unsupported(message: &str) -> &'static str {
+fn unsupported_field_hint(message: &str) -> &'static str {
     let message = message.to_ascii_lowercase();
     if !["unsupported", "not support", "unrecognized", "unknown", "extra inputs"]
         .iter()
@@ -179,43 +185,58 @@ fn unsupported(message: &str) -> &'static str {
 }
 
 /// The fault of a request without a complete response. `answered` is the status, if one came.
-pub(crate) fn of_transport(error: &ureq::Error, answered: Option<u16>, url: &str, who: Who<'_>) -> Fault {
+pub(crate) fn of_transport(
+    error: &ureq::Error,
+    answered: Option<u16>,
+    url: &str,
+    who: FaultContext<'_>,
+) -> RemoteFault {
     use ureq::Error as E;
     let refused = |error: &std::io::Error| error.kind() == ErrorKind::ConnectionRefused;
-    let retry = |reason: String, load, maybe_paid| Fault::Retry(Retry { reason, after: None, load, maybe_paid });
+    let retry =
+        |reason: String, load, maybe_paid| RemoteFault::Retry(RetryFault { reason, after: None, load, maybe_paid });
     match error {
-        E::Io(error) if refused(error) => retry(format!("nothing answers at {url}"), Load::Unknown, false),
-        E::HostNotFound => retry(format!("the host of {url} is not found"), Load::Unknown, false),
+        E::Io(error) if refused(error) => retry(format!("nothing answers at {url}"), ServiceLoad::Unknown, false),
+        E::HostNotFound => retry(format!("the host of {url} is not found"), ServiceLoad::Unknown, false),
         E::Timeout(Timeout::Connect | Timeout::Resolve) => {
-            retry(format!("no connection to {url} within 10 seconds"), Load::Slow, false)
+            retry(format!("no connection to {url} within 10 seconds"), ServiceLoad::Slow, false)
         }
         E::Timeout(_) => {
-            retry("no complete answer in time; give it more time with --timeout-s".to_owned(), Load::Slow, true)
+            retry("no complete answer in time; give it more time with --timeout-s".to_owned(), ServiceLoad::Slow, true)
         }
-        E::BodyExceedsLimit(_) => {
-            Fault::Final { reason: format!("the answer is longer than {} MiB", LARGEST_BODY >> 20), maybe_paid: true }
-        }
+        E::BodyExceedsLimit(_) => RemoteFault::Final {
+            reason: format!("the answer is longer than {} MiB", LARGEST_BODY >> 20),
+            maybe_paid: true,
+        },
         E::Io(_) | E::Protocol(_) | E::ConnectionFailed | E::BodyStalled => {
             let where_ = if answered.is_some() { "in mid-answer" } else { "before an answer" };
-            retry(format!("the connection broke {where_}: {}", who.told(&error.to_string())), Load::Unknown, true)
+            retry(
+                format!("the connection broke {where_}: {}", who.safe_text(&error.to_string())),
+                ServiceLoad::Unknown,
+                true,
+            )
         }
-        E::LargeResponseHeader(..) => retry("the answer's headers are too large".to_owned(), Load::Unknown, true),
-        E::Rustls(_) | E::Tls(_) | E::Pem(_) | E::TlsRequired | E::ConnectProxyFailed(_) | E::InvalidProxyUrl => {
-            retry(format!("no secure connection to {url}: {}", who.told(&error.to_string())), Load::Unknown, false)
+        E::LargeResponseHeader(..) => {
+            retry("the answer's headers are too large".to_owned(), ServiceLoad::Unknown, true)
         }
+        E::Rustls(_) | E::Tls(_) | E::Pem(_) | E::TlsRequired | E::ConnectProxyFailed(_) | E::InvalidProxyUrl => retry(
+            format!("no secure connection to {url}: {}", who.safe_text(&error.to_string())),
+            ServiceLoad::Unknown,
+            false,
+        ),
         // All other errors: the request could not be made. The error's text is left out, because it could contain the
         // request.
-        _ => Fault::Final { reason: "the request could not be made".to_owned(), maybe_paid: false },
+        _ => RemoteFault::Final { reason: "the request could not be made".to_owned(), maybe_paid: false },
     }
 }
 
-impl Who<'_> {
+impl FaultContext<'_> {
     /// A service's message, short and without the key. The key is removed before the text is cut, because the cut could
     /// leave a part of the key.
-    pub(crate) fn told(&self, words: &str) -> String {
+    pub(crate) fn safe_text(&self, words: &str) -> String {
         match self.secret {
-            Some(secret) => short(&secret.scrub(words.to_owned())),
-            None => short(words),
+            Some(secret) => one_line(&secret.scrub_key(words.to_owned())),
+            None => one_line(words),
         }
     }
 

@@ -11,7 +11,7 @@ const LONGEST_MESSAGE: usize = 300;
 
 /// The content of an error's body.
 #[derive(Debug, Default)]
-pub(super) struct Said {
+pub(super) struct ServiceErrorBody {
     /// The message as the service wrote it: of any length, and possibly with the key in it.
     pub(super) message: String,
     /// Every code, type, status and quota name in the body, in lower case.
@@ -22,9 +22,9 @@ pub(super) struct Said {
     pub(super) retry_delay: Option<Duration>,
 }
 
-impl Said {
+impl ServiceErrorBody {
     /// Reads an error's body.
-    pub(super) fn read(body: &[u8]) -> Self {
+    pub(super) fn from_body(body: &[u8]) -> Self {
         match serde_json::from_slice::<Value>(body) {
             Ok(value) => Self::of_json(&value),
             Err(_) => Self { message: String::from_utf8_lossy(body).into_owned(), ..Self::default() },
@@ -40,7 +40,7 @@ impl Said {
         let error = value.get("error").filter(|error| !error.is_null()).or(choice).unwrap_or(value);
         let text = |value: &Value, field: &str| value.get(field).and_then(Value::as_str).map(str::to_owned);
         let message = error.as_str().map(str::to_owned).or_else(|| text(error, "message"));
-        let message = message.or_else(|| text(value, "message")).or_else(|| value.get("detail").map(plain));
+        let message = message.or_else(|| text(value, "message")).or_else(|| value.get("detail").map(plain_text));
         let mut said = Self { message: message.unwrap_or_default(), ..Self::default() };
         for field in ["code", "type", "status"] {
             said.marks.extend(text(error, field).map(|mark| mark.to_ascii_lowercase()));
@@ -48,14 +48,14 @@ impl Said {
         let code = error.get("code").and_then(|code| code.as_u64().or_else(|| code.as_str()?.parse().ok()));
         said.status = code.and_then(|code| u16::try_from(code).ok()).filter(|code| (300..600).contains(code));
         let details = error.get("details").and_then(Value::as_array);
-        details.into_iter().flatten().take(16).for_each(|detail| said.detail(detail));
+        details.into_iter().flatten().take(16).for_each(|detail| said.add_detail(detail));
         said
     }
 
-    fn detail(&mut self, detail: &Value) {
+    fn add_detail(&mut self, detail: &Value) {
         self.marks.extend(detail.get("reason").and_then(Value::as_str).map(str::to_ascii_lowercase));
         let delay = detail.get("retryDelay").and_then(Value::as_str);
-        self.retry_delay = self.retry_delay.or_else(|| super::times::duration(delay?));
+        self.retry_delay = self.retry_delay.or_else(|| super::times::parse_duration(delay?));
         let violations = detail.get("violations").and_then(Value::as_array);
         let quotas =
             violations.into_iter().flatten().take(16).filter_map(|violation| violation.get("quotaId")?.as_str());
@@ -69,29 +69,30 @@ impl Said {
 
     /// Whether the account is empty or its limit is reached, so that waiting does not help.
     pub(super) fn out_of_money(&self) -> bool {
-        self.marked(&["insufficient_quota", "billing_hard_limit_reached", "billing_not_active", "billing_error"])
-            || self.mentions(&["credit balance is too low", "insufficient balance", "insufficient credits"])
-            || self.mentions(&["used all available credits", "billing hard limit"])
+        self.has_mark(&["insufficient_quota", "billing_hard_limit_reached", "billing_not_active", "billing_error"])
+            || self.mentions_any(&["credit balance is too low", "insufficient balance", "insufficient credits"])
+            || self.mentions_any(&["used all available credits", "billing hard limit"])
     }
 
     /// Whether a quota per day is used up.
     pub(super) fn day_is_over(&self) -> bool {
-        self.marks.iter().any(|mark| mark.contains("perday")) || self.mentions(&["free-models-per-day"])
+        self.marks.iter().any(|mark| mark.contains("perday")) || self.mentions_any(&["free-models-per-day"])
     }
 
     /// Whether the key is invalid, although the status is not 401.
     pub(super) fn bad_key(&self) -> bool {
-        self.marked(&["api_key_invalid", "invalid_api_key"]) || self.mentions(&["api key not valid", "api key expired"])
+        self.has_mark(&["api_key_invalid", "invalid_api_key"])
+            || self.mentions_any(&["api key not valid", "api key expired"])
     }
 
     /// Whether moderation refused this one request.
-    pub(super) fn moderated(&self) -> bool {
-        self.mentions(&["moderation", "flagged"])
+    pub(super) fn is_moderated(&self) -> bool {
+        self.mentions_any(&["moderation", "flagged"])
     }
 
     /// Whether the service is overloaded.
-    pub(super) fn overloaded(&self) -> bool {
-        self.marked(&[
+    pub(super) fn is_overloaded(&self) -> bool {
+        self.has_mark(&[
             "overloaded_error",
             "rate_limit_error",
             "rate_limit_exceeded",
@@ -100,22 +101,22 @@ impl Said {
         ])
     }
 
-    fn marked(&self, marks: &[&str]) -> bool {
+    fn has_mark(&self, marks: &[&str]) -> bool {
         self.marks.iter().any(|mark| marks.contains(&mark.as_str()))
     }
 
-    fn mentions(&self, phrases: &[&str]) -> bool {
+    fn mentions_any(&self, phrases: &[&str]) -> bool {
         let message = self.message.to_ascii_lowercase();
         phrases.iter().any(|phrase| message.contains(phrase))
     }
 }
 
-fn plain(value: &Value) -> String {
+fn plain_text(value: &Value) -> String {
     value.as_str().map_or_else(|| value.to_string(), str::to_owned)
 }
 
 /// A text on one line, without control characters, and cut if it is long. A page of HTML is left out.
-pub(crate) fn short(text: &str) -> String {
+pub(crate) fn one_line(text: &str) -> String {
     let text = text.trim_start();
     if text.starts_with('<') {
         return "(a page of HTML)".to_owned();
@@ -147,17 +148,17 @@ mod tests {
             "too\n\tbad\u{0}",
         ];
         for form in forms {
-            assert_eq!(short(&Said::read(form.as_bytes()).message), "too bad", "{form}");
+            assert_eq!(one_line(&ServiceErrorBody::from_body(form.as_bytes()).message), "too bad", "{form}");
         }
-        assert_eq!(short("<html><body>502"), "(a page of HTML)");
+        assert_eq!(one_line("<html><body>502"), "(a page of HTML)");
     }
 
     proptest! {
         #[test]
         fn short_bounds_every_text(text in ".{0,3000}", bytes in prop::collection::vec(any::<u8>(), 0..200)) {
-            prop_assert!(short(&text).chars().count() <= LONGEST_MESSAGE + 1);
-            prop_assert!(!short(&text).chars().any(char::is_control));
-            Said::read(&bytes);
+            prop_assert!(one_line(&text).chars().count() <= LONGEST_MESSAGE + 1);
+            prop_assert!(!one_line(&text).chars().any(char::is_control));
+            ServiceErrorBody::from_body(&bytes);
         }
     }
 }

@@ -1,22 +1,22 @@
 use super::*;
 use ureq::http::HeaderValue;
 
-fn who(secret: Option<&Secret>) -> Who<'_> {
-    Who { provider: "openai", key_env: Some("OPENAI_API_KEY"), secret }
+fn who(secret: Option<&ServiceSecret>) -> FaultContext<'_> {
+    FaultContext { provider: "openai", key_env: Some("OPENAI_API_KEY"), secret }
 }
 
-fn fault(status: u16, body: &str) -> Fault {
+fn fault(status: u16, body: &str) -> RemoteFault {
     of_response(status, &HeaderMap::new(), body.as_bytes(), SystemTime::UNIX_EPOCH, who(None))
 }
 
 /// A fault's kind in the table below: again, load (over), paid, final or stop.
-fn kind(fault: &Fault) -> &'static str {
+fn kind(fault: &RemoteFault) -> &'static str {
     match fault {
-        Fault::Retry(Retry { load: Load::Over, .. }) => "load",
-        Fault::Retry(Retry { maybe_paid: true, .. }) => "paid",
-        Fault::Retry(_) => "again",
-        Fault::Final { .. } => "final",
-        Fault::Stop { .. } => "stop",
+        RemoteFault::Retry(RetryFault { load: ServiceLoad::Over, .. }) => "load",
+        RemoteFault::Retry(RetryFault { maybe_paid: true, .. }) => "paid",
+        RemoteFault::Retry(_) => "again",
+        RemoteFault::Final { .. } => "final",
+        RemoteFault::Stop { .. } => "stop",
     }
 }
 
@@ -80,14 +80,16 @@ fn of_response_stops_on_a_long_wait_and_retries_after_a_short_one() {
         let headers = HeaderMap::from_iter([(ureq::http::header::RETRY_AFTER, HeaderValue::from_static(wait))]);
         of_response(status, &headers, b"", SystemTime::UNIX_EPOCH, who(None))
     };
-    assert!(matches!(with(429, "86400"), Fault::Stop { reason, .. } if reason.contains("1440 minutes")));
-    assert!(matches!(with(429, "30"), Fault::Retry(Retry { after: Some(wait), .. }) if wait.as_secs() == 30));
+    assert!(matches!(with(429, "86400"), RemoteFault::Stop { reason, .. } if reason.contains("1440 minutes")));
+    assert!(
+        matches!(with(429, "30"), RemoteFault::Retry(RetryFault { after: Some(wait), .. }) if wait.as_secs() == 30)
+    );
     assert_eq!(kind(&with(503, "30")), "load");
 }
 
 #[test]
 fn fault_reasons_are_short_and_contain_no_key() {
-    let secret = Secret::new("sk-0123456789abcdef").unwrap();
+    let secret = ServiceSecret::new("sk-0123456789abcdef").unwrap();
     let body = format!(r#"{{"error":{{"message":"Incorrect API key sk-0123456789abcdef {}"}}}}"#, "x".repeat(5000));
     for status in [200, 400, 401, 429, 500] {
         let fault = of_response(status, &HeaderMap::new(), body.as_bytes(), SystemTime::UNIX_EPOCH, who(Some(&secret)));
@@ -114,14 +116,14 @@ fn of_transport_distinguishes_faults_before_and_after_sending() {
     assert_eq!(kind(&of(ureq::Error::HostNotFound)), "again");
     assert_eq!(kind(&of(ureq::Error::Timeout(Timeout::Connect))), "again");
     let slow = of(ureq::Error::Timeout(Timeout::Global));
-    assert!(matches!(slow, Fault::Retry(Retry { load: Load::Slow, maybe_paid: true, .. })));
+    assert!(matches!(slow, RemoteFault::Retry(RetryFault { load: ServiceLoad::Slow, maybe_paid: true, .. })));
     assert_eq!(kind(&of(ureq::Error::BodyExceedsLimit(9))), "final");
 }
 
 /// A long reason is cut. The cut must not go through the key, because a part of the key would stay.
 #[test]
 fn no_part_of_a_key_stays_where_a_reason_is_cut() {
-    let secret = Secret::new("sk-0123456789abcdef").unwrap();
+    let secret = ServiceSecret::new("sk-0123456789abcdef").unwrap();
     for before in 280..300 {
         let long = format!("{} sk-0123456789abcdef", "x".repeat(before));
         let far = format!("{}sk-0123456789abcdef", " ".repeat(3700 + before));

@@ -7,40 +7,40 @@ use jiff::{
 use std::time::{Duration, SystemTime};
 
 /// Longest text that is read as a time, bytes.
-const LONGEST: usize = 64;
+const MAX_TIME_TEXT_BYTES: usize = 64;
 
 /// Longest time, a year. Longer ones count as this.
-const MOST: Duration = Duration::from_secs(366 * 24 * 60 * 60);
+const MAX_READ_DURATION: Duration = Duration::from_secs(366 * 24 * 60 * 60);
 
 /// A length of time with units (`1s`, `6m0s`, `20ms`, `1h2m3.5s`).
-pub(super) fn duration(text: &str) -> Option<Duration> {
-    let text = short(text)?;
+pub(super) fn parse_duration(text: &str) -> Option<Duration> {
+    let text = trimmed_text(text)?;
     // The parser also reads spaces, signs and "ago", which no service sends.
     let plain = text.chars().all(|c| c.is_alphanumeric() || c == '.');
     let span = plain.then(|| SpanParser::new().parse_span(text).ok()).flatten()?;
     let length = span.to_duration(SpanRelativeTo::days_are_24_hours()).ok()?;
-    Duration::try_from(length).ok().map(|length| length.min(MOST))
+    Duration::try_from(length).ok().map(|length| length.min(MAX_READ_DURATION))
 }
 
 /// A bare number of seconds, whole or not.
 pub(super) fn bare_seconds(text: &str) -> Option<Duration> {
-    let text = short(text)?;
+    let text = trimmed_text(text)?;
     let plain = text.bytes().all(|byte| byte.is_ascii_digit() || byte == b'.');
     let s: f64 = plain.then(|| text.parse().ok()).flatten()?;
-    Some(Duration::from_secs_f64(s.min(MOST.as_secs_f64())))
+    Some(Duration::from_secs_f64(s.min(MAX_READ_DURATION.as_secs_f64())))
 }
 
 /// The time until an HTTP date (RFC 9110, section 5.6.7). The two obsolete forms are not read, because no service is
 /// known to send them; then the program chooses the wait.
 pub(super) fn until_http_date(text: &str, now: SystemTime) -> Option<Duration> {
-    let at = DateTimeParser::new().relaxed_weekday(true).parse_timestamp(short(text)?).ok()?;
-    Some(until(at.into(), now))
+    let at = DateTimeParser::new().relaxed_weekday(true).parse_timestamp(trimmed_text(text)?).ok()?;
+    Some(time_until(at.into(), now))
 }
 
 /// The time until a date of RFC 3339.
 pub(super) fn until_rfc_3339(text: &str, now: SystemTime) -> Option<Duration> {
-    let at: Timestamp = short(text)?.parse().ok()?;
-    Some(until(at.into(), now))
+    let at: Timestamp = trimmed_text(text)?.parse().ok()?;
+    Some(time_until(at.into(), now))
 }
 
 /// The time until a number of seconds, or milliseconds, since 1970.
@@ -50,16 +50,16 @@ pub(super) fn until_unix(text: &str, now: SystemTime) -> Option<Duration> {
     if !(1e9..1e11).contains(&s) {
         return None;
     }
-    Some(until(SystemTime::UNIX_EPOCH.checked_add(Duration::from_secs_f64(s))?, now))
+    Some(time_until(SystemTime::UNIX_EPOCH.checked_add(Duration::from_secs_f64(s))?, now))
 }
 
 /// The time until a moment; 0 if the moment is past.
-fn until(at: SystemTime, now: SystemTime) -> Duration {
+fn time_until(at: SystemTime, now: SystemTime) -> Duration {
     at.duration_since(now).unwrap_or_default()
 }
 
-fn short(text: &str) -> Option<&str> {
-    Some(text.trim()).filter(|text| text.len() <= LONGEST)
+fn trimmed_text(text: &str) -> Option<&str> {
+    Some(text.trim()).filter(|text| text.len() <= MAX_TIME_TEXT_BYTES)
 }
 
 #[cfg(test)]
@@ -73,14 +73,14 @@ mod tests {
 
     #[test]
     fn lengths_of_time() {
-        let s = |text| duration(text).map(|d| d.as_secs_f64());
+        let s = |text| parse_duration(text).map(|d| d.as_secs_f64());
         assert_eq!(s("1s"), Some(1.0));
         assert_eq!(s("6m0s"), Some(360.0));
         assert_eq!(s("20ms"), Some(0.02));
         assert_eq!(s("1h2m3.5s"), Some(3723.5));
         assert_eq!(s("34s"), Some(34.0));
         for text in ["", "s", "1", "1x", "-1s", "1..2s", "1 s", "9".repeat(70).as_str()] {
-            assert_eq!(duration(text), None, "{text}");
+            assert_eq!(parse_duration(text), None, "{text}");
         }
     }
 
@@ -113,8 +113,8 @@ mod tests {
         #[test]
         fn times_are_read_from_any_text_without_panic(text in ".{0,80}", s in 0_u64..4_000_000_000) {
             let now = at(s);
-            let (duration, bare) = (duration(&text), bare_seconds(&text));
-            prop_assert!(duration.or(bare).is_none_or(|d| d <= MOST));
+            let (duration, bare) = (parse_duration(&text), bare_seconds(&text));
+            prop_assert!(duration.or(bare).is_none_or(|d| d <= MAX_READ_DURATION));
             let _ = (until_http_date(&text, now), until_rfc_3339(&text, now), until_unix(&text, now));
         }
 
@@ -122,7 +122,7 @@ mod tests {
         fn times_in_the_forms_of_services_are_read(h in 0_u32..20, m in 0_u32..60, s in 0_u32..60, ms in 0_u32..1000) {
             let text = format!("{h}h{m}m{s}s{ms}ms");
             let expected = f64::from(h * 3600 + m * 60 + s) + f64::from(ms) / 1000.0;
-            prop_assert!((duration(&text).unwrap().as_secs_f64() - expected).abs() < 1e-6);
+            prop_assert!((parse_duration(&text).unwrap().as_secs_f64() - expected).abs() < 1e-6);
         }
 
         #[test]

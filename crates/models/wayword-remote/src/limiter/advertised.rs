@@ -4,14 +4,14 @@ use ureq::http::HeaderMap;
 
 /// Limits per minute.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(crate) struct Advertised {
+pub(crate) struct AdvertisedLimits {
     pub(crate) requests_per_minute: Option<f64>,
     pub(crate) tokens_per_minute: Option<f64>,
 }
 
-impl Advertised {
+impl AdvertisedLimits {
     /// Reads the limits. `requests_per_day` is set for a service that gives its requests per day.
-    pub(crate) fn read(headers: &HeaderMap, requests_per_day: bool) -> Self {
+    pub(crate) fn from_headers(headers: &HeaderMap, requests_per_day: bool) -> Self {
         let number = |name: &str| {
             let number: f64 = headers.get(name)?.to_str().ok()?.trim().parse().ok()?;
             (number.is_finite() && number >= 1.0).then_some(number)
@@ -42,9 +42,9 @@ mod tests {
         let mut headers = HeaderMap::new();
         headers.insert("x-ratelimit-limit-requests", HeaderValue::from_static("600"));
         headers.insert("anthropic-ratelimit-tokens-limit", HeaderValue::from_static("80000"));
-        let advertised = Advertised::read(&headers, false);
-        assert_eq!(advertised, Advertised { requests_per_minute: Some(600.0), tokens_per_minute: Some(80000.0) });
-        assert_eq!(Advertised::read(&headers, true).requests_per_minute, None);
+        let advertised = AdvertisedLimits::from_headers(&headers, false);
+        assert_eq!(advertised, AdvertisedLimits { requests_per_minute: Some(600.0), tokens_per_minute: Some(80000.0) });
+        assert_eq!(AdvertisedLimits::from_headers(&headers, true).requests_per_minute, None);
     }
 
     #[test]
@@ -52,7 +52,7 @@ mod tests {
         let mut headers = HeaderMap::new();
         for value in ["0", "-5", "NaN", "inf", "many", ""] {
             headers.insert("x-ratelimit-limit-requests", HeaderValue::from_static(value));
-            assert_eq!(Advertised::read(&headers, false), Advertised::default(), "{value}");
+            assert_eq!(AdvertisedLimits::from_headers(&headers, false), AdvertisedLimits::default(), "{value}");
         }
     }
 }

@@ -8,46 +8,46 @@ const HOLDS_S: f64 = 2.0;
 /// Allows a fixed amount per second, with a small burst. Its level may go below 0, so that a request larger than the
 /// bucket can be sent too. Later requests then wait until the bucket has filled again.
 #[derive(Debug, Clone)]
-pub(super) struct Bucket {
+pub(super) struct RateBucket {
     per_s: f64,
     level: f64,
     filled_at: Instant,
 }
 
-impl Bucket {
+impl RateBucket {
     /// A full bucket.
     pub(super) fn per_minute(amount: f64, now: Instant) -> Self {
         let per_s = amount / 60.0;
-        Self { per_s, level: holds(per_s), filled_at: now }
+        Self { per_s, level: bucket_capacity(per_s), filled_at: now }
     }
 
     /// Changes the rate, and keeps the level.
     pub(super) fn set_per_minute(&mut self, amount: f64, now: Instant) {
-        self.fill(now);
+        self.fill_until(now);
         self.per_s = amount / 60.0;
-        self.level = self.level.min(holds(self.per_s));
+        self.level = self.level.min(bucket_capacity(self.per_s));
     }
 
     /// How long until something of `amount` may be sent.
-    pub(super) fn wait(&mut self, amount: f64, now: Instant) -> Duration {
-        self.fill(now);
-        let lacks = amount.min(holds(self.per_s)) - self.level;
+    pub(super) fn wait_for(&mut self, amount: f64, now: Instant) -> Duration {
+        self.fill_until(now);
+        let lacks = amount.min(bucket_capacity(self.per_s)) - self.level;
         if lacks <= 1e-9 { Duration::ZERO } else { Duration::from_secs_f64((lacks / self.per_s).min(3600.0)) }
     }
 
     /// Takes an amount out, or puts one back.
-    pub(super) fn take(&mut self, amount: f64) {
-        self.level = (self.level - amount).min(holds(self.per_s));
+    pub(super) fn take_amount(&mut self, amount: f64) {
+        self.level = (self.level - amount).min(bucket_capacity(self.per_s));
     }
 
-    fn fill(&mut self, now: Instant) {
+    fn fill_until(&mut self, now: Instant) {
         let passed_s = now.saturating_duration_since(self.filled_at).as_secs_f64();
-        self.level = (self.level + passed_s * self.per_s).min(holds(self.per_s));
+        self.level = (self.level + passed_s * self.per_s).min(bucket_capacity(self.per_s));
         self.filled_at = self.filled_at.max(now);
     }
 }
 
 /// The capacity: at least one request.
-fn holds(per_s: f64) -> f64 {
+fn bucket_capacity(per_s: f64) -> f64 {
     (per_s * HOLDS_S).max(1.0)
 }

@@ -1,6 +1,6 @@
 //! Limits how many requests are sent to an endpoint, and when.
 //!
-//! [`Gate`] makes all decisions and takes the time as an argument, so that tests need no clock. This module makes threads
+//! [`RequestGate`] makes all decisions and takes the time as an argument, so that tests need no clock. This module makes threads
 //! wait for its decisions.
 
 mod advertised;
@@ -8,10 +8,10 @@ mod bucket;
 mod gate;
 mod pace;
 
-pub(crate) use advertised::Advertised;
-pub(crate) use gate::{Outcome, Rules, Turn};
+pub(crate) use advertised::AdvertisedLimits;
+pub(crate) use gate::{GateTurn, LimiterRules, RequestOutcome};
 
-use gate::{Gate, Ticket};
+use gate::{GateTicket, RequestGate};
 use std::{
     sync::{Condvar, Mutex, MutexGuard, PoisonError},
     time::{Duration, Instant},
@@ -21,8 +21,8 @@ use std::{
 const LOOK_UP: Duration = Duration::from_millis(100);
 
 /// Lets threads send requests to one endpoint, one after the other.
-pub(crate) struct Limiter {
-    gate: Mutex<Gate>,
+pub(crate) struct EndpointLimiter {
+    gate: Mutex<RequestGate>,
     /// Signalled when a request has ended.
     back: Condvar,
     /// Locked by the thread that is next. The others wait for this lock, so that not all of them wake up each time.
@@ -30,47 +30,47 @@ pub(crate) struct Limiter {
 }
 
 /// Permission to have one request in flight.
-pub(crate) struct Permit<'a> {
-    limiter: &'a Limiter,
-    ticket: Ticket,
-    outcome: Option<Outcome>,
+pub(crate) struct RequestPermit<'a> {
+    limiter: &'a EndpointLimiter,
+    ticket: GateTicket,
+    outcome: Option<RequestOutcome>,
 }
 
-impl Limiter {
+impl EndpointLimiter {
     /// A limiter with these rules.
-    pub(crate) fn new(rules: Rules) -> Self {
-        Self { gate: Mutex::new(Gate::new(rules, Instant::now())), back: Condvar::new(), next: Mutex::new(()) }
+    pub(crate) fn new(rules: LimiterRules) -> Self {
+        Self { gate: Mutex::new(RequestGate::new(rules, Instant::now())), back: Condvar::new(), next: Mutex::new(()) }
     }
 
     /// Waits until a request of about `tokens` tokens may be sent; `None` if `stopped` returns true first.
-    pub(crate) fn enter(&self, tokens: u64, stopped: impl Fn() -> bool) -> Option<Permit<'_>> {
+    pub(crate) fn wait_for_permit(&self, tokens: u64, stopped: impl Fn() -> bool) -> Option<RequestPermit<'_>> {
         let _first_in_line = self.next.lock().unwrap_or_else(PoisonError::into_inner);
-        let mut gate = self.gate();
+        let mut gate = self.lock_gate();
         loop {
             if stopped() {
                 return None;
             }
             let now = Instant::now();
-            let wait = match gate.turn(now) {
-                Turn::Now => {
-                    let ticket = gate.leave(now, tokens);
-                    return Some(Permit { limiter: self, ticket, outcome: None });
+            let wait = match gate.next_turn(now) {
+                GateTurn::Now => {
+                    let ticket = gate.note_sent(now, tokens);
+                    return Some(RequestPermit { limiter: self, ticket, outcome: None });
                 }
-                Turn::In(wait) => wait.min(LOOK_UP),
-                Turn::WhenOneIsBack => LOOK_UP,
+                GateTurn::In(wait) => wait.min(LOOK_UP),
+                GateTurn::WhenOneIsBack => LOOK_UP,
             };
             gate = self.back.wait_timeout(gate, wait).unwrap_or_else(PoisonError::into_inner).0;
         }
     }
 
-    fn gate(&self) -> MutexGuard<'_, Gate> {
+    fn lock_gate(&self) -> MutexGuard<'_, RequestGate> {
         self.gate.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-impl Permit<'_> {
+impl RequestPermit<'_> {
     /// Notes how the request ended, and wakes the next thread.
-    pub(crate) fn done(mut self, outcome: Outcome) {
+    pub(crate) fn end_with(mut self, outcome: RequestOutcome) {
         self.outcome = Some(outcome);
     }
 
@@ -80,20 +80,20 @@ impl Permit<'_> {
     }
 
     /// Notes that the request is sent only now: the wait before must not count as the service's latency.
-    pub(crate) fn leaves(&mut self) {
+    pub(crate) fn note_late_start(&mut self) {
         self.ticket.left_at = Instant::now();
     }
 
     /// Takes over the limits that the service gives.
-    pub(crate) fn learn(&self, advertised: Advertised) {
-        self.limiter.gate().learn(advertised, Instant::now());
+    pub(crate) fn adopt_limits(&self, advertised: AdvertisedLimits) {
+        self.limiter.lock_gate().adopt_limits(advertised, Instant::now());
     }
 }
 
-impl Drop for Permit<'_> {
+impl Drop for RequestPermit<'_> {
     fn drop(&mut self) {
-        let outcome = self.outcome.take().unwrap_or(Outcome::Failed);
-        self.limiter.gate().back(self.ticket, Instant::now(), outcome);
+        let outcome = self.outcome.take().unwrap_or(RequestOutcome::Failed);
+        self.limiter.lock_gate().note_ended(self.ticket, Instant::now(), outcome);
         self.limiter.back.notify_one();
     }
 }

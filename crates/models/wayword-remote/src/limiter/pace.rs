@@ -12,16 +12,16 @@ use std::{
 const LOOK_BACK_S: f64 = 3.0;
 
 /// Fewest accepted requests from which a rate is measured.
-const FEWEST: usize = 16;
+const MIN_MEASURED_REQUESTS: usize = 16;
 
 /// Most accepted requests that are remembered.
-const REMEMBERED: usize = 4096;
+const MAX_REMEMBERED_REQUESTS: usize = 4096;
 
 /// Shortest time over which a rate is measured, seconds. A shorter time may show only a burst that the service accepts.
 const LONG_ENOUGH_S: f64 = 0.8;
 
 /// After a refusal, the pace is this share of the accepted rate.
-const CAUTION: f64 = 0.98;
+const CAUTION_SHARE: f64 = 0.98;
 
 /// If a refusal follows another one within this time, the pace is still far too high, seconds.
 const SOON_S: f64 = 3.0;
@@ -31,7 +31,7 @@ const SOON_S: f64 = 3.0;
 const SEARCH_PER_S: f64 = 0.03;
 
 /// After that, the pace quickly approaches this share of the refused pace.
-const NEAR: f64 = 0.98;
+const NEAR_SHARE: f64 = 0.98;
 
 /// Above that, it grows by this share per second at first, and twice as fast after each [`CALM_S`] without a refusal,
 /// so that it notices when the service allows more again.
@@ -41,25 +41,25 @@ const PROBE_PER_S: f64 = 0.001;
 const CALM_S: f64 = 10.0;
 
 /// A pace above this many times the accepted rate did not limit the requests.
-const TRIED: f64 = 2.0;
+const TRIED_RATE_FACTOR: f64 = 2.0;
 
 /// The highest pace, requests per second.
 const FASTEST_PER_S: f64 = 1e5;
 
 /// A learned pace.
 #[derive(Debug)]
-pub(super) struct Pace {
+pub(super) struct SendingPace {
     /// When the accepted requests were sent, by a clock that stops in pauses, seconds.
     let_in: VecDeque<f64>,
     active_s: f64,
     seen_at: Instant,
-    learned: Option<Learned>,
+    learned: Option<LearnedRate>,
     /// When the next request may be sent, if they are spaced out.
     next: Option<Instant>,
 }
 
 #[derive(Debug)]
-struct Learned {
+struct LearnedRate {
     per_s: f64,
     /// The pace that was refused.
     refused_per_s: f64,
@@ -69,13 +69,13 @@ struct Learned {
     confirmed: bool,
 }
 
-impl Pace {
+impl SendingPace {
     pub(super) fn new(now: Instant) -> Self {
         Self { let_in: VecDeque::new(), active_s: 0.0, seen_at: now, learned: None, next: None }
     }
 
     /// Advances the clock that stops in pauses, and increases the learned pace.
-    pub(super) fn advance(&mut self, now: Instant, paused: bool) {
+    pub(super) fn advance_clock(&mut self, now: Instant, paused: bool) {
         let passed_s = now.saturating_duration_since(self.seen_at).as_secs_f64();
         self.seen_at = self.seen_at.max(now);
         if paused {
@@ -85,19 +85,19 @@ impl Pace {
         let passed_s = passed_s.min(1.0);
         self.active_s += passed_s;
         if let Some(learned) = &mut self.learned {
-            learned.grow(passed_s, self.active_s);
+            learned.grow_rate(passed_s, self.active_s);
             learned.per_s = learned.per_s.min(FASTEST_PER_S);
         }
     }
 
     /// How long until the next request may be sent.
-    pub(super) fn wait(&self, now: Instant) -> Duration {
+    pub(super) fn wait_time(&self, now: Instant) -> Duration {
         self.next.map_or(Duration::ZERO, |next| next.saturating_duration_since(now))
     }
 
     /// Notes that a request is sent. If no pace is learned, the next one is `spacing` later. Returns the time by the
     /// clock that stops in pauses, seconds.
-    pub(super) fn leave(&mut self, now: Instant, spacing: Option<Duration>) -> f64 {
+    pub(super) fn note_sent(&mut self, now: Instant, spacing: Option<Duration>) -> f64 {
         let learned = self.learned.as_ref().map(|learned| Duration::from_secs_f64(1.0 / learned.per_s));
         self.next = learned.or(spacing).map(|interval| {
             // If a thread wakes up a little late, the pace does not drop.
@@ -110,7 +110,7 @@ impl Pace {
 
     /// Notes that the service accepted a request that was sent at `left_s`, whatever its result.
     pub(super) fn let_in(&mut self, left_s: f64) {
-        if self.let_in.len() >= REMEMBERED {
+        if self.let_in.len() >= MAX_REMEMBERED_REQUESTS {
             self.let_in.pop_front();
         }
         self.let_in.push_back(left_s);
@@ -118,12 +118,12 @@ impl Pace {
 
     /// Notes that a request was refused as too much. `first` is false if another request in flight at the same time was
     /// refused before.
-    pub(super) fn refused(&mut self, first: bool) {
+    pub(super) fn note_refusal(&mut self, first: bool) {
         let let_in_per_s = if first { self.let_in_per_s() } else { None };
         let Some(let_in_per_s) = let_in_per_s else { return };
-        let careful = let_in_per_s * CAUTION;
+        let careful = let_in_per_s * CAUTION_SHARE;
         // A pace far above the rate of requests was never tried, so it is no evidence of the limit.
-        let old = self.learned.as_ref().filter(|old| old.per_s < let_in_per_s * TRIED);
+        let old = self.learned.as_ref().filter(|old| old.per_s < let_in_per_s * TRIED_RATE_FACTOR);
         let (per_s, refused_per_s, confirmed) = match old {
             None => (careful, let_in_per_s, false),
             Some(old) => {
@@ -139,7 +139,8 @@ impl Pace {
             }
         };
         let refused_s = self.active_s;
-        self.learned = Some(Learned { per_s: per_s.clamp(0.05, FASTEST_PER_S), refused_per_s, refused_s, confirmed });
+        self.learned =
+            Some(LearnedRate { per_s: per_s.clamp(0.05, FASTEST_PER_S), refused_per_s, refused_s, confirmed });
     }
 
     /// The rate of the requests that were accepted lately, if there were enough.
@@ -149,20 +150,20 @@ impl Pace {
         let newest = *left.last()?;
         let recent = left.iter().rev().take_while(|&&at| at >= newest - LOOK_BACK_S).count();
         // For a slow service, a longer time is used, so that there are enough requests.
-        let count = recent.max(left.len().min(FEWEST));
+        let count = recent.max(left.len().min(MIN_MEASURED_REQUESTS));
         let span_s = newest - left[left.len() - count];
-        (count >= FEWEST && span_s >= LONG_ENOUGH_S).then(|| (count - 1) as f64 / span_s)
+        (count >= MIN_MEASURED_REQUESTS && span_s >= LONG_ENOUGH_S).then(|| (count - 1) as f64 / span_s)
     }
 }
 
-impl Learned {
-    fn grow(&mut self, passed_s: f64, active_s: f64) {
+impl LearnedRate {
+    fn grow_rate(&mut self, passed_s: f64, active_s: f64) {
         if !self.confirmed {
             let since_s = active_s - self.refused_s;
             self.per_s *= 1.0 + SEARCH_PER_S * (1.0 + since_s) * passed_s;
             return;
         }
-        let near = self.refused_per_s * NEAR;
+        let near = self.refused_per_s * NEAR_SHARE;
         if self.per_s < near {
             self.per_s += (near - self.per_s) * (passed_s * 0.5).min(1.0);
         }

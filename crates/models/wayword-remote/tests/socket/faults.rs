@@ -197,7 +197,7 @@ fn error_names_an_address_where_no_service_answers() {
     let server = Server::start(|_, _, _| false);
     let settings = "attempts = 1\n[providers.mine]\ndialect = \"openai\"\nbase_url = \"http://127.0.0.1:1/v1\"";
     let config = toml::from_str(settings).unwrap();
-    let services = wayword_remote::Services::new(config, run()).unwrap();
+    let services = wayword_remote::ModelServices::new(config, run()).unwrap();
     let error = asked(&services.model("mine/m").unwrap(), "Well?").unwrap_err().to_string();
     assert_eq!(error, "mine/m: nothing answers at http://127.0.0.1:1/v1 (1 attempt)");
     assert!(server.requests().is_empty());

@@ -5,8 +5,8 @@ use crate::{
     server::{Server, answer, reply},
 };
 use std::{path::Path, process::Command, thread};
-use wayword_ledger::{Ledger, Limits};
-use wayword_remote::{Config, Services};
+use wayword_ledger::{Ledger, RunLimits};
+use wayword_remote::{ModelServices, RemoteConfig};
 
 const VARIABLE: &str = "WAYWORD_PLANTED_KEY";
 const KEY: &str = "sk-planted-5f1d9e0c77aa";
@@ -45,8 +45,12 @@ fn with_a_key_errors_are_scrubbed() {
 #[ignore = "run by the test above, with a key in its environment"]
 fn with_a_key_answers_are_scrubbed() {
     let server = Server::start(|_, _, stream| reply(stream, 200, "", &answer(&format!("Your key is {KEY}."))));
-    let config = Config { base_url: Some(server.base_url()), key_env: Some(VARIABLE.to_owned()), ..Config::default() };
-    let model = Services::new(config, run()).unwrap().model("server/m").unwrap();
+    let config = RemoteConfig {
+        base_url: Some(server.base_url()),
+        key_env: Some(VARIABLE.to_owned()),
+        ..RemoteConfig::default()
+    };
+    let model = ModelServices::new(config, run()).unwrap().model("server/m").unwrap();
     assert_eq!(asked(&model, "Well?").unwrap().text, "Your key is ***.");
 }
 
@@ -60,22 +64,22 @@ fn with_a_key_texts_of_filters_and_lists_are_scrubbed() {
     });
     let settings =
         format!("base_url = \"{}\"\nkey_env = \"{VARIABLE}\"\nproviders.mine.dialect = \"gemini\"", server.base_url());
-    let services = Services::new(toml::from_str::<Config>(&settings).unwrap(), run()).unwrap();
+    let services = ModelServices::new(toml::from_str::<RemoteConfig>(&settings).unwrap(), run()).unwrap();
     let shown =
-        format!("{:?} {:?}", services.check("mine/m", true), asked(&services.model("mine/m").unwrap(), "Well?"));
+        format!("{:?} {:?}", services.check_model("mine/m", true), asked(&services.model("mine/m").unwrap(), "Well?"));
     assert!(shown.matches("***").count() == 3 && !shown.contains(KEY), "{shown}");
 }
 
 #[test]
 fn a_key_in_the_wrong_place_is_not_repeated() {
     for config in [
-        Config { key_env: Some(KEY.to_owned()), ..Config::default() },
-        Config { base_url: Some(format!("https://me:{KEY}@host/v1")), ..Config::default() },
-        Config { base_url: Some(format!("https://host/v1?key={KEY}")), ..Config::default() },
+        RemoteConfig { key_env: Some(KEY.to_owned()), ..RemoteConfig::default() },
+        RemoteConfig { base_url: Some(format!("https://me:{KEY}@host/v1")), ..RemoteConfig::default() },
+        RemoteConfig { base_url: Some(format!("https://host/v1?key={KEY}")), ..RemoteConfig::default() },
     ] {
-        let services = Services::new(config, run()).unwrap();
+        let services = ModelServices::new(config, run()).unwrap();
         let error = services.model("openai/m").unwrap_err();
-        let shown = format!("{services:?} {error} {error:?} {:?}", services.check("openai/m", true));
+        let shown = format!("{services:?} {error} {error:?} {:?}", services.check_model("openai/m", true));
         assert!(!shown.contains(KEY), "{shown}");
     }
 }
@@ -83,12 +87,12 @@ fn a_key_in_the_wrong_place_is_not_repeated() {
 #[test]
 fn a_missing_key_stops_before_anything_is_sent() {
     let server = Server::start(|_, _, stream| reply(stream, 200, "", &answer("fine")));
-    let config = Config {
+    let config = RemoteConfig {
         base_url: Some(server.base_url()),
         key_env: Some("WAYWORD_NO_SUCH_KEY".to_owned()),
-        ..Config::default()
+        ..RemoteConfig::default()
     };
-    let model = Services::new(config, run()).unwrap().model("server/m").unwrap();
+    let model = ModelServices::new(config, run()).unwrap().model("server/m").unwrap();
     let error = asked(&model, "Well?").unwrap_err();
     assert!(error.ends_run() && error.to_string().contains("export WAYWORD_NO_SUCH_KEY="), "{error}");
     assert!(server.requests().is_empty());
@@ -105,18 +109,18 @@ fn says_the_key_back(dialect: &str, header: &str, folder: &Path) {
         _ => reply(stream, 401, "", &format!(r#"{{"error":{{"message":"wrong key {KEY}"}}}}"#)),
     });
     let ledger = Ledger::open(&folder.join(format!("{dialect}.sqlite"))).unwrap();
-    let run = ledger.run("test", Limits::default()).unwrap();
+    let run = ledger.start_run("test", RunLimits::default()).unwrap();
     let settings = format!(
         "base_url = \"{}\"\nkey_env = \"{VARIABLE}\"\nproviders.mine.dialect = \"{dialect}\"",
         server.base_url()
     );
-    let services = Services::new(toml::from_str::<Config>(&settings).unwrap(), run).unwrap();
+    let services = ModelServices::new(toml::from_str::<RemoteConfig>(&settings).unwrap(), run).unwrap();
     let model = services.model("mine/m").unwrap();
     let (failed, stopped) = (asked(&model, "One?").unwrap_err(), asked(&model, "Two?").unwrap_err());
     assert!(!failed.ends_run() && stopped.ends_run(), "{dialect}: {failed:?} {stopped:?}");
     let shown = format!(
         "{failed} {failed:?} {stopped} {stopped:?} {services:?} {model:?} {:?}",
-        services.check("mine/m", true)
+        services.check_model("mine/m", true)
     );
     assert!(shown.contains("***") && !shown.contains(KEY), "{shown}");
     let requests = server.requests();

@@ -13,9 +13,9 @@ use std::{
     thread,
     time::Duration,
 };
-use wayword_core::{Finish, Image, LanguageModel, Message};
-use wayword_ledger::{Ledger, Limits};
-use wayword_remote::{Config, Level, Prices, Services};
+use wayword_core::{ChatMessage, FinishReason, Image, LanguageModel};
+use wayword_ledger::{Ledger, RunLimits};
+use wayword_remote::{CheckLevel, ModelServices, PriceTable, RemoteConfig};
 
 /// A server that answers with the question.
 fn echo() -> Server {
@@ -31,14 +31,14 @@ fn a_batch_is_answered_in_its_order_and_one_failure_is_one() {
     let server = echo();
     let texts: Vec<String> = (0..40).map(|i| if i == 17 { "bad".to_owned() } else { format!("text {i}") }).collect();
     let requests: Vec<_> = texts.iter().map(|text| ask(text)).collect();
-    let replies = model(&server, "concurrency = 4", &run()).complete(&requests);
+    let replies = model(&server, "concurrency = 4", &run()).complete_requests(&requests);
     for (text, reply) in texts.iter().zip(replies) {
         match reply {
-            Ok(reply) => assert_eq!((&reply.text, reply.finish), (text, Finish::Stop)),
+            Ok(reply) => assert_eq!((&reply.text, reply.finish), (text, FinishReason::Stop)),
             Err(error) => assert_eq!((text.as_str(), error.ends_run()), ("bad", false)),
         }
     }
-    assert!(model(&server, "", &run()).complete(&[]).is_empty());
+    assert!(model(&server, "", &run()).complete_requests(&[]).is_empty());
 }
 
 #[test]
@@ -52,7 +52,7 @@ fn a_call_is_made_once() {
     assert_eq!(server.requests().len(), 1);
     let mut anew = ask("Hello?");
     anew.replicate = 1;
-    assert!(model.complete(&[anew])[0].is_ok());
+    assert!(model.complete_requests(&[anew])[0].is_ok());
     assert_eq!(server.requests().len(), 2);
 }
 
@@ -63,8 +63,8 @@ fn a_recording_answers_without_any_service() {
     let file = folder.path().join("calls.jsonl");
     let recorded = run();
     assert!(asked(&model(&server, "", &recorded), "Hello?").is_ok());
-    recorded.record(&file).unwrap();
-    let replayed = Ledger::replay(&file).unwrap().run("replay", Limits::default()).unwrap();
+    recorded.record_calls(&file).unwrap();
+    let replayed = Ledger::replay_recording(&file).unwrap().start_run("replay", RunLimits::default()).unwrap();
     // A replay needs no key.
     let model = model(&server, "key_env = \"WAYWORD_NO_SUCH_KEY\"", &replayed);
     assert_eq!(asked(&model, "Hello?").unwrap().text, "Hello?");
@@ -76,8 +76,8 @@ fn a_recording_answers_without_any_service() {
 #[test]
 fn a_spent_budget_stops_with_a_hint_how_to_continue() {
     let server = echo();
-    let limits = Limits { max_calls: Some(2), ..Limits::default() };
-    let run = Ledger::in_memory().unwrap().run("test", limits).unwrap();
+    let limits = RunLimits { max_calls: Some(2), ..RunLimits::default() };
+    let run = Ledger::in_memory().unwrap().start_run("test", limits).unwrap();
     let model = model(&server, "", &run);
     assert!(asked(&model, "One?").is_ok() && asked(&model, "Two?").is_ok());
     let error = asked(&model, "Three?").unwrap_err();
@@ -92,14 +92,14 @@ fn the_cost_of_a_call_is_computed_and_limited() {
     let row = "\"server/m\" = { usd_per_million_in = 1e5, usd_per_million_out = 1e5, as_of = \"2026-01-01\" }";
     let ledger = Ledger::in_memory().unwrap();
     let replies = |max_usd: f64| {
-        let run = ledger.run("test", Limits { max_usd: Some(max_usd), ..Limits::default() }).unwrap();
-        let config = Config {
+        let run = ledger.start_run("test", RunLimits { max_usd: Some(max_usd), ..RunLimits::default() }).unwrap();
+        let config = RemoteConfig {
             base_url: Some(server.base_url()),
-            prices: Prices::read(row).unwrap(),
+            prices: PriceTable::from_toml(row).unwrap(),
             needs_prices: true,
-            ..Config::default()
+            ..RemoteConfig::default()
         };
-        let reply = asked(&Services::new(config, run.clone()).unwrap().model("server/m").unwrap(), "Hello?");
+        let reply = asked(&ModelServices::new(config, run.clone()).unwrap().model("server/m").unwrap(), "Hello?");
         (reply, run.totals().usd)
     };
     // At most 20 tokens come out, at 10 cents each.
@@ -118,11 +118,11 @@ fn a_picture_is_sent_as_jpeg_and_stored_as_a_hash() {
     let run = run();
     let image = Arc::new(Image::new(600, 400, [200, 0, 0].repeat(600 * 400)).unwrap());
     let mut request = ask("Colour?");
-    request.messages = vec![Message::about("Colour?", vec![image])];
-    assert_eq!(model(&server, "", &run).complete(&[request])[0].as_ref().unwrap().text, "Red.");
+    request.messages = vec![ChatMessage::about_images("Colour?", vec![image])];
+    assert_eq!(model(&server, "", &run).complete_requests(&[request])[0].as_ref().unwrap().text, "Red.");
     assert!(server.requests()[0].contains("data:image/jpeg;base64,/9j/"));
     let file = folder.path().join("calls.jsonl");
-    assert_eq!(run.record(&file).unwrap(), 1);
+    assert_eq!(run.record_calls(&file).unwrap(), 1);
     let row = std::fs::read_to_string(&file).unwrap();
     assert!(
         row.contains("\"image_sha256\":\"") && row.contains("\"picture_px\":512") && !row.contains("/9j/"),
@@ -142,10 +142,10 @@ fn one_base_url_is_for_one_provider() {
 
 #[test]
 fn a_bound_on_money_needs_prices() {
-    let config = Config { needs_prices: true, ..Config::default() };
-    let services = Services::new(config, run()).unwrap();
+    let config = RemoteConfig { needs_prices: true, ..RemoteConfig::default() };
+    let services = ModelServices::new(config, run()).unwrap();
     assert!(services.model("openai/gpt-4o-mini").unwrap().price().is_some());
-    assert_eq!(services.model("ollama/qwen3").unwrap().price().unwrap().usd(1000, 1000), 0.0);
+    assert_eq!(services.model("ollama/qwen3").unwrap().price().unwrap().cost_usd(1000, 1000), 0.0);
     let error = services.model("openrouter/who/knows").unwrap_err().to_string();
     assert!(error.contains("--prices FILE"), "{error}");
 }
@@ -153,9 +153,9 @@ fn a_bound_on_money_needs_prices() {
 /// A provider that is free on your own machine may be a paid service elsewhere.
 #[test]
 fn a_provider_that_is_not_local_is_not_free() {
-    let mut config: Config = toml::from_str("[providers.ollama]\nlocal = false").unwrap();
+    let mut config: RemoteConfig = toml::from_str("[providers.ollama]\nlocal = false").unwrap();
     config.needs_prices = true;
-    let services = Services::new(config, run()).unwrap();
+    let services = ModelServices::new(config, run()).unwrap();
     assert!(services.model("ollama/qwen3").is_err());
     assert!(services.model("vllm/qwen3").is_ok());
 }
@@ -185,14 +185,14 @@ fn settings_that_make_no_sense_are_refused() {
         "concurrency = 0",
         "concurrency = { most = 99999 }",
     ] {
-        assert!(Services::new(toml::from_str(settings).unwrap(), run()).is_err(), "{settings}");
+        assert!(ModelServices::new(toml::from_str(settings).unwrap(), run()).is_err(), "{settings}");
     }
 }
 
 /// The findings of `check`: level and text.
-fn findings(server: &Server) -> Vec<(Level, String)> {
+fn findings(server: &Server) -> Vec<(CheckLevel, String)> {
     services(server, "attempts = 1", &run())
-        .check("server/m", true)
+        .check_model("server/m", true)
         .into_iter()
         .map(|finding| (finding.level, finding.what))
         .collect()
@@ -205,13 +205,13 @@ fn check_finds_no_problem_with_a_working_model() {
         reply(stream, 200, "", &body)
     });
     let found = findings(&server);
-    let levels: Vec<Level> = found.iter().map(|(level, _)| *level).collect();
-    use Level::{Ok, Warning};
+    let levels: Vec<CheckLevel> = found.iter().map(|(level, _)| *level).collect();
+    use CheckLevel::{Ok, Warning};
     assert_eq!(levels, [Ok, Ok, Ok, Warning, Ok, Ok], "{found:?}");
     assert!(found[3].1.contains("the price of") && found[5].1.ends_with("sees"), "{found:?}");
     // A model that only writes gets no picture.
     let before = server.requests().len();
-    let found = services(&server, "attempts = 1", &run()).check("server/m", false);
+    let found = services(&server, "attempts = 1", &run()).check_model("server/m", false);
     assert_eq!((found.len(), server.requests().len()), (5, before + 2));
 }
 
@@ -222,10 +222,10 @@ fn check_finds_a_model_that_is_blind_or_missing() {
         reply(stream, 200, "", &body)
     });
     let found = findings(&server);
-    assert!(found[2].0 == Level::Warning && found[2].1.contains("does not list m"), "{found:?}");
-    assert!(found[5].0 == Level::Warning && found[5].1.contains("red square and said: Blue"), "{found:?}");
+    assert!(found[2].0 == CheckLevel::Warning && found[2].1.contains("does not list m"), "{found:?}");
+    assert!(found[5].0 == CheckLevel::Warning && found[5].1.contains("red square and said: Blue"), "{found:?}");
     let closed = Server::start(|_, _, stream| reply(stream, 401, "", "{}"));
-    assert_eq!(findings(&closed).last().unwrap().0, Level::Problem);
+    assert_eq!(findings(&closed).last().unwrap().0, CheckLevel::Problem);
 }
 
 /// An answer in the ledger does not show that the model works now.
@@ -239,9 +239,9 @@ fn check_ignores_answers_of_earlier_checks() {
         false => reply(stream, 500, "", "{}"),
     });
     let services = services(&server, "attempts = 1", &run());
-    assert_eq!(services.check("server/m", false).last().unwrap().level, Level::Ok);
+    assert_eq!(services.check_model("server/m", false).last().unwrap().level, CheckLevel::Ok);
     works.store(false, Ordering::SeqCst);
     // The time distinguishes two checks.
     thread::sleep(Duration::from_millis(5));
-    assert_eq!(services.check("server/m", false).last().unwrap().level, Level::Problem);
+    assert_eq!(services.check_model("server/m", false).last().unwrap().level, CheckLevel::Problem);
 }

@@ -6,7 +6,7 @@ use wayword_run::settings::AskedPlatform;
 
 /// The model and the pictures by which texts are judged.
 #[derive(Debug, Clone, Default, Args)]
-pub struct Pictured {
+pub struct PictureCriticArgs {
     /// Report how well the texts agree with the pictures ahead of the path's frames, by this CLIP: 2.5 times the cosine, as CLIPScore
     /// has it. The pictures are those of a run, or the platform's.
     #[arg(long, value_name = "MODEL")]

@@ -1,39 +1,39 @@
 //! The pictures ahead of a path's frames. They come from the folder of a run that stored them, or a platform draws them anew.
 
-use crate::{by_pictures::args::Pictured, episodes};
+use crate::{by_pictures::args::PictureCriticArgs, episodes};
 use serde::Deserialize;
 use std::{
     collections::BTreeMap,
     path::{Path as FilePath, PathBuf},
     sync::Arc,
 };
-use wayword_core::{Gaze, Path, Platform, SceneId, View};
-use wayword_formats::{Episode, Format, jsonl};
+use wayword_core::{Path, Platform, SceneId, View, ViewGaze};
+use wayword_formats::{DatasetFormat, Episode, jsonl};
 use wayword_run::{
-    error::Error,
+    error::CommandError,
     pictures, platforms,
     run_folder::{file, read_lines, refuse_other_format},
-    settings::Settings,
+    settings::RunSettings,
 };
 use wayword_world::path_of;
 
 /// Gives the pictures ahead of the frames of any item's path.
-pub struct Frames {
-    source: Source,
+pub struct PathPictures {
+    source: FramePictureSource,
     /// The path of each item, by the item's id.
-    items: BTreeMap<String, Way>,
+    items: BTreeMap<String, ItemPathSource>,
     /// The id of one item on each path, by the path's name. An item of another dataset is found by its path.
     paths: BTreeMap<String, String>,
 }
 
-enum Source {
+enum FramePictureSource {
     /// The folder in which a run stored its pictures.
     Run(PathBuf),
     Platform(Box<dyn Platform>),
 }
 
 /// The path of an item, or the episode that it is computed from.
-enum Way {
+enum ItemPathSource {
     Known(Box<Path>),
     /// The path still has to be computed from the episode and its scene.
     Episode(Box<Episode>),
@@ -41,14 +41,14 @@ enum Way {
 
 /// The fields that are needed from a line of `walks.jsonl`.
 #[derive(Deserialize)]
-struct Walked {
+struct PicturedWalkEntry {
     path: Path,
     has_pictures: bool,
 }
 
 /// The fields that are needed from a line of `instructions.jsonl`.
 #[derive(Deserialize)]
-struct Written {
+struct PicturedTextEntry {
     path: WrittenPath,
     path_id: Option<String>,
 }
@@ -59,23 +59,23 @@ struct WrittenPath {
     scene: SceneId,
 }
 
-impl Frames {
+impl PathPictures {
     /// Opens the pictures that the flags ask for. Without such flags, the first of `runs` that has pictures supplies them.
     ///
     /// # Errors
     /// When there are none, or the files or the platform cannot be read.
-    pub(super) fn open(asked: &Pictured, runs: &[PathBuf], file: &FilePath) -> Result<Self, Error> {
+    pub(super) fn open(asked: &PictureCriticArgs, runs: &[PathBuf], file: &FilePath) -> Result<Self, CommandError> {
         if let Some(run) = &asked.pictures {
-            return Self::of_run(run);
+            return Self::from_run(run);
         }
         let platform = &asked.platform;
         if platform.platform.is_some() || platform.data.is_some() || platform.at.is_some() {
             let opened = platforms::open_and_warn(platform.name(), platform.into())?;
-            return Self::of_platform(opened, file);
+            return Self::from_platform(opened, file);
         }
         match runs.iter().find(|run| run.join(file::FRAMES).is_dir()) {
-            Some(run) => Self::of_run(run),
-            None => Err(Error::usage(
+            Some(run) => Self::from_run(run),
+            None => Err(CommandError::usage(
                 "--clip: it is not known where the pictures are",
                 "give a run that has pictures with --pictures RUN, or a platform that draws them with --platform",
             )),
@@ -86,52 +86,53 @@ impl Frames {
     ///
     /// # Errors
     /// When the folder holds no run, or the run has no pictures.
-    pub fn of_run(run: &FilePath) -> Result<Self, Error> {
+    pub fn from_run(run: &FilePath) -> Result<Self, CommandError> {
         let walks = run.join(file::WALKS);
         if !walks.is_file() {
             let problem = format!("{}: there is no run in it, so it has no pictures", run.display());
-            return Err(Error::usage(problem, "give a folder that `wayword generate` made"));
+            return Err(CommandError::usage(problem, "give a folder that `wayword generate` made"));
         }
-        refuse_other_format::<Settings>(run)?;
-        let walked: Vec<Walked> = read_lines(&walks)?;
+        refuse_other_format::<RunSettings>(run)?;
+        let walked: Vec<PicturedWalkEntry> = read_lines(&walks)?;
         let pictured = walked.into_iter().filter(|walk| walk.has_pictures).map(|walk| walk.path);
-        let items: BTreeMap<String, Way> = pictured.map(|path| (path.id.clone(), Way::Known(Box::new(path)))).collect();
+        let items: BTreeMap<String, ItemPathSource> =
+            pictured.map(|path| (path.id.clone(), ItemPathSource::Known(Box::new(path)))).collect();
         if items.is_empty() {
             let problem = format!("{}: this run has no pictures", run.display());
-            return Err(Error::usage(
+            return Err(CommandError::usage(
                 problem,
                 "`wayword platforms` says which platforms have pictures, and what they need",
             ));
         }
         let mut paths = BTreeMap::new();
-        for Written { path, path_id } in read_lines(&run.join(file::INSTRUCTIONS))? {
+        for PicturedTextEntry { path, path_id } in read_lines(&run.join(file::INSTRUCTIONS))? {
             if items.contains_key(&path.id) {
                 let name = episodes::path_name(&path.scene, path_id.as_ref().unwrap_or(&path.id));
                 paths.entry(name).or_insert(path.id);
             }
         }
-        Ok(Self { source: Source::Run(run.join(file::FRAMES)), items, paths })
+        Ok(Self { source: FramePictureSource::Run(run.join(file::FRAMES)), items, paths })
     }
 
     /// The pictures that a platform draws along the paths of a file.
     ///
     /// # Errors
     /// When the file cannot be read, or its paths have neither frames nor viewpoints.
-    pub fn of_platform(platform: Box<dyn Platform>, file: &FilePath) -> Result<Self, Error> {
+    pub fn from_platform(platform: Box<dyn Platform>, file: &FilePath) -> Result<Self, CommandError> {
         let (mut items, mut paths) = (BTreeMap::new(), BTreeMap::new());
-        if wayword_formats::detect(file)? == Format::Wayword {
-            for record in jsonl::read(file)? {
+        if wayword_formats::detect_format(file)? == DatasetFormat::Wayword {
+            for record in jsonl::read_records(file)? {
                 let name = episodes::path_name(&record.path.scene, &record.path_id());
                 paths.entry(name).or_insert_with(|| record.path.id.clone());
-                items.entry(record.path.id.clone()).or_insert_with(|| Way::Known(Box::new(record.path)));
+                items.entry(record.path.id.clone()).or_insert_with(|| ItemPathSource::Known(Box::new(record.path)));
             }
         } else {
-            for episode in episodes::read(file, &*platform)? {
-                paths.entry(episodes::cluster(&episode)).or_insert_with(|| episode.id.clone());
-                items.entry(episode.id.clone()).or_insert_with(|| Way::Episode(Box::new(episode)));
+            for episode in episodes::read_episodes(file, &*platform)? {
+                paths.entry(episodes::episode_path_name(&episode)).or_insert_with(|| episode.id.clone());
+                items.entry(episode.id.clone()).or_insert_with(|| ItemPathSource::Episode(Box::new(episode)));
             }
         }
-        Ok(Self { source: Source::Platform(platform), items, paths })
+        Ok(Self { source: FramePictureSource::Platform(platform), items, paths })
     }
 
     /// The pictures of an item in the order of its frames. If the item is not known, those of an item on the same path
@@ -139,37 +140,44 @@ impl Frames {
     ///
     /// # Errors
     /// When a picture is missing or damaged, or the platform cannot draw it.
-    pub fn of(&self, item: &str, path: &str) -> Result<Vec<View>, Error> {
+    pub fn views_for_item(&self, item: &str, path: &str) -> Result<Vec<View>, CommandError> {
         let way = self.items.get(item).or_else(|| self.items.get(self.paths.get(path)?));
         match (&self.source, way) {
-            (Source::Run(folder), Some(Way::Known(path))) => kept(folder, path),
-            (Source::Platform(platform), Some(Way::Known(path))) => drawn(&**platform, path),
-            (Source::Platform(platform), Some(Way::Episode(episode))) => {
-                let Episode { id, scene, viewpoints, start_heading, .. } = &**episode;
-                drawn(&**platform, &path_of(&**platform, id.as_str(), scene, viewpoints, *start_heading, None)?)
+            (FramePictureSource::Run(folder), Some(ItemPathSource::Known(path))) => read_kept_views(folder, path),
+            (FramePictureSource::Platform(platform), Some(ItemPathSource::Known(path))) => {
+                draw_views(&**platform, path)
             }
-            (Source::Run(_), Some(Way::Episode(_))) | (_, None) => Ok(Vec::new()),
+            (FramePictureSource::Platform(platform), Some(ItemPathSource::Episode(episode))) => {
+                let Episode { id, scene, viewpoints, start_heading, .. } = &**episode;
+                draw_views(&**platform, &path_of(&**platform, id.as_str(), scene, viewpoints, *start_heading, None)?)
+            }
+            (FramePictureSource::Run(_), Some(ItemPathSource::Episode(_))) | (_, None) => Ok(Vec::new()),
         }
     }
 }
 
-fn kept(folder: &FilePath, path: &Path) -> Result<Vec<View>, Error> {
+fn read_kept_views(folder: &FilePath, path: &Path) -> Result<Vec<View>, CommandError> {
     let view = |(at, frame): (usize, &wayword_core::Frame)| {
-        let pixels = pictures::kept(folder, &path.id, at, pictures::MOST_BYTES).and_then(|kept| kept.pixels());
+        let pixels =
+            pictures::read_picture(folder, &path.id, at, pictures::MOST_BYTES).and_then(|kept| kept.decode_pixels());
         let Some(image) = pixels else {
-            let problem = format!("{}: it is missing or damaged", pictures::file(folder, &path.id, at).display());
-            return Err(Error::usage(problem, "give the run's command again: it makes pictures that are missing"));
+            let problem =
+                format!("{}: it is missing or damaged", pictures::picture_file(folder, &path.id, at).display());
+            return Err(CommandError::usage(
+                problem,
+                "give the run's command again: it makes pictures that are missing",
+            ));
         };
-        let gaze = Gaze::quarter(frame.pose.heading);
+        let gaze = ViewGaze::quarter_view(frame.pose.heading);
         Ok(View::new(frame.pose, gaze.horizontal_fov_rad, Some(Arc::new(image)), None))
     };
     path.frames.iter().enumerate().map(view).collect()
 }
 
-fn drawn(platform: &dyn Platform, path: &Path) -> Result<Vec<View>, Error> {
+fn draw_views(platform: &dyn Platform, path: &Path) -> Result<Vec<View>, CommandError> {
     let mut views = Vec::new();
     for frame in &path.frames {
-        let view = platform.look(&path.scene, frame, Gaze::quarter(frame.pose.heading))?;
+        let view = platform.look_from(&path.scene, frame, ViewGaze::quarter_view(frame.pose.heading))?;
         // A camera may not have looked there.
         if view.image.is_some() {
             views.push(view);

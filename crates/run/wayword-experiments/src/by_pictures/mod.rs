@@ -1,4 +1,4 @@
-//! Scores how well a text fits the pictures ahead of a path's frames, with a CLIP model in process ([`Agreed`] has the figures).
+//! Scores how well a text fits the pictures ahead of a path's frames, with a CLIP model in process ([`PictureScores`] has the figures).
 //!
 //! CLIP recognises the things in a picture. It hardly distinguishes left from right, and it has no sense of order: a text with
 //! all turns the wrong way round scores as well as the right one.
@@ -7,57 +7,62 @@ pub mod args;
 mod frames;
 mod parts;
 
-pub use frames::Frames;
+pub use frames::PathPictures;
 
-use crate::by_pictures::args::Pictured;
-use parts::parts;
+use crate::by_pictures::args::PictureCriticArgs;
+use parts::split_into_parts;
 use std::path::{Path, PathBuf};
-use wayword_core::{Grounder, ModelError, View};
-use wayword_metrics::pictures::{Agreed, PREFIX};
-use wayword_run::{error::Error, output::Output};
+use wayword_core::{ModelError, PhraseGrounder, View};
+use wayword_metrics::pictures::{CLIP_PROMPT_PREFIX, PictureScores};
+use wayword_run::{error::CommandError, output::CommandOutput};
 
 /// A model that scores a phrase on a view by the cosine of their vectors.
-pub trait Eye: Grounder {
+pub trait CosineGrounder: PhraseGrounder {
     /// Whether the model reads the whole phrase. It cuts off the end of a longer one.
     ///
     /// # Errors
     /// When the phrase cannot be read.
-    fn holds(&self, phrase: &str) -> Result<bool, ModelError>;
+    fn reads_whole_phrase(&self, phrase: &str) -> Result<bool, ModelError>;
 }
 
 #[cfg(feature = "local")]
-impl Eye for wayword_local::ClipGrounder {
-    fn holds(&self, phrase: &str) -> Result<bool, ModelError> {
-        Self::holds(self, phrase)
+impl CosineGrounder for wayword_local::ClipGrounder {
+    fn reads_whole_phrase(&self, phrase: &str) -> Result<bool, ModelError> {
+        Self::reads_whole_phrase(self, phrase)
     }
 }
 
 /// A CLIP model with the pictures that it scores texts by.
-pub struct Critic {
-    eye: Box<dyn Eye>,
+pub struct PictureCritic {
+    eye: Box<dyn CosineGrounder>,
     /// The pictures.
-    pub frames: Frames,
+    pub frames: PathPictures,
 }
 
-impl Critic {
+impl PictureCritic {
     /// Opens the critic that the flags ask for; `None` if they name no CLIP. The pictures come from the run that the flags name,
     /// or from the platform that they name, which draws them along the paths of `file`. Otherwise the first of `runs` with
     /// pictures supplies them.
     ///
     /// # Errors
     /// When the model cannot be loaded, or there are no pictures.
-    pub fn open(asked: &Pictured, runs: &[PathBuf], file: &Path, output: &Output) -> Result<Option<Self>, Error> {
+    pub fn open(
+        asked: &PictureCriticArgs,
+        runs: &[PathBuf],
+        file: &Path,
+        output: &CommandOutput,
+    ) -> Result<Option<Self>, CommandError> {
         match &asked.clip {
             Some(name) => {
                 // Before the model, which may have to be fetched.
-                let frames = Frames::open(asked, runs, file)?;
-                Ok(Some(Self::new(eye(name, output)?, frames)))
+                let frames = PathPictures::open(asked, runs, file)?;
+                Ok(Some(Self::new(load_clip(name, output)?, frames)))
             }
             None if asked.platform.platform.is_some()
                 || asked.platform.data.is_some()
                 || asked.platform.at.is_some() =>
             {
-                Err(Error::usage(
+                Err(CommandError::usage(
                     "a platform is named, but nothing looks at its pictures",
                     "name a model with --clip, as in --clip hf/openai/clip-vit-base-patch32, or leave the platform out",
                 ))
@@ -68,7 +73,7 @@ impl Critic {
 
     /// Joins a loaded model and the pictures.
     #[must_use]
-    pub fn new(eye: Box<dyn Eye>, frames: Frames) -> Self {
+    pub fn new(eye: Box<dyn CosineGrounder>, frames: PathPictures) -> Self {
         Self { eye, frames }
     }
 
@@ -82,25 +87,29 @@ impl Critic {
     ///
     /// # Errors
     /// When the model fails.
-    pub fn agreed(&self, pictures: &[View], texts: &[&str]) -> Result<Vec<Option<Agreed>>, Error> {
-        agreed(self.eye.as_ref(), pictures, texts)
+    pub fn score_texts(&self, pictures: &[View], texts: &[&str]) -> Result<Vec<Option<PictureScores>>, CommandError> {
+        score_agreement(self.eye.as_ref(), pictures, texts)
     }
 }
 
-fn agreed(eye: &dyn Eye, pictures: &[View], texts: &[&str]) -> Result<Vec<Option<Agreed>>, Error> {
-    let phrase = |text: &str| format!("{PREFIX}{}", text.trim());
+fn score_agreement(
+    eye: &dyn CosineGrounder,
+    pictures: &[View],
+    texts: &[&str],
+) -> Result<Vec<Option<PictureScores>>, CommandError> {
+    let phrase = |text: &str| format!("{CLIP_PROMPT_PREFIX}{}", text.trim());
     let mut phrases = Vec::new();
     // The index of each text's first phrase, which is the whole text. The phrases of its parts follow.
     let mut starts = Vec::new();
     for text in texts {
         starts.push(phrases.len());
         phrases.push(phrase(text));
-        phrases.extend(parts(text, |part| eye.holds(&phrase(part)))?.into_iter().map(phrase));
+        phrases.extend(split_into_parts(text, |part| eye.reads_whole_phrase(&phrase(part)))?.into_iter().map(phrase));
     }
     starts.push(phrases.len());
     let views: Vec<&View> = pictures.iter().collect();
     let phrases: Vec<&str> = phrases.iter().map(String::as_str).collect();
-    let scores = eye.ground(&views, &phrases).into_iter().collect::<Result<Vec<_>, _>>()?;
+    let scores = eye.score_phrases(&views, &phrases).into_iter().collect::<Result<Vec<_>, _>>()?;
     if scores.len() != views.len() || scores.iter().any(|row| row.len() != phrases.len()) {
         let reason = "it did not give one score for each picture and phrase".to_owned();
         return Err(ModelError::Failed { model: eye.name().to_owned(), reason }.into());
@@ -108,19 +117,19 @@ fn agreed(eye: &dyn Eye, pictures: &[View], texts: &[&str]) -> Result<Vec<Option
     let cosines = |at: usize| -> Vec<f64> { scores.iter().map(|row| f64::from(row[at])).collect() };
     let of_text = |ends: &[usize]| {
         let parts: Vec<Vec<f64>> = (ends[0] + 1..ends[1]).map(cosines).collect();
-        Agreed::of(&cosines(ends[0]), &parts)
+        PictureScores::from_cosines(&cosines(ends[0]), &parts)
     };
     Ok(starts.windows(2).map(of_text).collect())
 }
 
 #[cfg(feature = "local")]
-fn eye(name: &str, output: &Output) -> Result<Box<dyn Eye>, Error> {
-    Ok(Box::new(wayword_run::clip::grounder(name, output)?))
+fn load_clip(name: &str, output: &CommandOutput) -> Result<Box<dyn CosineGrounder>, CommandError> {
+    Ok(Box::new(wayword_run::clip::load_grounder(name, output)?))
 }
 
 #[cfg(not(feature = "local"))]
-fn eye(name: &str, _: &Output) -> Result<Box<dyn Eye>, Error> {
-    Err(Error::not_built(format!("--clip {name}: this build runs no models in process")))
+fn load_clip(name: &str, _: &CommandOutput) -> Result<Box<dyn CosineGrounder>, CommandError> {
+    Err(CommandError::not_built(format!("--clip {name}: this build runs no models in process")))
 }
 
 #[cfg(test)]
@@ -136,36 +145,38 @@ mod tests {
         is_broken: bool,
     }
 
-    impl Grounder for Letters {
+    impl PhraseGrounder for Letters {
         fn name(&self) -> &str {
             "letters"
         }
 
-        fn ground(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<f32>, ModelError>> {
+        fn score_phrases(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<f32>, ModelError>> {
             *self.asked.lock().unwrap() = phrases.iter().map(|phrase| (*phrase).to_owned()).collect();
             let of_view = |at: usize| {
                 let scored = phrases.iter().skip(usize::from(self.is_broken));
-                Ok(scored.map(|phrase| (phrase.len() - PREFIX.len()) as f32 / 100.0 - at as f32 * 0.1).collect())
+                Ok(scored
+                    .map(|phrase| (phrase.len() - CLIP_PROMPT_PREFIX.len()) as f32 / 100.0 - at as f32 * 0.1)
+                    .collect())
             };
             (0..views.len()).map(of_view).collect()
         }
     }
 
-    impl Eye for Letters {
-        fn holds(&self, phrase: &str) -> Result<bool, ModelError> {
-            Ok(phrase.len() <= PREFIX.len() + 20)
+    impl CosineGrounder for Letters {
+        fn reads_whole_phrase(&self, phrase: &str) -> Result<bool, ModelError> {
+            Ok(phrase.len() <= CLIP_PROMPT_PREFIX.len() + 20)
         }
     }
 
     fn views(count: usize) -> Vec<View> {
-        let pose = Pose::level(DVec3::ZERO, Heading::NORTH);
+        let pose = Pose::looking_level(DVec3::ZERO, Heading::NORTH);
         (0..count).map(|_| View::new(pose, 1.0, None, None)).collect()
     }
 
     #[test]
     fn score_agreement_asks_for_the_whole_text_and_its_parts() {
         let eye = Letters::default();
-        let found = agreed(&eye, &views(2), &["Pass the sofa. Stop.", "Wait"]).unwrap();
+        let found = score_agreement(&eye, &views(2), &["Pass the sofa. Stop.", "Wait"]).unwrap();
         let asked = eye.asked.lock().unwrap().clone();
         let told: Vec<&str> = asked.iter().map(|phrase| phrase.strip_prefix("A photo depicts ").unwrap()).collect();
         assert_eq!(told, ["Pass the sofa. Stop.", "Pass the sofa.", "Stop.", "Wait", "Wait"]);
@@ -178,23 +189,27 @@ mod tests {
 
     #[test]
     fn score_agreement_is_none_without_words_or_pictures() {
-        assert_eq!(agreed(&Letters::default(), &views(1), &[" ... "]).unwrap(), [None]);
-        assert_eq!(agreed(&Letters::default(), &[], &["Stop."]).unwrap(), [None]);
+        assert_eq!(score_agreement(&Letters::default(), &views(1), &[" ... "]).unwrap(), [None]);
+        assert_eq!(score_agreement(&Letters::default(), &[], &["Stop."]).unwrap(), [None]);
     }
 
     #[test]
     fn a_model_that_leaves_scores_out_is_refused() {
         let broken = Letters { is_broken: true, ..Letters::default() };
-        assert!(agreed(&broken, &views(1), &["Stop."]).unwrap_err().to_string().contains("letters"));
+        assert!(score_agreement(&broken, &views(1), &["Stop."]).unwrap_err().to_string().contains("letters"));
     }
 
     #[test]
     fn a_platform_without_a_model_is_refused() {
-        let mut asked = Pictured::default();
+        let mut asked = PictureCriticArgs::default();
         asked.platform.platform = Some("house".to_owned());
-        let refused = Critic::open(&asked, &[], Path::new("x"), &Output::new(false, true)).err().unwrap().to_string();
+        let refused = PictureCritic::open(&asked, &[], Path::new("x"), &CommandOutput::new(false, true))
+            .err()
+            .unwrap()
+            .to_string();
         assert!(refused.contains("--clip"), "{refused}");
-        let nothing = Critic::open(&Pictured::default(), &[], Path::new("x"), &Output::new(false, true));
+        let nothing =
+            PictureCritic::open(&PictureCriticArgs::default(), &[], Path::new("x"), &CommandOutput::new(false, true));
         assert!(nothing.unwrap().is_none());
     }
 }

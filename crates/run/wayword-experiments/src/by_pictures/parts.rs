@@ -1,8 +1,8 @@
 //! Cuts a text into parts that are short enough for a model to read: a CLIP cuts off the end of a longer text.
 
 use wayword_language::{
-    reading::clauses,
-    text::{Token, tokens},
+    reading::clause_numbers,
+    text::{TextToken, split_tokens},
 };
 
 /// Cuts a text into its sentences. A sentence that is too long for the model, as `holds` judges, is cut between clauses into
@@ -10,45 +10,45 @@ use wayword_language::{
 ///
 /// # Errors
 /// When `holds` fails.
-pub(super) fn parts<E>(text: &str, holds: impl Fn(&str) -> Result<bool, E>) -> Result<Vec<&str>, E> {
-    let tokens = tokens(text);
+pub(super) fn split_into_parts<E>(text: &str, holds: impl Fn(&str) -> Result<bool, E>) -> Result<Vec<&str>, E> {
+    let tokens = split_tokens(text);
     let mut parts = Vec::new();
-    for sentence in tokens.split_inclusive(Token::ends_sentence) {
+    for sentence in tokens.split_inclusive(TextToken::ends_sentence) {
         let first = sentence.iter().find(|token| token.is_word());
         let Some((first, last)) = first.zip(sentence.last()) else { continue };
         let whole = &text[first.span[0]..last.span[1]];
         if holds(whole)? {
             parts.push(whole);
         } else {
-            parts.extend(pieces(text, sentence, &holds)?);
+            parts.extend(cut_between_clauses(text, sentence, &holds)?);
         }
     }
     Ok(parts)
 }
 
-fn pieces<'a, E>(
+fn cut_between_clauses<'a, E>(
     text: &'a str,
-    sentence: &[Token],
+    sentence: &[TextToken],
     holds: &impl Fn(&str) -> Result<bool, E>,
 ) -> Result<Vec<&'a str>, E> {
-    let numbers = clauses(sentence);
+    let numbers = clause_numbers(sentence);
     let starts: Vec<usize> = (0..sentence.len()).filter(|at| *at == 0 || numbers[*at] != numbers[*at - 1]).collect();
     let mut pieces = Vec::new();
     let (mut from, mut to) = (0, 0);
     for end in starts.into_iter().skip(1).chain([sentence.len()]) {
-        let longer = told(text, &sentence[from..end]);
+        let longer = text_of_tokens(text, &sentence[from..end]);
         if to > from && longer.map_or(Ok(false), |longer| Ok(!holds(longer)?))? {
-            pieces.extend(told(text, &sentence[from..to]));
+            pieces.extend(text_of_tokens(text, &sentence[from..to]));
             from = to;
         }
         to = end;
     }
-    pieces.extend(told(text, &sentence[from..to]));
+    pieces.extend(text_of_tokens(text, &sentence[from..to]));
     Ok(pieces)
 }
 
 /// The text of some tokens from their first word to their last; `None` if there is no word.
-fn told<'a>(text: &'a str, tokens: &[Token]) -> Option<&'a str> {
+fn text_of_tokens<'a>(text: &'a str, tokens: &[TextToken]) -> Option<&'a str> {
     let mut words = tokens.iter().filter(|token| token.is_word());
     let first = words.next()?;
     Some(&text[first.span[0]..words.next_back().unwrap_or(first).span[1]])
@@ -60,7 +60,7 @@ mod tests {
     use std::convert::Infallible;
 
     fn parts_within(text: &str, most: usize) -> Vec<&str> {
-        let found: Result<_, Infallible> = parts(text, |part| Ok(part.len() <= most));
+        let found: Result<_, Infallible> = split_into_parts(text, |part| Ok(part.len() <= most));
         found.unwrap_or_default()
     }
 

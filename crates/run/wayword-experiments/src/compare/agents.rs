@@ -1,19 +1,19 @@
 //! The agents of a comparison by name, and the thresholds at which they decide.
 
-use super::kept::Kept;
+use super::kept::ComparisonSettings;
 use crate::compare::args::AskedPrior;
 use std::{collections::BTreeMap, path::Path};
 use wayword_navigation::{
-    agents::{Back, Limits, Parameters, Prior},
-    comparison::{AgentKind, Walker},
+    agents::{BacktrackParameters, PhraseWalkParameters, ToolWalkLimits, WalkPrior},
+    comparison::{AgentKind, ComparedAgent},
 };
-use wayword_run::{error::Error, text_file};
+use wayword_run::{error::CommandError, text_file};
 
 /// The agent that reads every clause and knows only where it was, and the one that also knows the map.
-pub(super) const READER: &str = "reader";
+pub(super) const READER_AGENT_NAME: &str = "reader";
 pub(super) const READER_MAP: &str = "reader-map";
 /// The agent whose moves a language model decides.
-pub(super) const TOOLS: &str = "tools";
+pub(super) const TOOLS_AGENT_NAME: &str = "tools";
 /// The agent that uses a detector.
 pub(super) const BY_DETECTOR: &str = "glip-nav";
 
@@ -26,15 +26,15 @@ pub(super) const RANDOM_WALKS: usize = 10;
 
 /// An agent with its parameters.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Agent {
+pub(super) enum WalkingAgent {
     /// Walks phrase by phrase. A grounder scores phrases by the boxes of a detector, or by whole views.
-    Phrases { name: String, parameters: Parameters, by_detector: bool },
+    Phrases { name: String, parameters: PhraseWalkParameters, by_detector: bool },
     /// Reads, and knows only where it was. It takes things from labels, or, with a threshold, sees things that score at least that.
     Reader(Option<f32>),
     /// A language model that looks around and steps.
     Tools,
     /// Reads, and knows the map.
-    ReaderMap(Prior),
+    ReaderMap(WalkPrior),
     /// Walks this many random hops.
     Random(usize),
     /// Walks at most this many hops straight ahead.
@@ -45,13 +45,13 @@ pub(super) enum Agent {
     Oracle,
 }
 
-impl Agent {
+impl WalkingAgent {
     /// The agents that the user asked for, with the baselines and the oracle that every comparison has.
-    pub(super) fn all(kept: &Kept, prior: AskedPrior) -> Vec<Self> {
+    pub(super) fn all_for_comparison(kept: &ComparisonSettings, prior: AskedPrior) -> Vec<Self> {
         let agent = |name: &String| match name.as_str() {
-            READER => Some(Self::Reader(kept.reader_threshold)),
+            READER_AGENT_NAME => Some(Self::Reader(kept.reader_threshold)),
             READER_MAP => None,
-            TOOLS => Some(Self::Tools),
+            TOOLS_AGENT_NAME => Some(Self::Tools),
             _ => {
                 let parameters = *kept.parameters.get(name)?;
                 Some(Self::Phrases { name: name.clone(), parameters, by_detector: name == BY_DETECTOR })
@@ -69,8 +69,8 @@ impl Agent {
     pub(super) fn name(&self) -> String {
         match self {
             Self::Phrases { name, .. } => name.clone(),
-            Self::Reader(_) => READER.to_owned(),
-            Self::Tools => TOOLS.to_owned(),
+            Self::Reader(_) => READER_AGENT_NAME.to_owned(),
+            Self::Tools => TOOLS_AGENT_NAME.to_owned(),
             Self::ReaderMap(_) => READER_MAP.to_owned(),
             Self::Random(hops) => format!("random/{hops}"),
             Self::Straight(hops) => format!("straight/{hops}"),
@@ -80,70 +80,74 @@ impl Agent {
     }
 
     /// The description of the agent for the tables: its name, its kind, and whether it reads texts.
-    pub(super) fn walker(&self) -> Walker {
+    pub(super) fn as_compared_agent(&self) -> ComparedAgent {
         let (kind, reads) = match self {
             Self::Phrases { .. } | Self::Reader(_) | Self::Tools => (AgentKind::Agent, true),
             Self::Random(_) | Self::Straight(_) => (AgentKind::LowerBound, false),
             Self::ReaderMap(_) | Self::NearestRoom => (AgentKind::Informed, true),
             Self::Oracle => (AgentKind::UpperBound, false),
         };
-        Walker { name: self.name(), kind, reads, has_floors: matches!(self, Self::ReaderMap(_)) }
+        ComparedAgent { name: self.name(), kind, reads, has_floors: matches!(self, Self::ReaderMap(_)) }
     }
 }
 
 /// The thresholds of the agents.
 #[derive(Debug, Default)]
-pub(super) struct Thresholds {
+pub(super) struct AgentThresholds {
     /// The thresholds of the agents that walk by phrases, by agent.
-    pub(super) of_phrases: BTreeMap<String, Parameters>,
+    pub(super) of_phrases: BTreeMap<String, PhraseWalkParameters>,
     /// The lowest score with which the agent that reads counts a thing as seen; `None` if it takes things from labels.
     pub(super) of_reader: Option<f32>,
     /// The limits of a walk of the agent `tools`: hops, calls and money.
-    pub(super) of_tools: Limits,
+    pub(super) of_tools: ToolWalkLimits,
 }
 
 /// Reads the thresholds of each agent: the defaults for its grounder, overridden by the TOML file of `--parameters`.
 ///
 /// # Errors
 /// When an agent is named twice, or the file names an unknown agent or threshold.
-pub(super) fn parameters(
+pub(super) fn read_thresholds(
     names: &[String],
     (grounder, detector): (&str, Option<&str>),
     file: Option<&Path>,
-) -> Result<Thresholds, Error> {
+) -> Result<AgentThresholds, CommandError> {
     if let Some(name) = (1..names.len()).find(|at| names[..*at].contains(&names[*at])).map(|at| &names[at]) {
-        return Err(Error::usage(format!("--agents {name}: this agent is named twice"), "name it once"));
+        return Err(CommandError::usage(format!("--agents {name}: this agent is named twice"), "name it once"));
     }
     let mut tables = toml::Table::new();
     if let Some(file) = file {
-        let wrong = |error: toml::de::Error| wrong(file, error.to_string().trim());
-        tables = text_file::read(file, "read the parameters")?.parse().map_err(wrong)?;
+        let wrong = |error: toml::de::Error| parameter_error(file, error.to_string().trim());
+        tables = text_file::read_text_file(file, "read the parameters")?.parse().map_err(wrong)?;
     }
-    let mut all = Thresholds::default();
+    let mut all = AgentThresholds::default();
     for name in names {
-        let default = Parameters::default_of(name, scored_by(name, grounder, detector));
+        let default = PhraseWalkParameters::default_of(name, scored_by(name, grounder, detector));
         let own = tables.remove(name);
-        if name == TOOLS {
-            let limits = own.map_or(Ok(Limits::default()), limits);
-            all.of_tools = limits.map_err(|problem| wrong(file.unwrap_or(Path::new("")), &problem))?;
+        if name == TOOLS_AGENT_NAME {
+            let limits = own.map_or(Ok(ToolWalkLimits::default()), parse_tool_limits);
+            all.of_tools = limits.map_err(|problem| parameter_error(file.unwrap_or(Path::new("")), &problem))?;
             continue;
         }
-        let is_reader = name == READER && !grounder.starts_with("labels");
+        let is_reader = name == READER_AGENT_NAME && !grounder.starts_with("labels");
         let changed = match (name.as_str(), own) {
             (_, None) => Ok(default),
-            (READER, Some(own)) if is_reader => changed_for_reader(&default, own),
-            (READER | READER_MAP, Some(_)) => Err(format!("{name} has no thresholds here: it is told the labels")),
-            (_, Some(own)) => changed(&default, own),
+            (READER_AGENT_NAME, Some(own)) if is_reader => changed_for_reader(&default, own),
+            (READER_AGENT_NAME | READER_MAP, Some(_)) => {
+                Err(format!("{name} has no thresholds here: it is told the labels"))
+            }
+            (_, Some(own)) => change_parameters(&default, own),
         };
-        let changed = changed.map_err(|problem| wrong(file.unwrap_or(Path::new("")), &problem))?;
+        let changed = changed.map_err(|problem| parameter_error(file.unwrap_or(Path::new("")), &problem))?;
         match name.as_str() {
-            READER if is_reader => all.of_reader = Some(changed.phrase_threshold),
-            READER | READER_MAP => {}
+            READER_AGENT_NAME if is_reader => all.of_reader = Some(changed.phrase_threshold),
+            READER_AGENT_NAME | READER_MAP => {}
             _ => drop(all.of_phrases.insert(name.clone(), changed)),
         }
     }
     match (tables.keys().next(), file) {
-        (Some(unused), Some(file)) => Err(wrong(file, &format!("no agent of this command is named {unused}"))),
+        (Some(unused), Some(file)) => {
+            Err(parameter_error(file, &format!("no agent of this command is named {unused}")))
+        }
         _ => Ok(all),
     }
 }
@@ -155,14 +159,14 @@ pub(super) fn scored_by<'a>(agent: &str, grounder: &'a str, detector: Option<&st
     if by_boxes || detector == Some(grounder) { super::kept::BY_NAME } else { grounder }
 }
 
-fn wrong(file: &Path, problem: &str) -> Error {
+fn parameter_error(file: &Path, problem: &str) -> CommandError {
     let hint = "write a table per agent, as in: [clip-nav] on one line and stop_threshold = 0.7 on the next";
-    Error::usage(format!("{}: {problem}", file.display()), hint)
+    CommandError::usage(format!("{}: {problem}", file.display()), hint)
 }
 
 /// The limits of a walk of the agent `tools`: hops, calls and money.
-fn limits(own: toml::Value) -> Result<Limits, String> {
-    let limits: Limits = own.try_into().map_err(|error: toml::de::Error| error.message().to_owned())?;
+fn parse_tool_limits(own: toml::Value) -> Result<ToolWalkLimits, String> {
+    let limits: ToolWalkLimits = own.try_into().map_err(|error: toml::de::Error| error.message().to_owned())?;
     let are_sane = limits.max_hops <= 1000 && (1..=1000).contains(&limits.max_calls) && limits.memory <= 12;
     let is_money = limits.max_usd.is_none_or(|usd| usd.is_finite() && usd > 0.0);
     if are_sane && is_money {
@@ -173,16 +177,16 @@ fn limits(own: toml::Value) -> Result<Limits, String> {
 }
 
 /// Overrides the threshold of the agent that reads. It has only one, and no other value may be set.
-fn changed_for_reader(default: &Parameters, own: toml::Value) -> Result<Parameters, String> {
+fn changed_for_reader(default: &PhraseWalkParameters, own: toml::Value) -> Result<PhraseWalkParameters, String> {
     let has_other = |own: &toml::Table| own.keys().any(|key| key != "phrase_threshold");
     match own {
         toml::Value::Table(own) if has_other(&own) => Err("reader has no threshold but phrase_threshold".to_owned()),
-        own => changed(default, own),
+        own => change_parameters(default, own),
     }
 }
 
 /// Overrides some values of default parameters, and checks the result.
-fn changed(default: &Parameters, own: toml::Value) -> Result<Parameters, String> {
+fn change_parameters(default: &PhraseWalkParameters, own: toml::Value) -> Result<PhraseWalkParameters, String> {
     let mut table = toml::Table::try_from(default).map_err(|error| error.to_string())?;
     let toml::Value::Table(own) = own else { return Err("the thresholds of an agent must be a table".to_owned()) };
     for (name, value) in own {
@@ -191,9 +195,10 @@ fn changed(default: &Parameters, own: toml::Value) -> Result<Parameters, String>
             (_, value) => drop(table.insert(name, value)),
         }
     }
-    let parameters: Parameters =
+    let parameters: PhraseWalkParameters =
         toml::Value::Table(table).try_into().map_err(|error: toml::de::Error| error.message().to_owned())?;
-    let Back { window, threshold, .. } = parameters.back.unwrap_or(Back { window: 1, threshold: 0.0, nodes: 0 });
+    let BacktrackParameters { window, threshold, .. } =
+        parameters.back.unwrap_or(BacktrackParameters { window: 1, threshold: 0.0, nodes: 0 });
     let thresholds = [parameters.phrase_threshold, parameters.stop_threshold, threshold];
     let is_sane = parameters.max_hops <= 1000 && (1..=1000).contains(&window);
     if !is_sane {

@@ -2,10 +2,11 @@
 
 use clap::{Args, ValueEnum, builder::PossibleValuesParser};
 use std::{fmt, path::PathBuf, str::FromStr};
-use wayword_metrics::Rule;
-use wayword_navigation::{agents::Prior, swap::Swap};
+use wayword_metrics::TrajectorySuccessRule;
+use wayword_navigation::{agents::WalkPrior, swap::InstructionSwap};
 use wayword_run::settings::{
-    Asked, AskedPlatform, AskedRoles, Draw, LABELS, RULES, Service, Walks, can_play, is_in_process, is_model,
+    AskedPlatform, AskedRoles, AskedSettings, Draw, LABELS_ROLE, RULES_ROLE, Service, Walks, can_play, is_in_process,
+    is_model,
 };
 
 /// `wayword compare`.
@@ -28,7 +29,7 @@ Examples:
       What it would cost to let a language model walk by the texts. Without --dry-run it walks.
 
 Give the same command again to continue a comparison that was stopped. `wayword report --run runs/table` shows the walks on a map.")]
-pub struct Compare {
+pub struct CompareArgs {
     /// Folder for walks, tables and the page. Give the same command again to continue.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
@@ -50,7 +51,7 @@ pub struct Compare {
         value_name = "NAMES",
         value_delimiter = ',',
         default_value = "clip-nav,seq-clip-nav,glip-nav",
-        value_parser = PossibleValuesParser::new(AGENTS),
+        value_parser = PossibleValuesParser::new(SELECTABLE_AGENTS),
         hide_possible_values = true
     )]
     pub agents: Vec<String>,
@@ -70,14 +71,14 @@ pub struct Compare {
     #[arg(long, value_name = "PRIOR")]
     pub prior: Option<AskedPrior>,
     /// What splits an instruction into phrases for the agents that walk by phrases: rules, or a language model as provider/model.
-    #[arg(long, value_name = "MODEL", default_value = "rules", value_parser = splitter)]
+    #[arg(long, value_name = "MODEL", default_value = "rules", value_parser = parse_splitter)]
     pub split: String,
     /// Language model of the agent `tools`, over HTTP, as provider/model. It calls tools where its provider has them.
-    #[arg(long, value_name = "MODEL", value_parser = walker)]
+    #[arg(long, value_name = "MODEL", value_parser = parse_walker_model)]
     pub llm: Option<String>,
     /// How the agent `tools` sees: labels (the platform's ground-truth labels, and the room), pictures (the model of --llm is shown
     /// them), or a model as provider/model that describes the pictures. [default: labels]
-    #[arg(long, value_name = "HOW", value_parser = seer)]
+    #[arg(long, value_name = "HOW", value_parser = parse_seeing)]
     pub see: Option<String>,
     /// Longer side of the pictures that models get; larger pictures are shrunk. [default: 512]
     #[arg(long, value_name = "PX")]
@@ -129,11 +130,11 @@ pub struct Compare {
 }
 
 /// The agents that `--agents` takes.
-const AGENTS: [&str; 6] = ["clip-nav", "seq-clip-nav", "glip-nav", "reader", "reader-map", "tools"];
+const SELECTABLE_AGENTS: [&str; 6] = ["clip-nav", "seq-clip-nav", "glip-nav", "reader", "reader-map", "tools"];
 
 /// The walks that an agent that knows the map considers, as typed with `--prior`.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct AskedPrior(pub Prior);
+pub struct AskedPrior(pub WalkPrior);
 
 /// Most hops of a walk that an agent considers.
 const MOST_HOPS: usize = 20;
@@ -143,8 +144,8 @@ const HOPS_OF_PIECES: usize = 8;
 impl fmt::Display for AskedPrior {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.0 {
-            Prior::Shortest(hops) => write!(f, "shortest:1-{hops}"),
-            Prior::TwoPieces(_) => f.write_str("none"),
+            WalkPrior::Shortest(hops) => write!(f, "shortest:1-{hops}"),
+            WalkPrior::TwoPieces(_) => f.write_str("none"),
         }
     }
 }
@@ -155,44 +156,46 @@ impl FromStr for AskedPrior {
     fn from_str(typed: &str) -> Result<Self, String> {
         let hops = typed.strip_prefix("shortest:1-").and_then(|hops| hops.parse().ok());
         match hops.filter(|hops| (1..=MOST_HOPS).contains(hops)) {
-            Some(hops) => Ok(Self(Prior::Shortest(hops))),
-            None if typed == "none" => Ok(Self(Prior::TwoPieces(HOPS_OF_PIECES))),
+            Some(hops) => Ok(Self(WalkPrior::Shortest(hops))),
+            None if typed == "none" => Ok(Self(WalkPrior::TwoPieces(HOPS_OF_PIECES))),
             None => Err(format!("give shortest:1-8 (with 1 to {MOST_HOPS} hops at most) or none")),
         }
     }
 }
 
 /// Checks the value of `--split`.
-fn splitter(name: &str) -> Result<String, String> {
-    if can_play(name, RULES) {
+fn parse_splitter(name: &str) -> Result<String, String> {
+    if can_play(name, RULES_ROLE) {
         return Ok(name.to_owned());
     }
-    Err(format!("name {RULES}, or a language model as provider/model, as in --split ollama/qwen3"))
+    Err(format!("name {RULES_ROLE}, or a language model as provider/model, as in --split ollama/qwen3"))
 }
 
 /// Checks the value of `--llm`.
-fn walker(name: &str) -> Result<String, String> {
-    if is_model(name) && can_play(name, RULES) && !is_in_process(name) {
+fn parse_walker_model(name: &str) -> Result<String, String> {
+    if is_model(name) && can_play(name, RULES_ROLE) && !is_in_process(name) {
         return Ok(name.to_owned());
     }
     Err("name a language model behind HTTP as provider/model, as in --llm openai/gpt-4.1-mini".to_owned())
 }
 
 /// The value of `--see` with which the language model of the agent `tools` gets the pictures itself.
-pub const PICTURES: &str = "pictures";
+pub const SEE_BY_PICTURES: &str = "pictures";
 
 /// Checks the value of `--see`.
-fn seer(name: &str) -> Result<String, String> {
-    if name == PICTURES || can_play(name, LABELS) {
+fn parse_seeing(name: &str) -> Result<String, String> {
+    if name == SEE_BY_PICTURES || can_play(name, LABELS_ROLE) {
         return Ok(name.to_owned());
     }
-    Err(format!("name {LABELS}, {PICTURES}, or a model that sees as provider/model, as in --see ollama/llava"))
+    Err(format!(
+        "name {LABELS_ROLE}, {SEE_BY_PICTURES}, or a model that sees as provider/model, as in --see ollama/llava"
+    ))
 }
 
-impl Compare {
+impl CompareArgs {
     /// The detector: that of `--detector`, or a grounder that is a checkpoint of GLIP (`hf/ORG/NAME:FILE.pth`).
     #[must_use]
-    pub fn detector(&self) -> Option<&str> {
+    pub fn detector_name(&self) -> Option<&str> {
         let is_glip = |name: &&str| name.starts_with("hf/") && name.ends_with(".pth");
         self.detector.as_deref().or_else(|| Some(self.grounder.as_str()).filter(is_glip))
     }
@@ -200,23 +203,23 @@ impl Compare {
     /// The flags in the form from which all commands make their settings. The splitter's model fills the role that asks, and the
     /// model of the agent `tools` fills the role that writes.
     #[must_use]
-    pub fn asked(&self) -> Asked {
-        Asked {
+    pub fn asked_settings(&self) -> AskedSettings {
+        AskedSettings {
             platform: self.platform.clone(),
             walks: Walks { episodes: Some(self.episodes.clone()), ..Walks::default() },
             draw: Draw { seed: Some(self.seed), limit: self.limit.map(|limit| limit as usize) },
             roles: AskedRoles {
                 ask: Some(self.split.clone()),
-                see: self.see.clone().filter(|see| see != PICTURES),
+                see: self.see.clone().filter(|see| see != SEE_BY_PICTURES),
                 write: self.llm.clone(),
-                write_sees: (self.see.as_deref() == Some(PICTURES)).then_some(true),
+                write_sees: (self.see.as_deref() == Some(SEE_BY_PICTURES)).then_some(true),
                 picture_px: self.picture_px,
                 base_url: self.base_url.clone(),
-                detector: self.detector().map(str::to_owned),
+                detector: self.detector_name().map(str::to_owned),
                 ..AskedRoles::default()
             },
             service: self.service.clone(),
-            ..Asked::default()
+            ..AskedSettings::default()
         }
     }
 }
@@ -230,7 +233,7 @@ pub enum SuccessRule {
     Visible,
 }
 
-impl From<SuccessRule> for Rule {
+impl From<SuccessRule> for TrajectorySuccessRule {
     fn from(rule: SuccessRule) -> Self {
         match rule {
             SuccessRule::Distance => Self::Distance,
@@ -257,12 +260,12 @@ pub enum SwapName {
 impl SwapName {
     /// The swap; none for `none`.
     #[must_use]
-    pub fn swap(self) -> Option<Swap> {
+    pub fn to_swap(self) -> Option<InstructionSwap> {
         match self {
-            Self::Directions => Some(Swap::Directions),
-            Self::Landmarks => Some(Swap::Landmarks),
-            Self::Sentences => Some(Swap::Sentences),
-            Self::OtherPath => Some(Swap::OtherPath),
+            Self::Directions => Some(InstructionSwap::Directions),
+            Self::Landmarks => Some(InstructionSwap::Landmarks),
+            Self::Sentences => Some(InstructionSwap::Sentences),
+            Self::OtherPath => Some(InstructionSwap::OtherPath),
             Self::None => None,
         }
     }

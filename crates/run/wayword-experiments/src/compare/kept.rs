@@ -1,7 +1,7 @@
 //! The settings of a comparison. `config.toml` in its folder stores them, so that a later command continues with the same.
 
-use super::agents::{READER_MAP, TOOLS};
-use crate::compare::args::{Compare, SwapName};
+use super::agents::{READER_MAP, TOOLS_AGENT_NAME};
+use crate::compare::args::{CompareArgs, SwapName};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::{
@@ -10,22 +10,22 @@ use std::{
 };
 use wayword_core::Platform;
 use wayword_navigation::{
-    agents::{Limits, Parameters, wording},
-    comparison::UNREAD,
-    swap::Swap,
+    agents::{PhraseWalkParameters, ToolWalkLimits, prompt_wording},
+    comparison::UNREAD_SET_NAME,
+    swap::InstructionSwap,
 };
 use wayword_run::{
-    error::Error,
+    error::CommandError,
     own_format::OwnFormat,
-    platforms::{self, Place},
+    platforms::{self, PlatformPlace},
     run_folder::{hash_of_file, short_hex},
-    settings::{LABELS, Settings, nameable},
+    settings::{LABELS_ROLE, RunSettings, refuse_unnameable},
 };
 
 /// The settings of a comparison, as `config.toml` stores them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Kept {
+pub(crate) struct ComparisonSettings {
     /// The platform's name.
     pub(crate) platform: String,
     /// Folder of its data.
@@ -60,7 +60,7 @@ pub(crate) struct Kept {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) base_url: Option<String>,
     /// Swaps of the first set.
-    pub(crate) swaps: Vec<Swap>,
+    pub(crate) swaps: Vec<InstructionSwap>,
     /// Only this many items.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) limit: Option<usize>,
@@ -74,9 +74,9 @@ pub(crate) struct Kept {
     pub(crate) reader_threshold: Option<f32>,
     /// The settings of the agent `tools`, if it takes part.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) tools: Option<ToolsKept>,
+    pub(crate) tools: Option<ToolAgentSettings>,
     /// Thresholds of the agents that walk by phrases.
-    pub(crate) parameters: BTreeMap<String, Parameters>,
+    pub(crate) parameters: BTreeMap<String, PhraseWalkParameters>,
     /// Hashes of the input files. A comparison is not continued if one of them has changed.
     pub(crate) inputs: BTreeMap<String, String>,
 }
@@ -84,7 +84,7 @@ pub(crate) struct Kept {
 /// The settings of the agent `tools`, which lets a language model decide.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct ToolsKept {
+pub(crate) struct ToolAgentSettings {
     /// Its model.
     pub(crate) llm: String,
     /// How it sees: labels, pictures, or the model that describes them.
@@ -92,11 +92,11 @@ pub(crate) struct ToolsKept {
     /// Longer side of the pictures that models are sent.
     pub(crate) picture_px: u32,
     /// The limits of a walk: hops, calls and money.
-    pub(crate) limits: Limits,
+    pub(crate) limits: ToolWalkLimits,
 }
 
 /// The version also changes when agents decide otherwise than before, so that no folder mixes walks of two versions.
-impl OwnFormat for Kept {
+impl OwnFormat for ComparisonSettings {
     const NAME: &str = "wayword-comparison/1";
     const NUMBER: Option<i64> = Some(1);
 }
@@ -105,25 +105,25 @@ impl OwnFormat for Kept {
 pub(super) const BY_NAME: &str = "detector";
 
 /// The name of the set of the episodes' own instructions.
-pub(super) const ORIGINAL: &str = "original";
+pub(super) const ORIGINAL_SET_NAME: &str = "original";
 
-impl Kept {
+impl ComparisonSettings {
     /// Makes the settings from the flags, and hashes the input files.
     ///
     /// # Errors
     /// When a set is named twice or not as it should be, an agent is not known, or a file cannot be read.
-    pub(super) fn of(args: &Compare, settings: &Settings) -> Result<Self, Error> {
-        nameable("--episodes", Some(&args.episodes))?;
-        nameable("--data", settings.data.as_deref())?;
-        nameable("--connectivity", settings.connectivity.as_deref())?;
-        let asked = if args.instructions.is_empty() { &vec![ORIGINAL.to_owned()] } else { &args.instructions };
+    pub(super) fn from_args(args: &CompareArgs, settings: &RunSettings) -> Result<Self, CommandError> {
+        refuse_unnameable("--episodes", Some(&args.episodes))?;
+        refuse_unnameable("--data", settings.data.as_deref())?;
+        refuse_unnameable("--connectivity", settings.connectivity.as_deref())?;
+        let asked = if args.instructions.is_empty() { &vec![ORIGINAL_SET_NAME.to_owned()] } else { &args.instructions };
         let mut instructions: Vec<(String, String)> = Vec::new();
         let mut inputs = BTreeMap::from([("episodes".to_owned(), hash_of_file(&args.episodes)?)]);
         for set in asked {
-            let (name, source) = named(set)?;
+            let (name, source) = parse_named_set(set)?;
             // Submissions are named after their set, and some file systems ignore case.
             if instructions.iter().any(|(other, _)| other.to_lowercase() == name.to_lowercase()) {
-                return Err(Error::usage(
+                return Err(CommandError::usage(
                     format!("--instructions: the name {name} is used twice"),
                     "give each set its own name",
                 ));
@@ -134,18 +134,18 @@ impl Kept {
             instructions.push((name, source));
         }
         if args.llm.is_some() {
-            inputs.insert("prompts of tools".to_owned(), short_hex(Sha256::new_with_prefix(wording())));
+            inputs.insert("prompts of tools".to_owned(), short_hex(Sha256::new_with_prefix(prompt_wording())));
         }
         let detector = settings.roles.detector.as_deref();
         let thresholds =
-            super::agents::parameters(&args.agents, (&args.grounder, detector), args.parameters.as_deref())?;
+            super::agents::read_thresholds(&args.agents, (&args.grounder, detector), args.parameters.as_deref())?;
         Ok(Self {
             platform: settings.platform.clone(),
-            data: settings.data.as_deref().map(absolute).transpose()?,
+            data: settings.data.as_deref().map(absolute_path).transpose()?,
             at: settings.at.clone(),
             island: settings.island,
-            connectivity: settings.connectivity.as_deref().map(absolute).transpose()?,
-            episodes: absolute(&args.episodes)?,
+            connectivity: settings.connectivity.as_deref().map(absolute_path).transpose()?,
+            episodes: absolute_path(&args.episodes)?,
             instructions,
             agents: args.agents.clone(),
             grounder: args.grounder.clone(),
@@ -153,12 +153,12 @@ impl Kept {
             detector: settings.roles.detector.clone(),
             split: settings.roles.ask.clone(),
             base_url: settings.roles.base_url.clone(),
-            swaps: swaps(&args.swaps)?,
+            swaps: check_swaps(&args.swaps)?,
             limit: settings.limit,
             seed: settings.seed,
-            prior: prior(args)?,
+            prior: prior_name(args)?,
             reader_threshold: thresholds.of_reader,
-            tools: tools(args, settings, thresholds.of_tools),
+            tools: tool_agent_settings(args, settings, thresholds.of_tools),
             parameters: thresholds.of_phrases,
             inputs,
         })
@@ -178,25 +178,25 @@ impl Kept {
     ///
     /// # Errors
     /// When it cannot be opened.
-    pub(super) fn platform(&self) -> Result<Box<dyn Platform>, Error> {
+    pub(super) fn open_platform(&self) -> Result<Box<dyn Platform>, CommandError> {
         let Self { data, at, island, connectivity, .. } = self;
         let (data, at, connectivity) = (data.as_deref(), at.as_deref(), connectivity.as_deref());
-        platforms::open_and_warn(&self.platform, Place { data, at, island: *island, connectivity })
+        platforms::open_and_warn(&self.platform, PlatformPlace { data, at, island: *island, connectivity })
     }
 }
 
 /// Whether a set can have this name: it becomes part of a file name, and some names have a meaning of their own.
 fn is_name(name: &str) -> bool {
     let is_plain = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '.');
-    let is_taken = [ORIGINAL, UNREAD].contains(&name.to_lowercase().as_str());
+    let is_taken = [ORIGINAL_SET_NAME, UNREAD_SET_NAME].contains(&name.to_lowercase().as_str());
     name.starts_with(char::is_alphanumeric) && name.chars().all(is_plain) && !is_taken
 }
 
 /// The walks that the agent `reader-map` considers; `None` if it does not take part.
-fn prior(args: &Compare) -> Result<Option<String>, Error> {
+fn prior_name(args: &CompareArgs) -> Result<Option<String>, CommandError> {
     let knows_map = args.agents.iter().any(|agent| agent == READER_MAP);
     if let (false, Some(prior)) = (knows_map, args.prior) {
-        return Err(Error::usage(
+        return Err(CommandError::usage(
             format!("--prior {prior} has no effect: it is for the agent {READER_MAP}"),
             format!("add {READER_MAP} to --agents, or leave --prior out"),
         ));
@@ -208,17 +208,17 @@ fn prior(args: &Compare) -> Result<Option<String>, Error> {
 ///
 /// # Errors
 /// When they do not fit together.
-pub(super) fn refuse_flags_of_tools(args: &Compare) -> Result<(), Error> {
-    let is_asked = args.agents.iter().any(|agent| agent == TOOLS);
+pub(super) fn refuse_flags_of_tools(args: &CompareArgs) -> Result<(), CommandError> {
+    let is_asked = args.agents.iter().any(|agent| agent == TOOLS_AGENT_NAME);
     let given =
         [("--llm", args.llm.is_some()), ("--see", args.see.is_some()), ("--picture-px", args.picture_px.is_some())];
     match given.into_iter().find(|(_, is_given)| *is_given) {
-        Some((flag, _)) if !is_asked => Err(Error::usage(
-            format!("{flag} has no effect: it is for the agent {TOOLS}"),
-            format!("add {TOOLS} to --agents, or leave {flag} out"),
+        Some((flag, _)) if !is_asked => Err(CommandError::usage(
+            format!("{flag} has no effect: it is for the agent {TOOLS_AGENT_NAME}"),
+            format!("add {TOOLS_AGENT_NAME} to --agents, or leave {flag} out"),
         )),
-        _ if is_asked && args.llm.is_none() => Err(Error::usage(
-            format!("--agents {TOOLS}: this agent needs a language model"),
+        _ if is_asked && args.llm.is_none() => Err(CommandError::usage(
+            format!("--agents {TOOLS_AGENT_NAME}: this agent needs a language model"),
             "name one, as in --llm openai/gpt-4.1-mini",
         )),
         _ => Ok(()),
@@ -226,21 +226,25 @@ pub(super) fn refuse_flags_of_tools(args: &Compare) -> Result<(), Error> {
 }
 
 /// The settings of the agent `tools`; `None` if it does not take part.
-fn tools(args: &Compare, settings: &Settings, limits: Limits) -> Option<ToolsKept> {
-    Some(ToolsKept {
+fn tool_agent_settings(
+    args: &CompareArgs,
+    settings: &RunSettings,
+    limits: ToolWalkLimits,
+) -> Option<ToolAgentSettings> {
+    Some(ToolAgentSettings {
         llm: args.llm.clone()?,
-        see: args.see.clone().unwrap_or_else(|| LABELS.to_owned()),
+        see: args.see.clone().unwrap_or_else(|| LABELS_ROLE.to_owned()),
         picture_px: settings.roles.picture_px,
         limits,
     })
 }
 
 /// The swaps that were asked for. `none` cannot be combined.
-fn swaps(asked: &[SwapName]) -> Result<Vec<Swap>, Error> {
-    let swaps: Vec<Swap> = asked.iter().filter_map(|swap| swap.swap()).collect();
+fn check_swaps(asked: &[SwapName]) -> Result<Vec<InstructionSwap>, CommandError> {
+    let swaps: Vec<InstructionSwap> = asked.iter().filter_map(|swap| swap.to_swap()).collect();
     let is_twice = (1..swaps.len()).any(|at| swaps[..at].contains(&swaps[at]));
     if is_twice || (swaps.len() < asked.len() && asked.len() > 1) {
-        return Err(Error::usage(
+        return Err(CommandError::usage(
             "--swaps names a swap twice, or `none` together with others",
             "name each swap once, or only `none`",
         ));
@@ -249,18 +253,18 @@ fn swaps(asked: &[SwapName]) -> Result<Vec<Swap>, Error> {
 }
 
 /// The absolute path, which means the same from whatever folder `wayword report` is run later.
-fn absolute(path: &Path) -> Result<PathBuf, Error> {
-    std::path::absolute(path).map_err(Error::io(path, "find"))
+fn absolute_path(path: &Path) -> Result<PathBuf, CommandError> {
+    std::path::absolute(path).map_err(CommandError::io(path, "find"))
 }
 
 /// Splits a set as typed into its name and its source.
-fn named(set: &str) -> Result<(String, String), Error> {
-    if set == ORIGINAL {
+fn parse_named_set(set: &str) -> Result<(String, String), CommandError> {
+    if set == ORIGINAL_SET_NAME {
         return Ok((set.to_owned(), String::new()));
     }
     match set.split_once('=') {
         Some((name, source)) if is_name(name) && !source.is_empty() => Ok((name.to_owned(), source.to_owned())),
-        _ => Err(Error::usage(
+        _ => Err(CommandError::usage(
             format!("--instructions {set}: this does not name a set"),
             "give `original` or NAME=RUN#STYLE, as in --instructions central=runs/central#reverie",
         )),

@@ -12,38 +12,38 @@ mod score;
 mod sets;
 mod tools;
 
-use crate::{compare::args::Compare, demands::Demands};
-use agents::Agent;
-use estimate::Estimate;
-use grounders::Grounders;
-use make::Crew;
-use outputs::Gathered;
-use score::Judge;
-use sets::Item;
+use crate::{compare::args::CompareArgs, demands::PlatformDemands};
+use agents::WalkingAgent;
+use estimate::ComparisonEstimate;
+use grounders::ComparisonGrounders;
+use make::ItemWalkMaker;
+use outputs::ComparisonOutputs;
+use score::WalkJudge;
+use sets::ComparisonItem;
 use std::{fs, path::Path};
-use tools::{HeldBack, Toolbox};
-use wayword_core::{Failure, ModelError, Recent};
+use tools::{AgentToolbox, WithheldWalks};
+use wayword_core::{FailureKind, ModelError, RecentCache};
 use wayword_navigation::{
     WalkError,
-    directions::{ByModel, ByRules, Splitter},
+    directions::{ByModel, ByRules, InstructionSplitter},
 };
 use wayword_run::{
-    calls::Calls,
-    count::count,
-    error::{Error, Exit},
-    in_order::{cores, in_order},
+    calls::ModelCalls,
+    count::count_phrase,
+    error::{CommandError, Exit},
+    in_order::{core_count, in_order},
     interrupt,
-    losses::Losses,
-    output::Output,
-    plan::Models,
+    losses::LossCounter,
+    output::CommandOutput,
+    plan::JobModels,
     platforms::SCENES_KEPT,
     run_folder as run,
     run_folder::Journal,
-    settings::RULES,
+    settings::RULES_ROLE,
     settings_file as config,
 };
 
-pub(crate) use kept::Kept;
+pub(crate) use kept::ComparisonSettings;
 pub use page::{is_comparison, write_of_folder};
 
 /// Names of the files in a comparison's folder, except `config.toml`.
@@ -62,64 +62,65 @@ pub(crate) mod file {
 }
 
 /// The command gives up when this many items have failed and none was walked.
-const FRUITLESS: usize = 20;
+const MAX_FRUITLESS_ITEMS: usize = 20;
 
 /// Items between two flushes to the disk.
-const FLUSH: usize = 16;
+const ITEMS_PER_FLUSH: usize = 16;
 
 /// Runs `wayword compare`: makes or continues the walks, writes tables and page, and prints the result.
 ///
 /// # Errors
 /// When the flags do not fit together, a set cannot be read, or no item could be walked.
-pub fn compared(args: &Compare, output: &Output) -> Result<Exit, Error> {
+pub fn run_comparison(args: &CompareArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
     if let Some(file) = &args.calibration {
         let problem = format!(
             "--calibration {} has no effect: no agent judges claims by what labels do not list",
             file.display()
         );
-        return Err(Error::usage(problem, "leave it out; `wayword check` and `wayword generate` take it"));
+        return Err(CommandError::usage(problem, "leave it out; `wayword check` and `wayword generate` take it"));
     }
     kept::refuse_flags_of_tools(args)?;
-    let job = args.asked().or(config::calls(args.config.as_deref())?).job()?;
-    let kept = Kept::of(args, &job.settings)?;
-    let models = Models::of(&job)?;
+    let job = args.asked_settings().or_file(config::read_call_settings(args.config.as_deref())?).into_job()?;
+    let kept = ComparisonSettings::from_args(args, &job.settings)?;
+    let models = JobModels::for_job(&job)?;
     tools::refuse_unknown_price(&kept, &models)?;
     if !args.dry_run {
-        Calls::ready(&job, output)?;
+        ModelCalls::check_ready(&job, output)?;
     }
-    let platform = kept.platform()?;
-    let demands = Demands::new(platform.as_ref());
-    let (items, sizes, of_episodes) = sets::load(&kept, platform.as_ref(), &demands)?;
-    let judge = Judge::new(&kept, &items, &demands, args.rule.map(Into::into))?;
+    let platform = kept.open_platform()?;
+    let demands = PlatformDemands::new(platform.as_ref());
+    let (items, sizes, of_episodes) = sets::load_items(&kept, platform.as_ref(), &demands)?;
+    let judge = WalkJudge::new(&kept, &items, &demands, args.rule.map(Into::into))?;
     if let Some(item) = judge.without_object.filter(|_| args.rule.is_none()) {
         output.say(format_args!(
             "success is judged by distance, because item {item} names no object whose place is known"
         ));
     }
-    let agents = Agent::all(&kept, args.prior.unwrap_or_default());
+    let agents = WalkingAgent::all_for_comparison(&kept, args.prior.unwrap_or_default());
     if args.dry_run {
-        let estimate = Estimate::of(&kept, &job.settings, &items, &agents, (platform.as_ref(), &models))?;
-        output.data(&estimate, &estimate);
+        let estimate =
+            ComparisonEstimate::for_comparison(&kept, &job.settings, &items, &agents, (platform.as_ref(), &models))?;
+        output.print_result(&estimate, &estimate);
         return Ok(Exit::Done);
     }
     if kept.tools.is_some() {
         tools::warn_of_long_texts(&items, output);
     }
-    let grounders = Grounders::open(&kept, output)?;
+    let grounders = ComparisonGrounders::open(&kept, output)?;
     // A new folder is made after the models are loaded, so that a model that does not fit into the memory leaves none.
     run::refuse_file(&args.out)?;
-    let begun = run::is_begun(&args.out).then(|| begin(&args.out, &kept)).transpose()?;
+    let begun = run::is_begun(&args.out).then(|| begin_folder(&args.out, &kept)).transpose()?;
     let id = run::id_of(&args.out, "compare")?;
-    let calls = models.open(&id, output)?;
+    let calls = models.open_calls(&id, output)?;
     let grounders = grounders.with_detector(&kept, calls.as_ref())?;
-    let splitter = splitter(&kept.split, calls.as_ref())?;
-    let _held = begun.map_or_else(|| begin(&args.out, &kept), Ok)?;
+    let splitter = open_splitter(&kept.split, calls.as_ref())?;
+    let _held = begun.map_or_else(|| begin_folder(&args.out, &kept), Ok)?;
     if calls.is_some() {
         run::keep_id(&args.out, &id)?;
     }
-    let toolbox = Toolbox::open(&kept, &job.settings, (calls.as_ref(), &models, items.len()), platform.as_ref())?;
-    let surveys = Recent::new(SCENES_KEPT);
-    let crew = Crew {
+    let toolbox = AgentToolbox::open(&kept, &job.settings, (calls.as_ref(), &models, items.len()), platform.as_ref())?;
+    let surveys = RecentCache::new(SCENES_KEPT);
+    let crew = ItemWalkMaker {
         platform: platform.as_ref(),
         grounders: &grounders,
         splitter: splitter.as_ref(),
@@ -130,25 +131,25 @@ pub fn compared(args: &Compare, output: &Output) -> Result<Exit, Error> {
     };
     let failed = walk_all(&args.out, &items, &crew, calls.as_ref(), output)?;
     if let Some(calls) = &calls {
-        calls.record()?;
-        output.say(format_args!("models: {}", calls.spent()));
+        calls.write_recording()?;
+        output.say(format_args!("models: {}", calls.spent_so_far()));
     }
-    let gathered = Gathered::of(&args.out, &judge)?;
-    if gathered.results.extent().0 == 0 {
+    let gathered = ComparisonOutputs::from_folder(&args.out, &judge)?;
+    if gathered.results.count_items_and_paths().0 == 0 {
         let problem = "no item could be walked: a model failed on every one of them";
-        return Err(Error::usage(problem, "see the reasons above; give the same command again to try again"));
+        return Err(CommandError::usage(problem, "see the reasons above; give the same command again to try again"));
     }
-    let sets = sets::described(&kept, &items, &sizes, |item| gathered.results.has(item));
+    let sets = sets::describe_sets(&kept, &items, &sizes, |item| gathered.results.has_item(item));
     let (resamples, results) = (args.resamples as usize, &gathered.results);
-    let comparison = score::comparison(&kept, &crew, sets, &judge, results, (resamples, failed));
-    outputs::write(&args.out, &comparison, &gathered)?;
+    let comparison = score::build_comparison(&kept, &crew, sets, &judge, results, (resamples, failed));
+    outputs::write_outputs(&args.out, &comparison, &gathered)?;
     let page = args.out.join(run::file::REPORT);
-    page::write(&args.out, &page, &comparison, &judge, platform.as_ref(), args.replays)?;
-    output.data(&comparison, wayword_report::pages::comparison::screen(&comparison));
+    page::write_page(&args.out, &page, &comparison, &judge, platform.as_ref(), args.replays)?;
+    output.print_result(&comparison, wayword_report::pages::comparison::screen_text(&comparison));
     output.say(format_args!("walks, tables and page: {}", args.out.display()));
-    let walked = gathered.results.extent().0;
+    let walked = gathered.results.count_items_and_paths().0;
     if walked < of_episodes {
-        let of = count(of_episodes, "item");
+        let of = count_phrase(of_episodes, "item");
         output
             .say(format_args!("the submissions cover {walked} of {of}; score them with `wayword evaluate --partial`"));
     }
@@ -156,17 +157,17 @@ pub fn compared(args: &Compare, output: &Output) -> Result<Exit, Error> {
 }
 
 /// Makes or continues the folder, and locks it against other processes.
-fn begin(folder: &Path, kept: &Kept) -> Result<run::Held, Error> {
-    fs::create_dir_all(folder).map_err(Error::io(folder, "make the folder"))?;
-    let held = run::hold(folder)?;
+fn begin_folder(folder: &Path, kept: &ComparisonSettings) -> Result<run::FolderLock, CommandError> {
+    fs::create_dir_all(folder).map_err(CommandError::io(folder, "make the folder"))?;
+    let held = run::lock_folder(folder)?;
     run::keep_config(folder, kept)?;
     Ok(held)
 }
 
 /// Opens the splitter that takes instructions apart into phrases.
-fn splitter(name: &str, calls: Option<&Calls>) -> Result<Box<dyn Splitter>, Error> {
-    match calls.filter(|_| name != RULES) {
-        Some(calls) => Ok(Box::new(ByModel::new(calls.model(name)?))),
+fn open_splitter(name: &str, calls: Option<&ModelCalls>) -> Result<Box<dyn InstructionSplitter>, CommandError> {
+    match calls.filter(|_| name != RULES_ROLE) {
+        Some(calls) => Ok(Box::new(ByModel::new(calls.open_model(name)?))),
         None => Ok(Box::new(ByRules)),
     }
 }
@@ -174,43 +175,50 @@ fn splitter(name: &str, calls: Option<&Calls>) -> Result<Box<dyn Splitter>, Erro
 /// Makes the walks that are not in the folder yet. Returns how many items failed.
 fn walk_all(
     folder: &Path,
-    items: &[Item],
-    crew: &Crew<'_>,
-    calls: Option<&Calls>,
-    output: &Output,
-) -> Result<usize, Error> {
+    items: &[ComparisonItem],
+    crew: &ItemWalkMaker<'_>,
+    calls: Option<&ModelCalls>,
+    output: &CommandOutput,
+) -> Result<usize, CommandError> {
     let mut walks = Journal::open(&folder.join(file::WALKS), key_of)?;
-    let is_done = |item: &&Item| {
-        let mut names = crew.names(item).into_iter();
-        names.all(|(agent, set, text_index)| walks.has(&key(&agent, &set, &item.episode.id, text_index as u64)))
+    let is_done = |item: &&ComparisonItem| {
+        let mut names = crew.walk_names(item).into_iter();
+        names
+            .all(|(agent, set, text_index)| walks.has_key(&walk_key(&agent, &set, &item.episode.id, text_index as u64)))
     };
-    let left: Vec<&Item> = items.iter().filter(|item| !is_done(item)).collect();
+    let left: Vec<&ComparisonItem> = items.iter().filter(|item| !is_done(item)).collect();
     if left.len() < items.len() {
-        output.say(format_args!("continuing: {} of {} done", items.len() - left.len(), count(items.len(), "item")));
+        output.say(format_args!(
+            "continuing: {} of {} done",
+            items.len() - left.len(),
+            count_phrase(items.len(), "item")
+        ));
     }
     let _graceful = interrupt::finish_first(calls);
-    let bar = output.progress(items.len(), "items");
+    let bar = output.progress_bar(items.len(), "items");
     bar.set_position((items.len() - left.len()) as u64);
     bar.reset_eta();
     let (mut walked, mut failed, mut unflushed) = (0, 0, 0);
-    let mut losses = Losses::default();
-    let mut held_back = HeldBack::default();
-    let workers = calls.map_or_else(cores, Calls::workers);
+    let mut losses = LossCounter::default();
+    let mut held_back = WithheldWalks::default();
+    let workers = calls.map_or_else(core_count, ModelCalls::worker_count);
     in_order(
         &left,
         workers,
-        |item| crew.walks(item),
+        |item| crew.make_walks(item),
         |item, made| {
             bar.inc(1);
-            let is_gone = losses.are_enough(made.as_ref().err().and_then(loss));
+            let is_gone = losses.are_enough(made.as_ref().err().and_then(model_failure));
             match made {
                 Ok(made) => {
                     walked += 1;
-                    held_back.take(made)?.iter().flatten().try_for_each(|walk| walks.append(walk))?;
+                    held_back.take_walks(made)?.iter().flatten().try_for_each(|walk| walks.append(walk))?;
                 }
                 // The service is gone: the other items would wait for it too.
                 Err(error) if is_gone => return Err(error.into()),
-                Err(error) if is_of_item(&error) && walked == 0 && failed + 1 == FRUITLESS => return Err(error.into()),
+                Err(error) if is_of_item(&error) && walked == 0 && failed + 1 == MAX_FRUITLESS_ITEMS => {
+                    return Err(error.into());
+                }
                 Err(error) if is_of_item(&error) => {
                     failed += 1;
                     output.say(format_args!("item {}: {error}", item.episode.id));
@@ -218,23 +226,23 @@ fn walk_all(
                 Err(error) => return Err(error.into()),
             }
             unflushed += 1;
-            if unflushed == FLUSH {
+            if unflushed == ITEMS_PER_FLUSH {
                 walks.sync()?;
                 unflushed = 0;
             }
-            interrupt::check().map(|()| true)
+            interrupt::check_interrupt().map(|()| true)
         },
     )?;
-    held_back.rest().iter().flatten().try_for_each(|walk| walks.append(walk))?;
+    held_back.into_rest().iter().flatten().try_for_each(|walk| walks.append(walk))?;
     walks.sync()?;
     bar.finish_and_clear();
     Ok(failed)
 }
 
 /// The kind of the failure, if a model failed; `None` for other errors.
-fn loss(error: &WalkError) -> Option<Failure> {
+fn model_failure(error: &WalkError) -> Option<FailureKind> {
     match error {
-        WalkError::Model(error) => Some(error.failure()),
+        WalkError::Model(error) => Some(error.failure_kind()),
         _ => None,
     }
 }
@@ -247,9 +255,9 @@ fn is_of_item(error: &WalkError) -> bool {
 /// The key of a walk's line.
 fn key_of(line: &serde_json::Value) -> Option<String> {
     let text = |field: &str| line.get(field)?.as_str();
-    Some(key(text("agent")?, text("set")?, text("item")?, line.get("text_index")?.as_u64()?))
+    Some(walk_key(text("agent")?, text("set")?, text("item")?, line.get("text_index")?.as_u64()?))
 }
 
-fn key(agent: &str, set: &str, item: &str, text_index: u64) -> String {
+fn walk_key(agent: &str, set: &str, item: &str, text_index: u64) -> String {
     format!("{agent}\n{set}\n{item}\n{text_index}")
 }

@@ -1,20 +1,20 @@
 //! Writes the HTML page of a comparison: its tables and plots, and a replay of some of its walks.
 
-use super::{file, kept::Kept, score::Judge, sets};
-use crate::{demands::Demands, episodes};
+use super::{file, kept::ComparisonSettings, score::WalkJudge, sets};
+use crate::{demands::PlatformDemands, episodes};
 use std::{
     collections::{BTreeMap, BTreeSet},
     path::Path,
     sync::Arc,
 };
 use wayword_core::{Platform, SceneId, ViewpointGraph, ViewpointId};
-use wayword_metrics::{Metric, Score};
-use wayword_navigation::{comparison::Comparison, walk::Walk};
+use wayword_metrics::{TrajectoryMetric, TrajectoryScore};
+use wayword_navigation::{comparison::AgentComparison, walk::AgentWalkRecord};
 use wayword_report::pages::{
-    comparison::{self, Written},
-    replay::{Replay, Sample},
+    comparison::{self, WrittenComparison},
+    replay::{WalkReplay, WalkSample},
 };
-use wayword_run::{error::Error, run_folder as run, text_file};
+use wayword_run::{error::CommandError, run_folder as run, text_file};
 
 /// Whether a folder holds a comparison, finished or not.
 pub fn is_comparison(folder: &Path) -> bool {
@@ -25,85 +25,89 @@ pub fn is_comparison(folder: &Path) -> bool {
 ///
 /// # Errors
 /// When the folder, the platform or the episodes cannot be read, or the page cannot be written.
-pub fn write_of_folder(folder: &Path, out: &Path, most: usize) -> Result<Written, Error> {
-    let kept: Kept = run::config_of(folder)?;
+pub fn write_of_folder(folder: &Path, out: &Path, most: usize) -> Result<WrittenComparison, CommandError> {
+    let kept: ComparisonSettings = run::config_of(folder)?;
     let path = folder.join(file::COMPARISON);
     if !path.is_file() {
         let problem = format!("{} holds a comparison that was not finished", folder.display());
-        return Err(Error::usage(problem, "give the same `wayword compare` command again"));
+        return Err(CommandError::usage(problem, "give the same `wayword compare` command again"));
     }
     if kept.inputs.get("episodes") != Some(&run::hash_of_file(&kept.episodes)?) {
         let problem = format!("{}: the file has changed since the comparison", kept.episodes.display());
-        return Err(Error::usage(problem, "put the old file back, or compare again in another folder"));
+        return Err(CommandError::usage(problem, "put the old file back, or compare again in another folder"));
     }
-    let found: Comparison = serde_json::from_str(&text_file::read(&path, "read the comparison")?).map_err(|error| {
-        Error::usage(format!("{}: {error}", path.display()), "run `wayword compare` with the same --out again")
-    })?;
-    let platform = kept.platform()?;
-    let mut episodes = episodes::read(&kept.episodes, platform.as_ref())?;
+    let found: AgentComparison = serde_json::from_str(&text_file::read_text_file(&path, "read the comparison")?)
+        .map_err(|error| {
+            CommandError::usage(
+                format!("{}: {error}", path.display()),
+                "run `wayword compare` with the same --out again",
+            )
+        })?;
+    let platform = kept.open_platform()?;
+    let mut episodes = episodes::read_episodes(&kept.episodes, platform.as_ref())?;
     episodes.truncate(kept.limit.unwrap_or(usize::MAX));
-    let items: Vec<_> = episodes.into_iter().map(|episode| sets::item(episode, &[])).collect();
+    let items: Vec<_> = episodes.into_iter().map(|episode| sets::item_with_texts(episode, &[])).collect();
     // Without the rule, because it may not apply to items that no set has, and those are not walked.
-    let mut judge = Judge::new(&kept, &items, &Demands::new(platform.as_ref()), None)?;
+    let mut judge = WalkJudge::new(&kept, &items, &PlatformDemands::new(platform.as_ref()), None)?;
     judge.rule = found.about.rule;
-    write(folder, out, &found, &judge, platform.as_ref(), most)
+    write_page(folder, out, &found, &judge, platform.as_ref(), most)
 }
 
 /// Writes the page of a comparison with at most `most` replays.
 ///
 /// # Errors
 /// When the walks cannot be read, or the page cannot be written.
-pub(super) fn write(
+pub(super) fn write_page(
     folder: &Path,
     out: &Path,
-    found: &Comparison,
-    judge: &Judge<'_>,
+    found: &AgentComparison,
+    judge: &WalkJudge<'_>,
     platform: &dyn Platform,
     most: usize,
-) -> Result<Written, Error> {
-    let (chosen, left_out) = choose(folder, judge, most)?;
+) -> Result<WrittenComparison, CommandError> {
+    let (chosen, left_out) = choose_walks(folder, judge, most)?;
     let mut graphs: BTreeMap<SceneId, Arc<ViewpointGraph>> = BTreeMap::new();
     for shown in &chosen {
         let scene = &shown.walk.scene;
         if !graphs.contains_key(scene) {
-            graphs.insert(scene.clone(), platform.graph(scene)?);
+            graphs.insert(scene.clone(), platform.graph_for_scene(scene)?);
         }
     }
-    let replays: Vec<Replay<'_>> = chosen
+    let replays: Vec<WalkReplay<'_>> = chosen
         .iter()
         .filter_map(|shown| {
             let graph = graphs.get(&shown.walk.scene)?;
-            let Shown { walk, score, reference } = shown;
-            Some(Replay { walk, graph, reference, score, rule: judge.rule })
+            let ReplayedWalk { walk, score, reference } = shown;
+            Some(WalkReplay { walk, graph, reference, score, rule: judge.rule })
         })
         .collect();
-    comparison::write(out, found, &replays, left_out)
+    comparison::write_comparison(out, found, &replays, left_out)
 }
 
 /// A walk that the page replays.
-struct Shown {
-    walk: Walk,
-    score: Score,
+struct ReplayedWalk {
+    walk: AgentWalkRecord,
+    score: TrajectoryScore,
     reference: Vec<ViewpointId>,
 }
 
 /// Chooses the walks to replay. It reads all walks twice, so that only the chosen ones are in memory.
-fn choose(folder: &Path, judge: &Judge<'_>, most: usize) -> Result<(Vec<Shown>, usize), Error> {
-    let mut sample = Sample::of(most);
+fn choose_walks(folder: &Path, judge: &WalkJudge<'_>, most: usize) -> Result<(Vec<ReplayedWalk>, usize), CommandError> {
+    let mut sample = WalkSample::with_limit(most);
     let mut at = 0_usize;
-    judge.each(folder, |walk, score, _| {
-        let is_success = score.get(Metric::SuccessRate, judge.rule).is_some_and(|rate| rate > 0.0);
-        sample.offer(&walk, is_success, at);
+    judge.for_each_walk(folder, |walk, score, _| {
+        let is_success = score.get(TrajectoryMetric::SuccessRate, judge.rule).is_some_and(|rate| rate > 0.0);
+        sample.offer_walk(&walk, is_success, at);
         at += 1;
         Ok(())
     })?;
-    let (chosen, left_out) = sample.chosen();
+    let (chosen, left_out) = sample.into_chosen();
     let chosen: BTreeSet<usize> = chosen.into_iter().collect();
     let mut shown = Vec::with_capacity(chosen.len());
     let mut at = 0_usize;
-    judge.each(folder, |walk, score, demand| {
+    judge.for_each_walk(folder, |walk, score, demand| {
         if chosen.contains(&at) {
-            shown.push(Shown { walk, score, reference: demand.reference.clone() });
+            shown.push(ReplayedWalk { walk, score, reference: demand.reference.clone() });
         }
         at += 1;
         Ok(())

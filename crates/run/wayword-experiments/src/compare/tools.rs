@@ -1,67 +1,67 @@
 //! The agent `tools`, which lets a language model decide its moves: the model, how the agent sees, and the limits of its walks.
 
 use super::{
-    kept::{Kept, ToolsKept},
-    sets::Item,
+    kept::{ComparisonSettings, ToolAgentSettings},
+    sets::ComparisonItem,
 };
-use crate::compare::args::PICTURES;
+use crate::compare::args::SEE_BY_PICTURES;
 use std::sync::Arc;
 use wayword_core::{LanguageModel, ModelError, Platform, View};
 use wayword_navigation::{
-    agents::{Describes, Limits, Looks, MOST_TEXT_CHARS, ModelWalker},
-    walk::Walk,
+    agents::{MOST_TEXT_CHARS, ModelWalker, ToolAgentSight, ToolWalkLimits, ViewDescriber},
+    walk::AgentWalkRecord,
 };
 use wayword_run::{
-    calls::Calls,
-    count::count,
-    error::Error,
-    output::Output,
-    plan::Models,
-    settings::{LABELS, RULES, Roles, Settings},
-    team::Team,
+    calls::ModelCalls,
+    count::count_phrase,
+    error::CommandError,
+    output::CommandOutput,
+    plan::JobModels,
+    settings::{LABELS_ROLE, RULES_ROLE, RunRoles, RunSettings},
+    team::RoleTeam,
 };
 use wayword_synthesis::observe::talk_about;
 
 /// The agent `tools` with its model, the model's price, its eyes and its limits.
-pub(super) struct Toolbox {
+pub(super) struct AgentToolbox {
     model: Arc<dyn LanguageModel>,
     price: Option<Box<dyn Fn(u64, u64) -> f64 + Send + Sync>>,
-    sight: Sight,
-    limits: Limits,
+    sight: ToolboxSight,
+    limits: ToolWalkLimits,
     seed: u64,
     /// How many walks of one item are made at a time.
     pub(super) at_once: usize,
 }
 
 /// How the agent sees.
-enum Sight {
+enum ToolboxSight {
     Labels,
     Pictures,
-    Captions(Captions),
+    Captions(TeamCaptions),
 }
 
 /// Describes views with captions, which a team of models makes as in a run.
-struct Captions(Box<Team>);
+struct TeamCaptions(Box<RoleTeam>);
 
-impl Toolbox {
+impl AgentToolbox {
     /// Opens the agent of a comparison; `None` if it does not take part.
     ///
     /// # Errors
     /// When a model cannot be reached by its name.
     pub(super) fn open(
-        kept: &Kept,
-        settings: &Settings,
-        (calls, models, items): (Option<&Calls>, &Models<'_>, usize),
+        kept: &ComparisonSettings,
+        settings: &RunSettings,
+        (calls, models, items): (Option<&ModelCalls>, &JobModels<'_>, usize),
         platform: &dyn Platform,
-    ) -> Result<Option<Self>, Error> {
+    ) -> Result<Option<Self>, CommandError> {
         let Some((tools, calls)) = kept.tools.as_ref().zip(calls) else { return Ok(None) };
         Ok(Some(Self {
-            model: calls.model(&tools.llm)?,
+            model: calls.open_model(&tools.llm)?,
             price: models
-                .price(&tools.llm)
+                .model_price(&tools.llm)
                 .cloned()
-                .map(|price| Box::new(move |tokens_in, tokens_out| price.usd(tokens_in, tokens_out)) as _),
-            sight: Sight::of(tools, settings, calls, platform)?,
+                .map(|price| Box::new(move |tokens_in, tokens_out| price.cost_usd(tokens_in, tokens_out)) as _),
+            sight: ToolboxSight::from_settings(tools, settings, calls, platform)?,
             limits: tools.limits,
             seed: kept.seed,
             at_once: calls.views_at_once(items),
@@ -69,56 +69,67 @@ impl Toolbox {
     }
 
     /// The agent in the form that makes walks.
-    pub(super) fn walker(&self) -> ModelWalker<'_> {
-        let (model, price, looks) = (self.model.as_ref(), self.price.as_deref(), self.sight.looks());
+    pub(super) fn model_walker(&self) -> ModelWalker<'_> {
+        let (model, price, looks) = (self.model.as_ref(), self.price.as_deref(), self.sight.agent_sight());
         ModelWalker { model, price, looks, limits: self.limits, seed: self.seed }
     }
 
     /// Whether the agent needs pictures of its views.
     pub(super) fn needs_pictures(&self) -> bool {
-        !matches!(self.sight, Sight::Labels)
+        !matches!(self.sight, ToolboxSight::Labels)
     }
 }
 
-impl Sight {
-    fn of(tools: &ToolsKept, settings: &Settings, calls: &Calls, platform: &dyn Platform) -> Result<Self, Error> {
+impl ToolboxSight {
+    fn from_settings(
+        tools: &ToolAgentSettings,
+        settings: &RunSettings,
+        calls: &ModelCalls,
+        platform: &dyn Platform,
+    ) -> Result<Self, CommandError> {
         match tools.see.as_str() {
-            LABELS => Ok(Self::Labels),
-            PICTURES => Ok(Self::Pictures),
-            _ => Ok(Self::Captions(Captions(Box::new(Team::new(&describing(settings), Some(calls), platform)?)))),
+            LABELS_ROLE => Ok(Self::Labels),
+            SEE_BY_PICTURES => Ok(Self::Pictures),
+            _ => Ok(Self::Captions(TeamCaptions(Box::new(RoleTeam::new(
+                &describing_settings(settings),
+                Some(calls),
+                platform,
+            )?)))),
         }
     }
 
-    fn looks(&self) -> Looks<'_> {
+    fn agent_sight(&self) -> ToolAgentSight<'_> {
         match self {
-            Self::Labels => Looks::Labels,
-            Self::Pictures => Looks::Pictures,
-            Self::Captions(captions) => Looks::Captions(captions),
+            Self::Labels => ToolAgentSight::Labels,
+            Self::Pictures => ToolAgentSight::Pictures,
+            Self::Captions(captions) => ToolAgentSight::Captions(captions),
         }
     }
 }
 
-impl Describes for Captions {
-    fn describe(&self, view: &View) -> Result<String, ModelError> {
+impl ViewDescriber for TeamCaptions {
+    fn describe_view(&self, view: &View) -> Result<String, ModelError> {
         Ok(talk_about(view, self.0.observers())?.text)
     }
 }
 
 /// The settings for describing views: those of the comparison, but only the role that sees is a model's.
-pub(super) fn describing(settings: &Settings) -> Settings {
-    let [ask, summarise, write] = [RULES; 3].map(str::to_owned);
-    let roles = Roles { ask, summarise, write, write_sees: false, ..settings.roles.clone() };
-    Settings { roles, ..settings.clone() }
+pub(super) fn describing_settings(settings: &RunSettings) -> RunSettings {
+    let [ask, summarise, write] = [RULES_ROLE; 3].map(str::to_owned);
+    let roles = RunRoles { ask, summarise, write, write_sees: false, ..settings.roles.clone() };
+    RunSettings { roles, ..settings.clone() }
 }
 
 /// Refuses a limit on the cost of a walk if the price of its model is unknown.
 ///
 /// # Errors
 /// When there is a limit but no price.
-pub(super) fn refuse_unknown_price(kept: &Kept, models: &Models<'_>) -> Result<(), Error> {
+pub(super) fn refuse_unknown_price(kept: &ComparisonSettings, models: &JobModels<'_>) -> Result<(), CommandError> {
     match &kept.tools {
-        Some(ToolsKept { llm, limits: Limits { max_usd: Some(usd), .. }, .. }) if models.price(llm).is_none() => {
-            Err(Error::usage(
+        Some(ToolAgentSettings { llm, limits: ToolWalkLimits { max_usd: Some(usd), .. }, .. })
+            if models.model_price(llm).is_none() =>
+        {
+            Err(CommandError::usage(
                 format!("[tools] max_usd = {usd} cannot be kept: the price of {llm} is not known"),
                 "add the price to a file, and give the file with --prices FILE",
             ))
@@ -130,8 +141,8 @@ pub(super) fn refuse_unknown_price(kept: &Kept, models: &Models<'_>) -> Result<(
 /// Withholds the first walks of a command until one reply of the model was of use. In this way a model that cannot call tools
 /// at all leaves no worthless walks in the folder.
 #[derive(Debug, Default)]
-pub(super) struct HeldBack {
-    items: Vec<Vec<Walk>>,
+pub(super) struct WithheldWalks {
+    items: Vec<Vec<AgentWalkRecord>>,
     walks: usize,
     has_spoken: bool,
 }
@@ -139,12 +150,15 @@ pub(super) struct HeldBack {
 /// The command gives up after this many walks in which no reply was of use.
 const FRUITLESS_WALKS: usize = 20;
 
-impl HeldBack {
+impl WithheldWalks {
     /// Takes the walks of an item. Returns those that can be written to the folder now.
     ///
     /// # Errors
     /// When no reply so far was of use, and there were enough walks.
-    pub(super) fn take(&mut self, walks: Vec<Walk>) -> Result<Vec<Vec<Walk>>, Error> {
+    pub(super) fn take_walks(
+        &mut self,
+        walks: Vec<AgentWalkRecord>,
+    ) -> Result<Vec<Vec<AgentWalkRecord>>, CommandError> {
         let efforts = || walks.iter().filter_map(|walk| walk.effort.as_ref());
         self.has_spoken |= efforts().next().is_none() || efforts().any(|effort| effort.calls > effort.useless.sum());
         self.walks += efforts().count();
@@ -156,7 +170,7 @@ impl HeldBack {
         if self.walks < FRUITLESS_WALKS {
             return Ok(Vec::new());
         }
-        Err(Error::usage(
+        Err(CommandError::usage(
             format!(
                 "--llm: none of the first {} walks had a reply of use; the last one: {}",
                 self.walks,
@@ -167,17 +181,17 @@ impl HeldBack {
     }
 
     /// The walks that are still withheld at the end of a command with few walks.
-    pub(super) fn rest(self) -> Vec<Vec<Walk>> {
+    pub(super) fn into_rest(self) -> Vec<Vec<AgentWalkRecord>> {
         self.items
     }
 }
 
 /// Warns of texts that are longer than the part that the model gets.
-pub(super) fn warn_of_long_texts(items: &[Item], output: &Output) {
+pub(super) fn warn_of_long_texts(items: &[ComparisonItem], output: &CommandOutput) {
     let texts = || items.iter().flat_map(|item| &item.texts).map(|text| text.text.chars().count());
     let long = texts().filter(|chars| *chars > MOST_TEXT_CHARS).count();
     if long > 0 {
-        let texts = count(long, "text");
+        let texts = count_phrase(long, "text");
         output.say(format_args!("warning: of {texts} the model is told the first {MOST_TEXT_CHARS} characters"));
     }
 }

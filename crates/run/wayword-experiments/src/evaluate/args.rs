@@ -19,7 +19,7 @@ Examples:
 A submission is a JSON list of {\"instr_id\": \"ID_N\", \"trajectory\": [[viewpoint, heading, elevation], ...], \"predObjId\": OBJECT},
 plain or gzip. ID_N is instruction N (from 0) of item ID. Every instruction needs an entry, except with --partial. If an entry is wrong, nothing is scored, the problems
 are listed (20 on the screen, more with --json), and the exit code is 1.")]
-pub struct Evaluate {
+pub struct EvaluateArgs {
     /// File of trajectories, as the evaluators of R2R and REVERIE take it.
     #[arg(value_name = "SUBMISSION")]
     pub submission: PathBuf,

@@ -1,32 +1,33 @@
 //! The figures of a submission, for the screen and as JSON: means over instructions, as the official evaluators give them, with
 //! bootstrap intervals.
 
-use super::Covered;
+use super::SubmissionCoverage;
 use crate::{
-    evaluate::args::Evaluate,
-    judge::{LEVEL, Scores},
+    evaluate::args::EvaluateArgs,
+    judge::{CONFIDENCE_LEVEL, SubmissionScores},
 };
 use serde::Serialize;
 use std::{
     collections::{BTreeMap, BTreeSet},
     fmt,
 };
-use wayword_metrics::{Estimate, Metric, Rule};
-use wayword_run::count::count;
+use wayword_metrics::{MeanEstimate, TrajectoryMetric, TrajectorySuccessRule};
+use wayword_run::count::count_phrase;
 
 /// Figures that depend on the rule of success; the others are the same under every rule.
-const BY_RULE: [Metric; 4] = [Metric::SuccessRate, Metric::OracleSuccessRate, Metric::Spl, Metric::Sdtw];
+const BY_RULE: [TrajectoryMetric; 4] =
+    [TrajectoryMetric::SuccessRate, TrajectoryMetric::OracleSuccessRate, TrajectoryMetric::Spl, TrajectoryMetric::Sdtw];
 
 /// How the intervals are drawn.
 #[derive(Debug, Clone, Copy, Serialize)]
-pub(super) struct Drawn {
+pub(super) struct SubmissionResampling {
     pub(super) resamples: usize,
     pub(super) seed: u64,
 }
 
 /// All figures of a submission.
 #[derive(Debug, Serialize)]
-pub(super) struct Report {
+pub(super) struct SubmissionReport {
     submission: String,
     episodes: String,
     instructions: usize,
@@ -45,95 +46,112 @@ pub(super) struct Report {
     /// Confidence level of the intervals, which are clustered by path.
     level: f64,
     #[serde(flatten)]
-    drawn: Drawn,
-    rules: Vec<ByRule>,
+    drawn: SubmissionResampling,
+    rules: Vec<RuleFigures>,
     /// Figures that do not depend on the rule of success.
-    whatever_the_rule: BTreeMap<Metric, Figure>,
+    whatever_the_rule: BTreeMap<TrajectoryMetric, SubmissionFigure>,
 }
 
 /// The figures under one rule of success.
 #[derive(Debug, Serialize)]
-struct ByRule {
-    rule: Rule,
+struct RuleFigures {
+    rule: TrajectorySuccessRule,
     /// The rule in words.
     words: &'static str,
-    figures: BTreeMap<Metric, Figure>,
+    figures: BTreeMap<TrajectoryMetric, SubmissionFigure>,
 }
 
 /// A mean over instructions.
 #[derive(Debug, Serialize)]
-struct Figure {
+struct SubmissionFigure {
     #[serde(flatten)]
-    estimate: Estimate,
+    estimate: MeanEstimate,
     /// Instructions for which the figure cannot be computed. The mean leaves them out.
     left_out: usize,
 }
 
-impl Report {
-    pub(super) fn new(args: &Evaluate, scores: &Scores, covered: Covered, rules: &[Rule], drawn: Drawn) -> Self {
+impl SubmissionReport {
+    pub(super) fn new(
+        args: &EvaluateArgs,
+        scores: &SubmissionScores,
+        covered: SubmissionCoverage,
+        rules: &[TrajectorySuccessRule],
+        drawn: SubmissionResampling,
+    ) -> Self {
         let has_objects = scores.rows().iter().any(|row| row.score.grounding.is_some());
-        let by_rule = |rule: &Rule| ByRule {
+        let by_rule = |rule: &TrajectorySuccessRule| RuleFigures {
             rule: *rule,
-            words: words(*rule, has_objects),
-            figures: figures(scores, *rule, drawn, |metric| BY_RULE.contains(&metric)),
+            words: rule_in_words(*rule, has_objects),
+            figures: compute_figures(scores, *rule, drawn, |metric| BY_RULE.contains(&metric)),
         };
         Self {
             submission: args.submission.display().to_string(),
             episodes: args.episodes.display().to_string(),
             instructions: scores.rows().len(),
-            items: scores.items().collect::<BTreeSet<_>>().len(),
-            paths: scores.paths().collect::<BTreeSet<_>>().len(),
+            items: scores.item_ids().collect::<BTreeSet<_>>().len(),
+            paths: scores.path_names().collect::<BTreeSet<_>>().len(),
             of_instructions: covered.instructions,
             of_items: covered.items,
             limit: args.limit,
             left_out: covered.left_out,
             objects_named: scores.rows().iter().filter(|row| row.names_object).count(),
-            level: LEVEL,
+            level: CONFIDENCE_LEVEL,
             drawn,
             rules: rules.iter().map(by_rule).collect(),
-            whatever_the_rule: figures(scores, Rule::Distance, drawn, |metric| !BY_RULE.contains(&metric)),
+            whatever_the_rule: compute_figures(scores, TrajectorySuccessRule::Distance, drawn, |metric| {
+                !BY_RULE.contains(&metric)
+            }),
         }
     }
 }
 
 /// A rule of success in words. It is the official one for REVERIE if episodes have objects, and for R2R if not.
-fn words(rule: Rule, has_objects: bool) -> &'static str {
+fn rule_in_words(rule: TrajectorySuccessRule, has_objects: bool) -> &'static str {
     match (rule, has_objects) {
-        (Rule::Visible, _) => "the target is visible from the last viewpoint (REVERIE's official rule)",
-        (Rule::Distance, true) => {
+        (TrajectorySuccessRule::Visible, _) => {
+            "the target is visible from the last viewpoint (REVERIE's official rule)"
+        }
+        (TrajectorySuccessRule::Distance, true) => {
             "the last viewpoint is under 3 m from the goal (the lenient rule: on REVERIE not the official one)"
         }
-        (Rule::Distance, false) => "the last viewpoint is under 3 m from the goal (R2R's official rule)",
+        (TrajectorySuccessRule::Distance, false) => {
+            "the last viewpoint is under 3 m from the goal (R2R's official rule)"
+        }
     }
 }
 
 /// The figures that at least one instruction has.
-fn figures(scores: &Scores, rule: Rule, drawn: Drawn, is_wanted: impl Fn(Metric) -> bool) -> BTreeMap<Metric, Figure> {
-    let figure = |metric: Metric| {
-        let estimate = scores.estimate(metric, rule, drawn.resamples, drawn.seed)?;
-        Some((metric, Figure { left_out: scores.rows().len() - estimate.values, estimate }))
+fn compute_figures(
+    scores: &SubmissionScores,
+    rule: TrajectorySuccessRule,
+    drawn: SubmissionResampling,
+    is_wanted: impl Fn(TrajectoryMetric) -> bool,
+) -> BTreeMap<TrajectoryMetric, SubmissionFigure> {
+    let figure = |metric: TrajectoryMetric| {
+        let estimate = scores.metric_estimate(metric, rule, drawn.resamples, drawn.seed)?;
+        Some((metric, SubmissionFigure { left_out: scores.rows().len() - estimate.values, estimate }))
     };
-    Metric::ALL.into_iter().filter(|metric| is_wanted(*metric)).filter_map(figure).collect()
+    TrajectoryMetric::ALL.into_iter().filter(|metric| is_wanted(*metric)).filter_map(figure).collect()
 }
 
-impl fmt::Display for Report {
+impl fmt::Display for SubmissionReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
             f,
             "{}: {} of {} on {}",
             self.submission,
-            count(self.instructions, "instruction"),
-            count(self.items, "item"),
-            count(self.paths, "path")
+            count_phrase(self.instructions, "instruction"),
+            count_phrase(self.items, "item"),
+            count_phrase(self.paths, "path")
         )?;
         if self.instructions < self.of_instructions {
             writeln!(
                 f,
                 "partial: {} of {} and {} of {} of {} are scored; the figures are of these only",
                 self.instructions,
-                count(self.of_instructions, "instruction"),
+                count_phrase(self.of_instructions, "instruction"),
                 self.items,
-                count(self.of_items, "item"),
+                count_phrase(self.of_items, "item"),
                 self.episodes
             )?;
         }
@@ -141,37 +159,43 @@ impl fmt::Display for Report {
             writeln!(
                 f,
                 "only the first {} of {} count; left out, because they are for later items: {}",
-                count(u64::from(limit), "item"),
+                count_phrase(u64::from(limit), "item"),
                 self.episodes,
-                count(self.left_out, "trajectory")
+                count_phrase(self.left_out, "trajectory")
             )?;
         }
-        for ByRule { words, figures, .. } in &self.rules {
+        for RuleFigures { words, figures, .. } in &self.rules {
             writeln!(f, "\nsuccess: {words}")?;
-            table(f, figures)?;
+            write_figure_table(f, figures)?;
         }
         writeln!(f, "\nindependent of the rule of success")?;
-        table(f, &self.whatever_the_rule)?;
-        if self.whatever_the_rule.contains_key(&Metric::Rgs) && self.objects_named == 0 {
+        write_figure_table(f, &self.whatever_the_rule)?;
+        if self.whatever_the_rule.contains_key(&TrajectoryMetric::Rgs) && self.objects_named == 0 {
             writeln!(f, "no trajectory names an object (predObjId), so RGS and RGSPL are 0")?;
         }
         write!(f, "\nmeans over instructions, with {:.0} % intervals, clustered by path", self.level * 100.0)
     }
 }
 
-fn table(f: &mut fmt::Formatter<'_>, figures: &BTreeMap<Metric, Figure>) -> fmt::Result {
-    for (metric, Figure { estimate, left_out }) in figures {
-        let Estimate { mean, low, high, .. } = estimate;
-        let name = metric.short();
+fn write_figure_table(
+    f: &mut fmt::Formatter<'_>,
+    figures: &BTreeMap<TrajectoryMetric, SubmissionFigure>,
+) -> fmt::Result {
+    for (metric, SubmissionFigure { estimate, left_out }) in figures {
+        let MeanEstimate { mean, low, high, .. } = estimate;
+        let name = metric.table_name();
         match metric {
-            Metric::NavigationErrorM | Metric::TrajectoryLengthM => {
+            TrajectoryMetric::NavigationErrorM | TrajectoryMetric::TrajectoryLengthM => {
                 write!(f, "  {name:<7} {mean:>7.2}     {low:.2} to {high:.2}")?;
             }
             _ => write!(f, "  {name:<7} {:>6.1} %    {:.1} to {:.1} %", mean * 100.0, low * 100.0, high * 100.0)?,
         }
         if *left_out > 0 {
-            let why =
-                if *metric == Metric::NavigationErrorM { "the goal cannot be reached" } else { "no object is known" };
+            let why = if *metric == TrajectoryMetric::NavigationErrorM {
+                "the goal cannot be reached"
+            } else {
+                "no object is known"
+            };
             write!(f, "   ({left_out} left out: {why})")?;
         }
         writeln!(f)?;
@@ -182,11 +206,11 @@ fn table(f: &mut fmt::Formatter<'_>, figures: &BTreeMap<Metric, Figure>) -> fmt:
 #[cfg(test)]
 mod tests {
     use super::*;
-    use wayword_metrics::{Outcome, Score};
+    use wayword_metrics::{SuccessOutcome, TrajectoryScore};
 
-    fn score(navigation_error_m: Option<f64>) -> Score {
-        let nothing = Outcome { success: false, oracle_success: false, spl: 0.0, sdtw: 0.0 };
-        Score {
+    fn score(navigation_error_m: Option<f64>) -> TrajectoryScore {
+        let nothing = SuccessOutcome { success: false, oracle_success: false, spl: 0.0, sdtw: 0.0 };
+        TrajectoryScore {
             length_m: 2.0,
             navigation_error_m,
             oracle_error_m: navigation_error_m,
@@ -200,16 +224,21 @@ mod tests {
 
     #[test]
     fn compute_figures_leaves_missing_values_out_of_the_mean() {
-        let all = Scores::of_one_path([Some(4.0), None, Some(6.0)].map(score).into());
-        let found = figures(&all, Rule::Distance, Drawn { resamples: 100, seed: 0 }, |_| true);
-        let error = &found[&Metric::NavigationErrorM];
+        let all = SubmissionScores::of_one_path([Some(4.0), None, Some(6.0)].map(score).into());
+        let found = compute_figures(
+            &all,
+            TrajectorySuccessRule::Distance,
+            SubmissionResampling { resamples: 100, seed: 0 },
+            |_| true,
+        );
+        let error = &found[&TrajectoryMetric::NavigationErrorM];
         assert!((error.estimate.mean - 5.0).abs() < 1e-12);
-        assert_eq!((error.left_out, found[&Metric::SuccessRate].left_out), (1, 0));
-        assert!(!found.contains_key(&Metric::Rgs));
-        struct Shown(BTreeMap<Metric, Figure>);
+        assert_eq!((error.left_out, found[&TrajectoryMetric::SuccessRate].left_out), (1, 0));
+        assert!(!found.contains_key(&TrajectoryMetric::Rgs));
+        struct Shown(BTreeMap<TrajectoryMetric, SubmissionFigure>);
         impl fmt::Display for Shown {
             fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                table(f, &self.0)
+                write_figure_table(f, &self.0)
             }
         }
         let shown = Shown(found).to_string();

@@ -6,27 +6,27 @@ mod refusal;
 
 use crate::{
     episodes,
-    evaluate::args::Evaluate as Args,
-    judge::{Judge, Scores},
+    evaluate::args::EvaluateArgs as Args,
+    judge::{SubmissionScores, TrajectoryJudge},
 };
-use figures::{Drawn, Report};
-use refusal::{Refusal, no_submission};
+use figures::{SubmissionReport, SubmissionResampling};
+use refusal::{SubmissionRefusal, no_submission};
 use std::{collections::BTreeSet, fs, path::Path};
 use wayword_formats::{
     Episode,
     submission::{self, instr_id},
 };
-use wayword_metrics::Rule;
+use wayword_metrics::TrajectorySuccessRule;
 use wayword_run::{
-    error::{Error, Exit},
-    output::Output,
+    error::{CommandError, Exit},
+    output::CommandOutput,
     platforms,
     run_folder::write_whole,
 };
 
 /// How much of the episodes a submission was scored on.
 #[derive(Clone, Copy)]
-struct Covered {
+struct SubmissionCoverage {
     /// All instructions, with or without a trajectory.
     instructions: usize,
     /// All items.
@@ -35,44 +35,44 @@ struct Covered {
     left_out: usize,
 }
 
-pub fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
+pub fn run_evaluate(args: &Args, output: &CommandOutput) -> Result<Exit, CommandError> {
     refuse_to_overwrite(args)?;
     let platform = platforms::open_at(args.platform.name(), (&args.platform).into())?;
-    let episodes = episodes::read(&args.episodes, platform.as_ref())?;
+    let episodes = episodes::read_episodes(&args.episodes, platform.as_ref())?;
     let limit = args.limit.map_or(usize::MAX, |limit| limit as usize).min(episodes.len());
     let (episodes, beyond) = episodes.split_at(limit);
-    let reading = submission::read(&args.submission);
+    let reading = submission::read_submission(&args.submission);
     if let Some(error) = no_submission(&args.submission, &reading) {
         return Err(error);
     }
-    let judge = Judge::new(episodes, platform.as_ref())?;
+    let judge = TrajectoryJudge::new(episodes, platform.as_ref())?;
     let names = |episode: &Episode| (0..episode.instructions.len()).map(|place| instr_id(episode, place)).collect();
     let beyond: BTreeSet<String> = beyond.iter().flat_map(|episode| -> Vec<String> { names(episode) }).collect();
     let (scores, left_out) = match judge.score_all(&reading, &beyond, args.partial) {
         Ok(scored) => scored,
         Err(problems) => {
-            let refusal = Refusal::new(&args.submission, problems);
-            output.data(&refusal, &refusal);
+            let refusal = SubmissionRefusal::new(&args.submission, problems);
+            output.print_result(&refusal, &refusal);
             return Err(refusal.into_error());
         }
     };
     if scores.rows().is_empty() {
         let problem = format!("{}: no instruction has a trajectory; nothing was scored", args.submission.display());
-        return Err(Error::usage(problem, "check that the submission and --episodes belong to the same split"));
+        return Err(CommandError::usage(problem, "check that the submission and --episodes belong to the same split"));
     }
-    let rules = rules(args, &scores)?;
+    let rules = success_rules(args, &scores)?;
     if let Some(file) = &args.per_item {
         write_each(file, &scores)?;
     }
-    let drawn = Drawn { resamples: args.resamples as usize, seed: args.seed };
-    let covered = Covered { instructions: judge.instructions(), items: judge.items(), left_out };
-    let report = Report::new(args, &scores, covered, &rules, drawn);
-    output.data(&report, &report);
+    let drawn = SubmissionResampling { resamples: args.resamples as usize, seed: args.seed };
+    let covered = SubmissionCoverage { instructions: judge.instruction_count(), items: judge.item_count(), left_out };
+    let report = SubmissionReport::new(args, &scores, covered, &rules, drawn);
+    output.print_result(&report, &report);
     Ok(Exit::Done)
 }
 
 /// Refuses a `--per-item` file that is one of the inputs, under whatever name.
-fn refuse_to_overwrite(args: &Args) -> Result<(), Error> {
+fn refuse_to_overwrite(args: &Args) -> Result<(), CommandError> {
     let Some(Ok(per_item)) = args.per_item.as_ref().map(fs::canonicalize) else {
         // A file that does not exist yet is no input.
         return Ok(());
@@ -80,30 +80,30 @@ fn refuse_to_overwrite(args: &Args) -> Result<(), Error> {
     for input in [&args.submission, &args.episodes] {
         if fs::canonicalize(input).is_ok_and(|input| input == per_item) {
             let problem = format!("--per-item would overwrite {}, which this command reads", input.display());
-            return Err(Error::usage(problem, "give --per-item another file name"));
+            return Err(CommandError::usage(problem, "give --per-item another file name"));
         }
     }
     Ok(())
 }
 
 /// The rules of success that are asked for and can be applied.
-fn rules(args: &Args, scores: &Scores) -> Result<Vec<Rule>, Error> {
-    let has_visible = scores.has(Rule::Visible);
-    match args.rule.map(Rule::from) {
-        Some(Rule::Visible) if !has_visible => Err(Error::usage(
+fn success_rules(args: &Args, scores: &SubmissionScores) -> Result<Vec<TrajectorySuccessRule>, CommandError> {
+    let has_visible = scores.has_rule(TrajectorySuccessRule::Visible);
+    match args.rule.map(TrajectorySuccessRule::from) {
+        Some(TrajectorySuccessRule::Visible) if !has_visible => Err(CommandError::usage(
             format!("--rule visible: no item of {} names an object whose place is known", args.episodes.display()),
             "judge by distance with --rule distance",
         )),
         Some(rule) => Ok(vec![rule]),
-        None if has_visible => Ok(vec![Rule::Visible, Rule::Distance]),
-        None => Ok(vec![Rule::Distance]),
+        None if has_visible => Ok(vec![TrajectorySuccessRule::Visible, TrajectorySuccessRule::Distance]),
+        None => Ok(vec![TrajectorySuccessRule::Distance]),
     }
 }
 
-fn write_each(file: &Path, scores: &Scores) -> Result<(), Error> {
+fn write_each(file: &Path, scores: &SubmissionScores) -> Result<(), CommandError> {
     let mut lines = String::new();
-    for line in scores.lines() {
-        let line = serde_json::to_string(&line).map_err(|error| Error::io(file, "write")(error.into()))?;
+    for line in scores.score_records() {
+        let line = serde_json::to_string(&line).map_err(|error| CommandError::io(file, "write")(error.into()))?;
         lines.push_str(&line);
         lines.push('\n');
     }

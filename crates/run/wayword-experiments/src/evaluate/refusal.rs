@@ -1,34 +1,34 @@
 //! A submission that is not scored because of its problems: what the screen shows, and the error that ends the program.
 
-use crate::judge::{Problem, Problems};
+use crate::judge::{TrajectoryProblem, TrajectoryProblems};
 use serde::Serialize;
 use std::{fmt, path::Path};
-use wayword_formats::submission::Reading;
-use wayword_run::{count::count, error::Error};
+use wayword_formats::submission::SubmissionReading;
+use wayword_run::{count::count_phrase, error::CommandError};
 
 /// Most problems that the screen shows.
-const SHOWN: usize = 20;
+const MAX_SHOWN_PROBLEMS: usize = 20;
 
 /// A submission that is not scored, with its problems.
 #[derive(Debug, Serialize)]
-pub(super) struct Refusal {
+pub(super) struct SubmissionRefusal {
     submission: String,
     scored: usize,
     #[serde(flatten)]
-    problems: Problems,
+    problems: TrajectoryProblems,
 }
 
-impl Refusal {
-    pub(super) fn new(submission: &Path, problems: Problems) -> Self {
+impl SubmissionRefusal {
+    pub(super) fn new(submission: &Path, problems: TrajectoryProblems) -> Self {
         Self { submission: submission.display().to_string(), scored: 0, problems }
     }
 
     /// The error that ends the program.
-    pub(super) fn into_error(self) -> Error {
-        let (all, missing) = (self.problems.count(), self.problems.missing());
-        let problem = format!("{}: {}; nothing was scored", self.submission, count(all, "problem"));
-        let without = count(missing, "instruction");
-        Error::usage(
+    pub(super) fn into_error(self) -> CommandError {
+        let (all, missing) = (self.problems.count(), self.problems.missing_count());
+        let problem = format!("{}: {}; nothing was scored", self.submission, count_phrase(all, "problem"));
+        let without = count_phrase(missing, "instruction");
+        CommandError::usage(
             problem,
             match all - missing {
                 0 if missing > 0 => {
@@ -44,26 +44,26 @@ impl Refusal {
 }
 
 /// The error for a file that is not a submission, but a folder or a dataset that this program can read.
-pub(super) fn no_submission(file: &Path, reading: &Reading) -> Option<Error> {
+pub(super) fn no_submission(file: &Path, reading: &SubmissionReading) -> Option<CommandError> {
     const HINT: &str = "give what an agent walked: a JSON list of {\"instr_id\": ..., \"trajectory\": [...]}, see \
                         `wayword evaluate --help`";
     if file.is_dir() {
         let folder = file.join("submissions");
         let hint = if folder.is_dir() { format!("name one of the files in {}", folder.display()) } else { HINT.into() };
-        return Some(Error::usage(format!("{}: it is a folder, not a submission", file.display()), hint));
+        return Some(CommandError::usage(format!("{}: it is a folder, not a submission", file.display()), hint));
     }
     if !reading.submitted.is_empty() || !reading.flawed.is_empty() {
         return None;
     }
-    let format = wayword_formats::detect(file).ok()?;
-    format.read(file).ok()?;
+    let format = wayword_formats::detect_format(file).ok()?;
+    format.read_file(file).ok()?;
     let problem = format!("{}: it is a dataset (format {format}), not a submission", file.display());
-    Some(Error::usage(problem, format!("{HINT}; give the dataset with --episodes")))
+    Some(CommandError::usage(problem, format!("{HINT}; give the dataset with --episodes")))
 }
 
-impl fmt::Display for Refusal {
+impl fmt::Display for SubmissionRefusal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for Problem { instr_id, problem } in self.problems.told().iter().take(SHOWN) {
+        for TrajectoryProblem { instr_id, problem } in self.problems.listed_problems().iter().take(MAX_SHOWN_PROBLEMS) {
             // The problem quotes keys of the file, which may hold control characters that a terminal obeys.
             let problem = problem.replace(char::is_control, "\u{fffd}");
             match instr_id {
@@ -71,7 +71,7 @@ impl fmt::Display for Refusal {
                 None => writeln!(f, "{problem}")?,
             }
         }
-        match self.problems.count().saturating_sub(SHOWN) {
+        match self.problems.count().saturating_sub(MAX_SHOWN_PROBLEMS) {
             0 => Ok(()),
             more => writeln!(f, "and {more} more"),
         }

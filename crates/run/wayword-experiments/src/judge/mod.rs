@@ -6,11 +6,11 @@
 mod problems;
 mod scores;
 
-pub use problems::{Problem, Problems};
-pub use scores::{LEVEL, Scored, Scores};
+pub use problems::{TrajectoryProblem, TrajectoryProblems};
+pub use scores::{CONFIDENCE_LEVEL, ScoredTrajectory, SubmissionScores};
 
-use crate::{demands::Demands, episodes};
-use scores::Instruction;
+use crate::{demands::PlatformDemands, episodes};
+use scores::JudgedInstruction;
 use std::{
     collections::{BTreeSet, HashMap},
     sync::Arc,
@@ -18,44 +18,44 @@ use std::{
 use wayword_core::{ObjectId, Platform};
 use wayword_formats::{
     Episode,
-    submission::{Reading, instr_id},
+    submission::{SubmissionReading, instr_id},
 };
-use wayword_metrics::{Course, Distances, Invalid, Score};
-use wayword_run::error::Error;
+use wayword_metrics::{EpisodeScorer, SceneDistances, TrajectoryError, TrajectoryScore};
+use wayword_run::error::CommandError;
 
 /// The episodes by which trajectories are scored, prepared for many submissions.
-pub struct Judge {
+pub struct TrajectoryJudge {
     /// In the order of the episodes.
-    items: Vec<Item>,
-    instructions: Arc<[Instruction]>,
+    items: Vec<JudgedEpisode>,
+    instructions: Arc<[JudgedInstruction]>,
     /// The indices of the instructions in that list, by their names.
     places: HashMap<String, usize>,
 }
 
 /// An episode, prepared for scoring.
-struct Item {
-    distances: Arc<Distances>,
+struct JudgedEpisode {
+    distances: Arc<SceneDistances>,
     /// The reference path; an error if it leaves the scene's graph.
-    course: Result<Course, Vec<Invalid>>,
+    course: Result<EpisodeScorer, Vec<TrajectoryError>>,
 }
 
-impl Judge {
+impl TrajectoryJudge {
     /// Prepares the instructions of episodes that name viewpoints.
     ///
     /// # Errors
     /// When a scene cannot be read.
-    pub fn new(episodes: &[Episode], platform: &dyn Platform) -> Result<Self, Error> {
-        let demands = Demands::new(platform);
+    pub fn new(episodes: &[Episode], platform: &dyn Platform) -> Result<Self, CommandError> {
+        let demands = PlatformDemands::new(platform);
         let mut items = Vec::with_capacity(episodes.len());
         let mut instructions = Vec::new();
         for (at, episode) in episodes.iter().enumerate() {
-            let (distances, demand) = demands.of(episode)?;
-            items.push(Item { course: Course::new(&distances, &demand), distances });
-            instructions.extend((0..episode.instructions.len()).map(|place| Instruction {
+            let (distances, demand) = demands.for_episode(episode)?;
+            items.push(JudgedEpisode { course: EpisodeScorer::new(&distances, &demand), distances });
+            instructions.extend((0..episode.instructions.len()).map(|place| JudgedInstruction {
                 name: instr_id(episode, place),
                 item: at,
                 item_id: episode.id.clone(),
-                path: episodes::cluster(episode),
+                path: episodes::episode_path_name(episode),
             }));
         }
         let places = instructions.iter().enumerate().map(|(at, known)| (known.name.clone(), at)).collect();
@@ -64,31 +64,31 @@ impl Judge {
 
     /// How many instructions there are.
     #[must_use]
-    pub fn instructions(&self) -> usize {
+    pub fn instruction_count(&self) -> usize {
         self.instructions.len()
     }
 
     /// How many items there are.
     #[must_use]
-    pub fn items(&self) -> usize {
+    pub fn item_count(&self) -> usize {
         self.items.len()
     }
 
     /// Begins to score a submission.
     #[must_use]
-    pub fn begin(&self) -> Scoring<'_> {
-        Scoring {
+    pub fn begin_submission(&self) -> SubmissionScoring<'_> {
+        SubmissionScoring {
             judge: self,
             seen: vec![false; self.instructions.len()],
             next: 0,
             rows: Vec::with_capacity(self.instructions.len()),
-            unknown: Problems::default(),
+            unknown: TrajectoryProblems::default(),
             wrong: Vec::new(),
         }
     }
 
     /// The index of an instruction. It looks at the index `likely` first.
-    fn find(&self, instruction: &str, likely: usize) -> Option<usize> {
+    fn find_place(&self, instruction: &str, likely: usize) -> Option<usize> {
         let is_it = self.instructions.get(likely).is_some_and(|known| known.name == instruction);
         if is_it { Some(likely) } else { self.places.get(instruction).copied() }
     }
@@ -99,11 +99,11 @@ impl Judge {
     /// All problems: those of the file first.
     pub fn score_all(
         &self,
-        reading: &Reading,
+        reading: &SubmissionReading,
         beyond: &BTreeSet<String>,
         is_partial: bool,
-    ) -> Result<(Scores, usize), Problems> {
-        let mut scoring = self.begin();
+    ) -> Result<(SubmissionScores, usize), TrajectoryProblems> {
+        let mut scoring = self.begin_submission();
         let mut left_out = 0;
         for submitted in &reading.submitted {
             if beyond.contains(&submitted.instr_id) {
@@ -111,54 +111,55 @@ impl Judge {
                 continue;
             }
             let viewpoints = submitted.trajectory.iter().map(|posed| posed.viewpoint.as_str());
-            scoring.take(&submitted.instr_id, viewpoints, submitted.object.as_ref().map(ObjectId::as_str));
+            scoring.take_trajectory(&submitted.instr_id, viewpoints, submitted.object.as_ref().map(ObjectId::as_str));
         }
         for flawed in reading.flawed.iter().filter(|flawed| !beyond.contains(*flawed)) {
             scoring.take_flawed(flawed);
         }
         // If the file breaks off, the lost part may have contained the trajectories that are missing.
-        let scores = scoring.end(Problems::of_file(&reading.problems), is_partial || !reading.is_whole)?;
+        let scores = scoring
+            .finish_submission(TrajectoryProblems::from_file(&reading.problems), is_partial || !reading.is_whole)?;
         Ok((scores, left_out))
     }
 
-    fn score<'n>(
+    fn score_trajectory<'n>(
         &self,
         instruction: usize,
         viewpoints: impl Iterator<Item = &'n str> + Clone,
         object: Option<&str>,
-    ) -> Result<Score, Vec<Invalid>> {
-        let Item { distances, course } = &self.items[self.instructions[instruction].item];
-        course.as_ref().map_err(Clone::clone)?.score(distances, viewpoints, object)
+    ) -> Result<TrajectoryScore, Vec<TrajectoryError>> {
+        let JudgedEpisode { distances, course } = &self.items[self.instructions[instruction].item];
+        course.as_ref().map_err(Clone::clone)?.score_trajectory(distances, viewpoints, object)
     }
 }
 
 /// Scores a submission, trajectory by trajectory.
-pub struct Scoring<'j> {
-    judge: &'j Judge,
+pub struct SubmissionScoring<'j> {
+    judge: &'j TrajectoryJudge,
     /// Whether the submission has a trajectory for each instruction, good or bad.
     seen: Vec<bool>,
     /// The index after that of the last trajectory. Most submissions are in the order of the episodes, so it is tried first.
     next: usize,
-    rows: Vec<Scored>,
-    unknown: Problems,
+    rows: Vec<ScoredTrajectory>,
+    unknown: TrajectoryProblems,
     /// The instructions whose trajectory is wrong, and why.
-    wrong: Vec<(usize, Problem)>,
+    wrong: Vec<(usize, TrajectoryProblem)>,
 }
 
-impl Scoring<'_> {
+impl SubmissionScoring<'_> {
     /// Takes the trajectory of an instruction: its viewpoints, and the object that the agent names.
-    pub fn take<'n>(
+    pub fn take_trajectory<'n>(
         &mut self,
         instruction: &str,
         viewpoints: impl Iterator<Item = &'n str> + Clone,
         object: Option<&str>,
     ) {
-        let Some(place) = self.place(instruction) else { return };
-        match self.judge.score(place, viewpoints, object) {
-            Ok(score) => self.rows.push(Scored { instruction: place, names_object: object.is_some(), score }),
+        let Some(place) = self.claim_place(instruction) else { return };
+        match self.judge.score_trajectory(place, viewpoints, object) {
+            Ok(score) => self.rows.push(ScoredTrajectory { instruction: place, names_object: object.is_some(), score }),
             Err(all) => {
                 for wrong in all {
-                    self.mark(place, wrong.to_string());
+                    self.add_problem(place, wrong.to_string());
                 }
             }
         }
@@ -166,27 +167,27 @@ impl Scoring<'_> {
 
     /// Notes that an instruction has a trajectory, though it cannot be read. The problem itself comes from the reader of the file.
     pub fn take_flawed(&mut self, instruction: &str) {
-        self.place(instruction);
+        self.claim_place(instruction);
     }
 
     /// The index of an instruction that gets its first trajectory. Records a problem for an unknown or a repeated instruction.
-    fn place(&mut self, instruction: &str) -> Option<usize> {
-        let Some(place) = self.judge.find(instruction, self.next) else {
+    fn claim_place(&mut self, instruction: &str) -> Option<usize> {
+        let Some(place) = self.judge.find_place(instruction, self.next) else {
             let problem = "the episodes have no such instruction: check the split, and the ids";
-            self.unknown.add(|| Problem::new(instruction.to_owned(), problem));
+            self.unknown.add(|| TrajectoryProblem::new(instruction.to_owned(), problem));
             return None;
         };
         self.next = place + 1;
         if std::mem::replace(&mut self.seen[place], true) {
-            self.mark(place, "the submission has another trajectory for this instruction: give one".to_owned());
+            self.add_problem(place, "the submission has another trajectory for this instruction: give one".to_owned());
             return None;
         }
         Some(place)
     }
 
-    fn mark(&mut self, place: usize, problem: String) {
-        if self.wrong.len() < problems::KEPT {
-            self.wrong.push((place, Problem::new(self.judge.instructions[place].name.clone(), problem)));
+    fn add_problem(&mut self, place: usize, problem: String) {
+        if self.wrong.len() < problems::MAX_KEPT_PROBLEMS {
+            self.wrong.push((place, TrajectoryProblem::new(self.judge.instructions[place].name.clone(), problem)));
         } else {
             self.unknown.leave_out();
         }
@@ -198,8 +199,12 @@ impl Scoring<'_> {
     ///
     /// # Errors
     /// The problems.
-    pub fn end(mut self, before: Problems, is_partial: bool) -> Result<Scores, Problems> {
-        let mut problems = before.and(self.unknown);
+    pub fn finish_submission(
+        mut self,
+        before: TrajectoryProblems,
+        is_partial: bool,
+    ) -> Result<SubmissionScores, TrajectoryProblems> {
+        let mut problems = before.followed_by(self.unknown);
         self.wrong.sort_by_key(|(place, _)| *place);
         let mut wrong = self.wrong.into_iter().peekable();
         for (place, is_seen) in self.seen.iter().enumerate() {
@@ -214,6 +219,6 @@ impl Scoring<'_> {
             return Err(problems);
         }
         self.rows.sort_by_key(|row| row.instruction);
-        Ok(Scores { instructions: Arc::clone(&self.judge.instructions), rows: self.rows })
+        Ok(SubmissionScores { instructions: Arc::clone(&self.judge.instructions), rows: self.rows })
     }
 }

@@ -4,11 +4,11 @@ use serde::Serialize;
 use wayword_formats::submission;
 
 /// Most problems that are kept; a hostile file can hold millions.
-pub(super) const KEPT: usize = 100_000;
+pub(super) const MAX_KEPT_PROBLEMS: usize = 100_000;
 
 /// One problem of a submission.
 #[derive(Debug, Clone, Serialize)]
-pub struct Problem {
+pub struct TrajectoryProblem {
     /// The instruction; `None` for a problem of the file itself. Then `problem` contains the place in the file.
     pub instr_id: Option<String>,
     /// A description of the problem.
@@ -17,32 +17,33 @@ pub struct Problem {
 
 /// The first 100,000 problems, and the number of the others.
 #[derive(Debug, Default, Serialize)]
-pub struct Problems {
+pub struct TrajectoryProblems {
     #[serde(rename = "problems")]
-    told: Vec<Problem>,
+    told: Vec<TrajectoryProblem>,
     /// The number of problems beyond those that are kept.
     untold: usize,
     /// How many of all problems are instructions without a trajectory.
     missing: usize,
 }
 
-impl Problem {
+impl TrajectoryProblem {
     pub(super) fn new(instr_id: String, problem: impl Into<String>) -> Self {
         Self { instr_id: Some(instr_id), problem: problem.into() }
     }
 }
 
-impl Problems {
+impl TrajectoryProblems {
     /// Takes over the problems of the file itself.
     #[must_use]
-    pub fn of_file(found: &submission::Problems) -> Self {
-        let of_file = |problem: &wayword_formats::FormatError| Problem { instr_id: None, problem: problem.to_string() };
+    pub fn from_file(found: &submission::SubmissionProblems) -> Self {
+        let of_file =
+            |problem: &wayword_formats::FormatError| TrajectoryProblem { instr_id: None, problem: problem.to_string() };
         Self { told: found.told.iter().map(of_file).collect(), untold: found.untold, missing: 0 }
     }
 
     /// Appends other problems.
-    pub(super) fn and(mut self, other: Self) -> Self {
-        let room = KEPT.saturating_sub(self.told.len());
+    pub(super) fn followed_by(mut self, other: Self) -> Self {
+        let room = MAX_KEPT_PROBLEMS.saturating_sub(self.told.len());
         self.untold += other.untold + other.told.len().saturating_sub(room);
         self.missing += other.missing;
         self.told.extend(other.told.into_iter().take(room));
@@ -52,12 +53,12 @@ impl Problems {
     /// Adds a problem for an instruction without a trajectory.
     pub(super) fn add_missing(&mut self, instr_id: String) {
         self.missing += 1;
-        self.add(|| Problem::new(instr_id, "the submission has no trajectory for this instruction"));
+        self.add(|| TrajectoryProblem::new(instr_id, "the submission has no trajectory for this instruction"));
     }
 
     /// Adds a problem. Beyond the limit it is only counted, and `problem` is not called.
-    pub(super) fn add(&mut self, problem: impl FnOnce() -> Problem) {
-        if self.told.len() < KEPT {
+    pub(super) fn add(&mut self, problem: impl FnOnce() -> TrajectoryProblem) {
+        if self.told.len() < MAX_KEPT_PROBLEMS {
             self.told.push(problem());
         } else {
             self.leave_out();
@@ -71,7 +72,7 @@ impl Problems {
 
     /// The problems up to the limit.
     #[must_use]
-    pub fn told(&self) -> &[Problem] {
+    pub fn listed_problems(&self) -> &[TrajectoryProblem] {
         &self.told
     }
 
@@ -83,7 +84,7 @@ impl Problems {
 
     /// How many of them are instructions without a trajectory.
     #[must_use]
-    pub fn missing(&self) -> usize {
+    pub fn missing_count(&self) -> usize {
         self.missing
     }
 }
@@ -94,15 +95,18 @@ mod tests {
 
     #[test]
     fn problems_beyond_the_limit_are_counted_and_never_made() {
-        let (mut problems, mut made) = (Problems::default(), 0);
-        for _ in 0..KEPT + 5 {
+        let (mut problems, mut made) = (TrajectoryProblems::default(), 0);
+        for _ in 0..MAX_KEPT_PROBLEMS + 5 {
             problems.add(|| {
                 made += 1;
-                Problem::new(String::new(), "it is missing")
+                TrajectoryProblem::new(String::new(), "it is missing")
             });
         }
-        assert_eq!((problems.told.len(), problems.untold, problems.count(), made), (KEPT, 5, KEPT + 5, KEPT));
-        let both = Problems::default().and(problems);
-        assert_eq!((both.told.len(), both.count()), (KEPT, KEPT + 5));
+        assert_eq!(
+            (problems.told.len(), problems.untold, problems.count(), made),
+            (MAX_KEPT_PROBLEMS, 5, MAX_KEPT_PROBLEMS + 5, MAX_KEPT_PROBLEMS)
+        );
+        let both = TrajectoryProblems::default().followed_by(problems);
+        assert_eq!((both.told.len(), both.count()), (MAX_KEPT_PROBLEMS, MAX_KEPT_PROBLEMS + 5));
     }
 }

@@ -2,7 +2,9 @@
 
 use clap::Args;
 use std::path::PathBuf;
-use wayword_run::settings::{Asked, AskedPlatform, AskedRoles, Draw, Frames, Perception, Service, Walks, Writing};
+use wayword_run::settings::{
+    AskedFrames, AskedPlatform, AskedRoles, AskedSettings, Draw, Perception, Service, Walks, Writing,
+};
 
 /// `wayword perceive`.
 #[derive(Debug, Args)]
@@ -17,7 +19,7 @@ Examples:
       How much of what the labels list a detector finds, and how often it finds what is not there, in four directions.
   wayword perceive --perception dialogue --show 5
       Without a model: ground-truth labels answer, and rules ask and summarise.")]
-pub struct Perceive {
+pub struct PerceiveArgs {
     /// Settings as TOML, as `generate` takes them. A flag wins over the file.
     #[arg(long, value_name = "FILE")]
     pub config: Option<PathBuf>,
@@ -35,7 +37,7 @@ pub struct Perceive {
     pub scan: Option<Vec<String>>,
     /// At each frame, look along the heading, or in all four directions, as `check` does with a detector. [default: central]
     #[arg(long)]
-    pub frames: Option<Frames>,
+    pub frames: Option<AskedFrames>,
     /// Use only this kind of perception. May be given several times. [default: all; a model in process is not asked for JSON]
     #[arg(long)]
     pub perception: Option<Vec<Perception>>,
@@ -59,18 +61,18 @@ pub struct Perceive {
     pub service: Service,
 }
 
-impl Perceive {
+impl PerceiveArgs {
     /// The flags in the form from which all commands make their settings, without the number of random paths.
     #[must_use]
-    pub fn asked(&self) -> Asked {
-        Asked {
+    pub fn asked_settings(&self) -> AskedSettings {
+        AskedSettings {
             platform: self.platform.clone(),
             walks: Walks { episodes: self.episodes.clone(), scan: self.scan.clone(), ..Walks::default() },
             writing: Writing { frames: self.frames, questions: self.questions, ..Writing::default() },
             draw: Draw { seed: self.seed, ..Draw::default() },
             roles: self.roles.clone(),
             service: self.service.clone(),
-            ..Asked::default()
+            ..AskedSettings::default()
         }
     }
 }

@@ -1,22 +1,25 @@
 //! Measures a detector against labels: its recall of the things that labels list, and its false alarms for things that they do
 //! not list.
 
-use super::views::path;
+use super::views::item_path;
 use rand::seq::SliceRandom;
 use serde::Serialize;
 use std::{collections::BTreeSet, fmt};
 use wayword_checks::{
     Evidence, FrameEvidence,
-    detected::{DetectorFigures, Rates},
+    detected::{DetectorFigures, DetectorRates},
 };
-use wayword_core::{Platform, SceneId, View, rng};
-use wayword_language::lexicon::{agree, normal, thing};
-use wayword_run::{error::Error, looking_for::Lookout, output::Output, plan::Plan, platforms::Remembering};
-use wayword_synthesis::{detection::usual, observe::gazes};
+use wayword_core::{Platform, SceneId, View, seeded_rng};
+use wayword_language::lexicon::{find_thing, names_agree, normalise_name};
+use wayword_run::{
+    error::CommandError, looking_for::DetectorLookout, output::CommandOutput, plan::RunPlan,
+    platforms::RememberingPlatform,
+};
+use wayword_synthesis::{detection::usual_nouns, observe::frame_gazes};
 
 /// The figures of a detector, with their basis.
 #[derive(Debug, Clone, Serialize)]
-pub struct OfDetector {
+pub struct DetectorMeasurement {
     /// Views that it looked at.
     pub views: usize,
     /// The meaning of its scores.
@@ -27,7 +30,7 @@ pub struct OfDetector {
 }
 
 /// A path's pictures, and the things in them according to the labels.
-struct Known {
+struct LabelledPath {
     scene: SceneId,
     id: String,
     views: Vec<Vec<View>>,
@@ -39,51 +42,60 @@ struct Known {
 ///
 /// # Errors
 /// When a view cannot be had, the detector fails, or no view has both a picture and labels.
-pub fn measure(plan: &Plan<'_>, most_views: usize, lookout: &Lookout, output: &Output) -> Result<OfDetector, Error> {
-    let seeker = lookout.seeker();
+pub fn measure_detector(
+    plan: &RunPlan<'_>,
+    most_views: usize,
+    lookout: &DetectorLookout,
+    output: &CommandOutput,
+) -> Result<DetectorMeasurement, CommandError> {
+    let seeker = lookout.to_seeker();
     let mut figures = DetectorFigures {
         detector: lookout.name().to_owned(),
         platforms: vec![plan.job.settings.platform.clone()],
         found_from: seeker.figures.found_from,
         ..DetectorFigures::default()
     };
-    let nouns = usual(plan.styles.iter().map(|measured| &measured.style));
-    let bar = output.progress(most_views, "views");
+    let nouns = usual_nouns(plan.styles.iter().map(|measured| &measured.style));
+    let bar = output.progress_bar(most_views, "views");
     let mut views = 0;
     for item in &plan.items {
         if views >= most_views {
             break;
         }
-        let world = Remembering::new(plan.platform);
-        let Some(path) = path(item, &plan.job.settings, &world)? else { continue };
-        let Some(known) = known(plan, &world, &path)? else { continue };
-        let there = names(&known);
+        let world = RememberingPlatform::new(plan.platform);
+        let Some(path) = item_path(item, &plan.job.settings, &world)? else { continue };
+        let Some(known) = look_along_path(plan, &world, &path)? else { continue };
+        let there = landmark_names(&known);
         let names = looked_for(&there, &nouns, &known, plan.job.settings.seed);
-        count(&mut figures, &known, &names, lookout)?;
+        count_finds(&mut figures, &known, &names, lookout)?;
         let looked_at = known.views.iter().map(Vec::len).sum::<usize>();
         views += looked_at;
         bar.inc(looked_at as u64);
     }
     bar.finish_and_clear();
     if views == 0 {
-        return Err(Error::usage(
+        return Err(CommandError::usage(
             "--detector: no view has both a picture and labels to hold the detector against",
             "give a platform or data folder with pictures and labels, as in --platform house",
         ));
     }
-    figures.settle();
-    Ok(OfDetector { views, scores: seeker.detector.scoring().means.to_owned(), figures })
+    figures.drop_rare_names();
+    Ok(DetectorMeasurement { views, scores: seeker.detector.scoring().means.to_owned(), figures })
 }
 
 /// Looks along a path, at the frames that have pictures; `None` if there are none, or their labels are incomplete.
-fn known(plan: &Plan<'_>, world: &dyn Platform, path: &wayword_core::Path) -> Result<Option<Known>, Error> {
+fn look_along_path(
+    plan: &RunPlan<'_>,
+    world: &dyn Platform,
+    path: &wayword_core::Path,
+) -> Result<Option<LabelledPath>, CommandError> {
     let mut path = path.clone();
     let mut views = Vec::new();
     let mut frames = Vec::new();
     for frame in std::mem::take(&mut path.frames) {
-        let seen: Vec<View> = gazes(&frame, plan.job.settings.frames)
+        let seen: Vec<View> = frame_gazes(&frame, plan.job.settings.frames)
             .into_iter()
-            .map(|gaze| world.look(&path.scene, &frame, gaze))
+            .map(|gaze| world.look_from(&path.scene, &frame, gaze))
             .collect::<Result<_, _>>()?;
         if seen.iter().all(|view| view.image.is_some()) {
             views.push(seen);
@@ -93,32 +105,37 @@ fn known(plan: &Plan<'_>, world: &dyn Platform, path: &wayword_core::Path) -> Re
     path.frames = frames;
     let evidence = Evidence::from_labels(&path, &views).filter(|evidence| evidence.frames_without_things().is_empty());
     let known = evidence.filter(|evidence| !evidence.frames.is_empty());
-    Ok(known.map(|known| Known { scene: path.scene, id: path.id, views, frames: known.frames }))
+    Ok(known.map(|known| LabelledPath { scene: path.scene, id: path.id, views, frames: known.frames }))
 }
 
 /// The names in the labels of a path, restricted to things that people use as landmarks.
-fn names(known: &Known) -> BTreeSet<String> {
+fn landmark_names(known: &LabelledPath) -> BTreeSet<String> {
     let things = known.frames.iter().flat_map(|frame| &frame.things);
-    things.map(|seen| normal(&seen.name)).filter(|name| is_landmark(name)).collect()
+    things.map(|seen| normalise_name(&seen.name)).filter(|name| is_landmark(name)).collect()
 }
 
 fn is_landmark(name: &str) -> bool {
-    thing(name).is_some_and(|thing| thing.salience >= 1)
+    find_thing(name).is_some_and(|thing| thing.salience >= 1)
 }
 
 /// The names of the things that are there, and as many names of things that are not.
-fn looked_for(there: &BTreeSet<String>, nouns: &[String], known: &Known, seed: u64) -> Vec<String> {
-    let is_there = |noun: &&String| there.iter().any(|name| agree(name, noun));
+fn looked_for(there: &BTreeSet<String>, nouns: &[String], known: &LabelledPath, seed: u64) -> Vec<String> {
+    let is_there = |noun: &&String| there.iter().any(|name| names_agree(name, noun));
     let mut absent: Vec<&String> = nouns.iter().filter(|noun| !is_there(noun)).collect();
-    absent.shuffle(&mut rng(seed, &["detector", known.scene.as_str(), &known.id]));
+    absent.shuffle(&mut seeded_rng(seed, &["detector", known.scene.as_str(), &known.id]));
     there.iter().chain(absent.into_iter().take(there.len())).cloned().collect()
 }
 
-fn count(figures: &mut DetectorFigures, known: &Known, names: &[String], lookout: &Lookout) -> Result<(), Error> {
-    let seeker = lookout.seeker();
+fn count_finds(
+    figures: &mut DetectorFigures,
+    known: &LabelledPath,
+    names: &[String],
+    lookout: &DetectorLookout,
+) -> Result<(), CommandError> {
+    let seeker = lookout.to_seeker();
     let views: Vec<&View> = known.views.iter().flatten().collect();
     let phrases: Vec<&str> = names.iter().map(String::as_str).collect();
-    let found = seeker.detector.detect(&views, &phrases).into_iter().collect::<Result<Vec<_>, _>>()?;
+    let found = seeker.detector.detect_phrases(&views, &phrases).into_iter().collect::<Result<Vec<_>, _>>()?;
     for (at, name) in names.iter().enumerate() {
         let mut boxes = found.iter();
         let frames: Vec<(bool, bool)> = known
@@ -131,23 +148,23 @@ fn count(figures: &mut DetectorFigures, known: &Known, names: &[String], lookout
                     found.get(at).is_some_and(|found| found.iter().any(|found| found.score >= figures.found_from))
                 });
                 let is_found = hits.count() > 0;
-                (frame.things.iter().any(|thing| agree(&thing.name, name)), is_found)
+                (frame.things.iter().any(|thing| names_agree(&thing.name, name)), is_found)
             })
             .collect();
-        figures.count(name, &frames);
+        figures.count_name(name, &frames);
     }
     Ok(())
 }
 
-impl fmt::Display for OfDetector {
+impl fmt::Display for DetectorMeasurement {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { views, scores, figures } = self;
         writeln!(f, "{} on {views} views; {scores}; a find from {:.2}", figures.detector, figures.found_from)?;
         writeln!(f, "name              shown    found   absent   alarms  missed always")?;
-        let mut line = |name: &str, rates: &Rates| {
-            let Rates { shown, absent, .. } = rates;
+        let mut line = |name: &str, rates: &DetectorRates| {
+            let DetectorRates { shown, absent, .. } = rates;
             let (found, alarms) = (100.0 * rates.recall(), 100.0 * rates.alarm());
-            let blind = 100.0 * rates.blind();
+            let blind = 100.0 * rates.blind_share();
             writeln!(f, "{name:<16} {shown:>6} {found:>7.1}% {absent:>8} {alarms:>7.1}% {blind:>13.1}%")
         };
         line("all", &figures.all)?;

@@ -6,42 +6,42 @@ mod detector;
 mod table;
 mod views;
 
-use crate::perceive::args::Perceive;
+use crate::perceive::args::PerceiveArgs;
 use serde::Serialize;
 use std::path::Path;
-use table::{Table, WithDetector};
-use views::{Labelled, labelled_views};
+use table::{DetectorCorrectedFigures, PerceptionTable};
+use views::{LabelledView, labelled_views};
 use wayword_checks::detected::DetectorFigures;
 use wayword_core::{Caption, ModelError, Platform};
 use wayword_run::{
-    calls::Calls,
-    error::{Error, Exit},
-    in_order::{cores, in_order},
+    calls::ModelCalls,
+    error::{CommandError, Exit},
+    in_order::{core_count, in_order},
     interrupt,
-    looking_for::Lookout,
-    losses::Losses,
-    output::Output,
+    looking_for::DetectorLookout,
+    losses::LossCounter,
+    output::CommandOutput,
     own_format,
-    plan::Plan,
+    plan::RunPlan,
     platforms,
     run_folder::fresh_id,
-    settings::{Job, Perception, Settings, is_in_process},
+    settings::{Perception, RunJob, RunSettings, is_in_process},
     settings_file as config,
-    team::Team,
+    team::RoleTeam,
     usable,
 };
 use wayword_synthesis::{
-    detection::{Seeker, seek_in},
+    detection::{CaptionDetector, seek_in},
     observe::talk_about,
-    perception::{Score, score},
+    perception::{CaptionScore, score_caption},
 };
 
-pub use detector::{OfDetector, measure as measure_detector};
-pub use table::Row;
+pub use detector::{DetectorMeasurement, measure_detector};
+pub use table::PerceptionRow;
 
 /// The result of the measurement.
 #[derive(Debug, Serialize)]
-pub struct Measured {
+pub struct PerceptionMeasurement {
     /// Name of the platform.
     pub platform: String,
     /// Views with labels that were captioned.
@@ -49,22 +49,22 @@ pub struct Measured {
     /// Who asked, answered and summarised.
     pub roles: String,
     /// One per way of asking.
-    pub rows: Vec<Row>,
+    pub rows: Vec<PerceptionRow>,
     /// The figures of the detector, if one was named.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub detector: Option<OfDetector>,
+    pub detector: Option<DetectorMeasurement>,
     /// Captions, where they were asked for.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    shown: Vec<Shown>,
+    shown: Vec<ShownCaption>,
 }
 
 /// All ways of asking, the simplest first.
-const WAYS: [Perception; 5] =
+const ALL_PERCEPTIONS: [Perception; 5] =
     [Perception::Fixed, Perception::Single, Perception::Structured, Perception::FollowUp, Perception::Dialogue];
 
 /// A caption with the objects in it that no label confirms.
 #[derive(Debug, Serialize)]
-struct Shown {
+struct ShownCaption {
     scene: String,
     heading_deg: f64,
     perception: Perception,
@@ -73,31 +73,38 @@ struct Shown {
 }
 
 /// The caption of a view, with its score against the labels.
-struct Captioned {
+struct ScoredCaption {
     caption: Caption,
-    score: Score,
+    score: CaptionScore,
 }
 
-pub fn run(args: &Perceive, output: &Output) -> Result<Exit, Error> {
-    let mut asked = args.asked().or(config::read(args.config.as_deref())?);
+pub fn run_perceive(args: &PerceiveArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
+    let mut asked = args.asked_settings().or_file(config::read_settings(args.config.as_deref())?);
     // As many random paths as views are enough, because each new path gives at least one view.
     asked.walks.paths = asked.walks.episodes.is_none().then_some(args.views);
-    let mut job = asked.job()?;
-    Calls::ready(&job, output)?;
-    let platform = platforms::open(&job.settings)?;
-    job.settings = usable::settled(&job.settings, platform.as_ref(), output)?;
-    let ways = args.perception.clone().filter(|asked| !asked.is_empty()).unwrap_or_else(|| ways(&job.settings));
-    let measured = perceive(platform.as_ref(), &job, Extent { views: args.views, show: args.show }, &ways, output)?;
+    let mut job = asked.into_job()?;
+    ModelCalls::check_ready(&job, output)?;
+    let platform = platforms::open_platform(&job.settings)?;
+    job.settings = usable::settle_left_out(&job.settings, platform.as_ref(), output)?;
+    let ways =
+        args.perception.clone().filter(|asked| !asked.is_empty()).unwrap_or_else(|| askable_perceptions(&job.settings));
+    let measured = measure_perception(
+        platform.as_ref(),
+        &job,
+        MeasurementExtent { views: args.views, show: args.show },
+        &ways,
+        output,
+    )?;
     if let (Some(file), Some(detector)) = (&args.figures, &measured.detector) {
-        keep(file, &detector.figures)?;
+        write_detector_figures(file, &detector.figures)?;
     }
-    output.data(&measured, Table(&measured));
+    output.print_result(&measured, PerceptionTable(&measured));
     Ok(if measured.rows.iter().all(|row| row.failed == 0) { Exit::Done } else { Exit::WithLoss })
 }
 
 /// How much to measure and to show.
 #[derive(Debug, Clone, Copy)]
-pub struct Extent {
+pub struct MeasurementExtent {
     /// Views that are captioned, at most.
     pub views: usize,
     /// Captions of each way of asking that are shown.
@@ -108,36 +115,36 @@ pub struct Extent {
 ///
 /// # Errors
 /// When no view has labels, a model cannot be reached, or no more calls are possible.
-pub fn perceive(
+pub fn measure_perception(
     platform: &dyn Platform,
-    job: &Job,
-    extent: Extent,
+    job: &RunJob,
+    extent: MeasurementExtent,
     ways: &[Perception],
-    output: &Output,
-) -> Result<Measured, Error> {
-    let plan = Plan::looking(job, platform)?;
+    output: &CommandOutput,
+) -> Result<PerceptionMeasurement, CommandError> {
+    let plan = RunPlan::for_looking(job, platform)?;
     let views = labelled_views(&plan, extent.views)?;
-    let calls = plan.models.open(&fresh_id("perceive"), output)?;
+    let calls = plan.models.open_calls(&fresh_id("perceive"), output)?;
     let _graceful = interrupt::finish_first(calls.as_ref());
-    let mut measured = Measured {
+    let mut measured = PerceptionMeasurement {
         platform: job.settings.platform.clone(),
         views: views.len(),
-        roles: roles(&job.settings),
+        roles: describe_roles(&job.settings),
         rows: Vec::new(),
         detector: None,
         shown: Vec::new(),
     };
-    let lookout = Lookout::of(&job.settings, calls.as_ref(), &[])?;
+    let lookout = DetectorLookout::from_settings(&job.settings, calls.as_ref(), &[])?;
     measured.detector =
         lookout.as_ref().map(|lookout| measure_detector(&plan, extent.views, lookout, output)).transpose()?;
     let mut by_way = Vec::new();
     for &perception in ways {
-        let settings = Settings { perception, ..job.settings.clone() };
-        let (captions, row) = measure(platform, &settings, calls.as_ref(), &views, output)?;
+        let settings = RunSettings { perception, ..job.settings.clone() };
+        let (captions, row) = caption_views(platform, &settings, calls.as_ref(), &views, output)?;
         measured.rows.push(row);
         let shown = captions.iter().zip(&views).filter_map(|(captioned, view)| {
-            let Captioned { caption, score } = captioned.as_ref()?;
-            Some(Shown {
+            let ScoredCaption { caption, score } = captioned.as_ref()?;
+            Some(ShownCaption {
                 scene: view.scene.to_string(),
                 heading_deg: view.view.pose.heading.rad().to_degrees().round(),
                 perception,
@@ -149,104 +156,105 @@ pub fn perceive(
         by_way.push(captions);
     }
     if let Some(lookout) = &lookout {
-        let corrected = corrected(&by_way, &views, lookout, output)?;
+        let corrected = correct_captions(&by_way, &views, lookout, output)?;
         for (row, with) in measured.rows.iter_mut().zip(corrected) {
             row.with_detector = Some(with);
         }
     }
     if let Some(calls) = &calls {
-        calls.record()?;
-        output.say(format_args!("models: {}", calls.spent()));
+        calls.write_recording()?;
+        output.say(format_args!("models: {}", calls.spent_so_far()));
     }
     Ok(measured)
 }
 
 /// The ways of asking that work with the model that sees: one in process cannot be asked for JSON.
-fn ways(settings: &Settings) -> Vec<Perception> {
+fn askable_perceptions(settings: &RunSettings) -> Vec<Perception> {
     let in_process = is_in_process(&settings.roles.see);
-    WAYS.into_iter().filter(|way| !(in_process && way.is_structured())).collect()
+    ALL_PERCEPTIONS.into_iter().filter(|way| !(in_process && way.is_structured())).collect()
 }
 
-fn roles(settings: &Settings) -> String {
+fn describe_roles(settings: &RunSettings) -> String {
     let roles = &settings.roles;
     format!("asked by {}, answered by {}, summarised by {}", roles.ask, roles.see, roles.summarise)
 }
 
 /// Captions every view with one way of asking, and counts the calls.
-fn measure(
+fn caption_views(
     platform: &dyn Platform,
-    settings: &Settings,
-    calls: Option<&Calls>,
-    views: &[Labelled],
-    output: &Output,
-) -> Result<(Vec<Option<Captioned>>, Row), Error> {
-    let team = Team::new(settings, calls, platform)?;
-    let asked = || calls.map_or(0, |calls| calls.spent().answered + calls.spent().from_ledger);
+    settings: &RunSettings,
+    calls: Option<&ModelCalls>,
+    views: &[LabelledView],
+    output: &CommandOutput,
+) -> Result<(Vec<Option<ScoredCaption>>, PerceptionRow), CommandError> {
+    let team = RoleTeam::new(settings, calls, platform)?;
+    let asked = || calls.map_or(0, |calls| calls.spent_so_far().answered + calls.spent_so_far().from_ledger);
     let before = asked();
-    let bar = output.progress(views.len(), "views");
+    let bar = output.progress_bar(views.len(), "views");
     let mut captions = Vec::new();
-    let make = |view: &Labelled| talk_about(&view.view, team.observers());
-    let mut losses = Losses::default();
-    in_order(views, calls.map_or_else(cores, Calls::workers), make, |view, caption| {
+    let make = |view: &LabelledView| talk_about(&view.view, team.observers());
+    let mut losses = LossCounter::default();
+    in_order(views, calls.map_or_else(core_count, ModelCalls::worker_count), make, |view, caption| {
         bar.inc(1);
-        if losses.are_enough(caption.as_ref().err().map(ModelError::failure))
+        if losses.are_enough(caption.as_ref().err().map(ModelError::failure_kind))
             && let Err(error) = caption
         {
             // The model does not answer any more.
             return Err(error.into());
         }
-        captions.push(captioned(view, caption, output)?);
-        interrupt::check().map(|()| true)
+        captions.push(score_answer(view, caption, output)?);
+        interrupt::check_interrupt().map(|()| true)
     })?;
     bar.finish_and_clear();
-    let row = Row::of(settings.perception, &captions, asked() - before);
+    let row = PerceptionRow::from_captions(settings.perception, &captions, asked() - before);
     Ok((captions, row))
 }
 
 /// Scores the captions again after a detector has struck out the things that it does not find in the views. It takes each view
 /// with all ways of asking before the next one, because the detector caches its work on the last pictures.
-fn corrected(
-    by_way: &[Vec<Option<Captioned>>],
-    views: &[Labelled],
-    lookout: &Lookout,
-    output: &Output,
-) -> Result<Vec<WithDetector>, Error> {
-    let seeker = Seeker { nouns: &[], ..lookout.seeker() };
+fn correct_captions(
+    by_way: &[Vec<Option<ScoredCaption>>],
+    views: &[LabelledView],
+    lookout: &DetectorLookout,
+    output: &CommandOutput,
+) -> Result<Vec<DetectorCorrectedFigures>, CommandError> {
+    let seeker = CaptionDetector { nouns: &[], ..lookout.to_seeker() };
     let mut scores = vec![Vec::new(); by_way.len()];
-    let bar = output.progress(views.len(), "views");
+    let bar = output.progress_bar(views.len(), "views");
     for (at, view) in views.iter().enumerate() {
         for (captions, scores) in by_way.iter().zip(&mut scores) {
-            let Some(Captioned { caption, .. }) = captions.get(at).and_then(Option::as_ref) else { continue };
+            let Some(ScoredCaption { caption, .. }) = captions.get(at).and_then(Option::as_ref) else { continue };
             let seen = seek_in(&view.view, caption.clone(), seeker)?;
-            scores.push(score(&seen.text, &view.labels));
+            scores.push(score_caption(&seen.text, &view.labels));
         }
         bar.inc(1);
-        interrupt::check()?;
+        interrupt::check_interrupt()?;
     }
     bar.finish_and_clear();
-    let with = |(captions, after): (&Vec<Option<Captioned>>, &Vec<Score>)| {
-        WithDetector::of(captions.iter().flatten().map(|captioned| &captioned.score), after)
+    let with = |(captions, after): (&Vec<Option<ScoredCaption>>, &Vec<CaptionScore>)| {
+        DetectorCorrectedFigures::from_scores(captions.iter().flatten().map(|captioned| &captioned.score), after)
     };
     Ok(by_way.iter().zip(&scores).map(with).collect())
 }
 
 /// Writes the figures of a detector to the file of `--figures`.
-fn keep(file: &Path, figures: &DetectorFigures) -> Result<(), Error> {
-    let text = toml::to_string(figures).map_err(|error| Error::usage(error.to_string(), "report this as a defect"))?;
-    std::fs::write(file, own_format::headed::<DetectorFigures>(&text)).map_err(Error::io(file, "write"))
+fn write_detector_figures(file: &Path, figures: &DetectorFigures) -> Result<(), CommandError> {
+    let text =
+        toml::to_string(figures).map_err(|error| CommandError::usage(error.to_string(), "report this as a defect"))?;
+    std::fs::write(file, own_format::with_header::<DetectorFigures>(&text)).map_err(CommandError::io(file, "write"))
 }
 
 /// Scores a caption against the labels of its view; `None`, with a message, if the model failed on this view.
 ///
 /// # Errors
 /// When no more calls are possible.
-fn captioned(
-    view: &Labelled,
+fn score_answer(
+    view: &LabelledView,
     caption: Result<Caption, ModelError>,
-    output: &Output,
-) -> Result<Option<Captioned>, Error> {
+    output: &CommandOutput,
+) -> Result<Option<ScoredCaption>, CommandError> {
     match caption {
-        Ok(caption) => Ok(Some(Captioned { score: score(&caption.text, &view.labels), caption })),
+        Ok(caption) => Ok(Some(ScoredCaption { score: score_caption(&caption.text, &view.labels), caption })),
         Err(error) if error.ends_run() => Err(error.into()),
         Err(error) => {
             output.say(format_args!("{}: {error}", view.scene));

@@ -1,17 +1,17 @@
 //! The figures of each way of asking, and the table that shows them.
 
-use super::{Captioned, Measured};
+use super::{PerceptionMeasurement, ScoredCaption};
 use serde::Serialize;
 use std::fmt;
 use wayword_run::{
-    count::count,
-    settings::{LABELS, Perception},
+    count::count_phrase,
+    settings::{LABELS_ROLE, Perception},
 };
-use wayword_synthesis::perception::Score;
+use wayword_synthesis::perception::CaptionScore;
 
 /// The figures of one way of asking.
 #[derive(Debug, Serialize)]
-pub struct Row {
+pub struct PerceptionRow {
     /// How it was asked.
     pub perception: Perception,
     /// Views that were captioned.
@@ -34,12 +34,12 @@ pub struct Row {
     pub calls_per_view: f64,
     /// The figures after a detector corrected the captions, if one was named.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub with_detector: Option<WithDetector>,
+    pub with_detector: Option<DetectorCorrectedFigures>,
 }
 
 /// The figures of captions that a detector corrected.
 #[derive(Debug, Serialize)]
-pub struct WithDetector {
+pub struct DetectorCorrectedFigures {
     /// Hallucinated objects that it struck out.
     pub struck_out: usize,
     /// Objects that a label confirms and that it struck out all the same.
@@ -52,29 +52,29 @@ pub struct WithDetector {
     pub recall: f64,
 }
 
-impl WithDetector {
-    pub(super) fn of<'a>(before: impl Iterator<Item = &'a Score>, after: &[Score]) -> Self {
+impl DetectorCorrectedFigures {
+    pub(super) fn from_scores<'a>(before: impl Iterator<Item = &'a CaptionScore>, after: &[CaptionScore]) -> Self {
         let (mut named_before, mut wrong_before) = (0, 0);
         for score in before {
             named_before += score.named;
             wrong_before += score.hallucinated.len();
         }
-        let sum = |count: fn(&Score) -> usize| after.iter().map(count).sum::<usize>();
+        let sum = |count: fn(&CaptionScore) -> usize| after.iter().map(count).sum::<usize>();
         let (named, wrong) = (sum(|score| score.named), sum(|score| score.hallucinated.len()));
         Self {
             struck_out: wrong_before.saturating_sub(wrong),
             lost: (named_before - wrong_before).saturating_sub(named - wrong),
-            precision: share(named - wrong, named),
-            hallucination_rate: share(wrong, named),
-            recall: share(sum(|score| score.found), sum(|score| score.labelled)),
+            precision: count_share(named - wrong, named),
+            hallucination_rate: count_share(wrong, named),
+            recall: count_share(sum(|score| score.found), sum(|score| score.labelled)),
         }
     }
 }
 
-impl Row {
-    pub(super) fn of(perception: Perception, captions: &[Option<Captioned>], calls: u64) -> Self {
-        let captioned: Vec<&Captioned> = captions.iter().flatten().collect();
-        let sum = |count: fn(&Captioned) -> usize| captioned.iter().map(|one| count(one)).sum::<usize>();
+impl PerceptionRow {
+    pub(super) fn from_captions(perception: Perception, captions: &[Option<ScoredCaption>], calls: u64) -> Self {
+        let captioned: Vec<&ScoredCaption> = captions.iter().flatten().collect();
+        let sum = |count: fn(&ScoredCaption) -> usize| captioned.iter().map(|one| count(one)).sum::<usize>();
         let named = sum(|one| one.score.named);
         let hallucinated = sum(|one| one.score.hallucinated.len());
         let with_hallucinations = sum(|one| usize::from(!one.score.hallucinated.is_empty()));
@@ -83,11 +83,11 @@ impl Row {
             captions: captioned.len(),
             failed: captions.len() - captioned.len(),
             named,
-            precision: share(named - hallucinated, named),
-            hallucination_rate: share(hallucinated, named),
-            recall: share(sum(|one| one.score.found), sum(|one| one.score.labelled)),
-            captions_with_hallucinations: share(with_hallucinations, captioned.len()),
-            questions_per_view: share(sum(|one| one.caption.transcript.len()), captioned.len()),
+            precision: count_share(named - hallucinated, named),
+            hallucination_rate: count_share(hallucinated, named),
+            recall: count_share(sum(|one| one.score.found), sum(|one| one.score.labelled)),
+            captions_with_hallucinations: count_share(with_hallucinations, captioned.len()),
+            questions_per_view: count_share(sum(|one| one.caption.transcript.len()), captioned.len()),
             calls_per_view: calls as f64 / captions.len().max(1) as f64,
             with_detector: None,
         }
@@ -95,18 +95,18 @@ impl Row {
 }
 
 /// A part as a share of a whole; 0 if the whole is 0.
-fn share(part: usize, whole: usize) -> f64 {
+fn count_share(part: usize, whole: usize) -> f64 {
     if whole == 0 { 0.0 } else { part as f64 / whole as f64 }
 }
 
 /// Prints the measurement as a table with explanations.
-pub(super) struct Table<'a>(pub(super) &'a Measured);
+pub(super) struct PerceptionTable<'a>(pub(super) &'a PerceptionMeasurement);
 
-impl fmt::Display for Table<'_> {
+impl fmt::Display for PerceptionTable<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Measured { platform, views, roles, rows, shown, .. } = self.0;
-        writeln!(f, "{} of {platform}; {roles}", count(*views, "view"))?;
-        if roles.contains(&format!("answered by {LABELS}")) {
+        let PerceptionMeasurement { platform, views, roles, rows, shown, .. } = self.0;
+        writeln!(f, "{} of {platform}; {roles}", count_phrase(*views, "view"))?;
+        if roles.contains(&format!("answered by {LABELS_ROLE}")) {
             writeln!(
                 f,
                 "The ground-truth labels answered here, and no model: the figures show what the dialogue loses, not \
@@ -119,7 +119,7 @@ impl fmt::Display for Table<'_> {
             writeln!(
                 f,
                 "{:<10} {:>7}  {:>8.1}%  {:>5.1}%  {:>11.1}%  {:>7.1}%  {:>9.1}  {:>5.1}",
-                name(row.perception),
+                perception_name(row.perception),
                 row.named,
                 100.0 * row.precision,
                 100.0 * row.recall,
@@ -140,7 +140,7 @@ impl fmt::Display for Table<'_> {
                 )?;
             }
             if row.failed > 0 {
-                let views = count(row.failed, "view");
+                let views = count_phrase(row.failed, "view");
                 writeln!(f, "           no caption for {views}; the reasons are printed above")?;
             }
         }
@@ -166,7 +166,7 @@ impl fmt::Display for Table<'_> {
                 "\n\n{} at {} degrees, {}:\n  {}",
                 one.scene,
                 one.heading_deg,
-                name(one.perception),
+                perception_name(one.perception),
                 one.caption
             )?;
             if !one.hallucinated.is_empty() {
@@ -178,7 +178,7 @@ impl fmt::Display for Table<'_> {
 }
 
 /// The F1 score: the harmonic mean of precision and recall.
-fn balance(row: &Row) -> f64 {
+fn f1_score(row: &PerceptionRow) -> f64 {
     share_of(2.0 * row.precision * row.recall, row.precision + row.recall)
 }
 
@@ -187,27 +187,27 @@ fn share_of(part: f64, whole: f64) -> f64 {
 }
 
 /// F1 scores that differ by less count as equal.
-const SLIGHT: f64 = 0.01;
+const EQUAL_F1_MARGIN: f64 = 0.01;
 
 /// Recommends a way of asking: among those about as good as the best, the one with the fewest calls.
-fn which_pays(rows: &[Row]) -> Option<String> {
-    let best = rows.iter().map(balance).fold(0.0, f64::max);
-    let good = rows.iter().filter(|row| best > 0.0 && balance(row) > best - SLIGHT);
+fn which_pays(rows: &[PerceptionRow]) -> Option<String> {
+    let best = rows.iter().map(f1_score).fold(0.0, f64::max);
+    let good = rows.iter().filter(|row| best > 0.0 && f1_score(row) > best - EQUAL_F1_MARGIN);
     let row = good.min_by(|a, b| a.calls_per_view.total_cmp(&b.calls_per_view)).filter(|_| rows.len() > 1)?;
     let next = rows.iter().filter(|other| other.perception != row.perception);
-    let next = next.max_by(|a, b| balance(a).total_cmp(&balance(b)))?;
+    let next = next.max_by(|a, b| f1_score(a).total_cmp(&f1_score(b)))?;
     Some(format!(
         "{} pays: F1 of objects {:.1} % with {:.1} calls a view; the next best, {}, has {:.1} % with {:.1}.",
-        name(row.perception),
-        100.0 * balance(row),
+        perception_name(row.perception),
+        100.0 * f1_score(row),
         row.calls_per_view,
-        name(next.perception),
-        100.0 * balance(next),
+        perception_name(next.perception),
+        100.0 * f1_score(next),
         next.calls_per_view
     ))
 }
 
-fn name(perception: Perception) -> &'static str {
+fn perception_name(perception: Perception) -> &'static str {
     match perception {
         Perception::Dialogue => "dialogue",
         Perception::Fixed => "fixed",

@@ -23,7 +23,7 @@ Examples:
       Mean and spread of each agent's success over the sets of a comparison, and where it varies.
 
 Give the same command again to continue. With more --change, only these are added. docs/ROBUSTNESS.md says what the figures mean.")]
-pub struct Robustness {
+pub struct RobustnessArgs {
     /// The run whose texts are written again. Its platform, paths, styles and models are used.
     #[arg(long, value_name = "DIR", required_unless_present_any = ["list", "compared"])]
     pub run: Option<PathBuf>,

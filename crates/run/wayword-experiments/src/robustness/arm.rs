@@ -1,10 +1,10 @@
 //! The arms of a robustness run. Each arm is one condition, such as a changed world, in which a text is written for every path.
 
-use wayword_robustness::{Change, Whole};
+use wayword_robustness::{Change, WholeChange};
 
 /// One arm.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Arm {
+pub(super) enum RobustnessArm {
     /// In the run's world, as it is. All other arms are compared with this one.
     Unchanged,
     /// In the same world, with another sample of the model: how much texts vary by chance.
@@ -17,11 +17,12 @@ pub(super) enum Arm {
     Changed(Change),
 }
 
-impl Arm {
+impl RobustnessArm {
     /// All arms that some changes need, in the order in which they are made. Those with which others are compared come first.
-    pub(super) fn of(changes: &[Change]) -> Vec<Self> {
-        let is_measured = changes.iter().any(|change| change.dose().is_some() || matches!(change, Change::Platform(_)));
-        let reverses = changes.contains(&Change::Whole(Whole::Reverse));
+    pub(super) fn for_changes(changes: &[Change]) -> Vec<Self> {
+        let is_measured =
+            changes.iter().any(|change| change.dose_value().is_some() || matches!(change, Change::Platform(_)));
+        let reverses = changes.contains(&Change::Whole(WholeChange::Reverse));
         let mut arms = vec![Self::Unchanged];
         if is_measured {
             arms.extend([Self::Again, Self::Other]);
@@ -45,7 +46,7 @@ impl Arm {
     }
 
     /// The label beside the progress bar while the arm is made.
-    pub(super) fn said(&self) -> String {
+    pub(super) fn progress_label(&self) -> String {
         match self {
             Self::Changed(change) => change.to_string(),
             other => other.id(),
@@ -53,9 +54,9 @@ impl Arm {
     }
 
     /// How strong the change of the arm is for a scripted eye, from 0 to 1.
-    pub(super) fn strength(&self) -> f64 {
+    pub(super) fn change_strength(&self) -> f64 {
         match self {
-            Self::Changed(change) => change.strength().unwrap_or(0.0),
+            Self::Changed(change) => change.dose_strength().unwrap_or(0.0),
             _ => 0.0,
         }
     }
@@ -67,7 +68,7 @@ impl Arm {
 
     /// Whether the change affects one thing of the world, chosen for each text.
     pub(super) fn is_edit(&self) -> bool {
-        matches!(self, Self::Changed(Change::Whole(Whole::Remove | Whole::Add | Whole::Material)))
+        matches!(self, Self::Changed(Change::Whole(WholeChange::Remove | WholeChange::Add | WholeChange::Material)))
     }
 
     /// Whether the agent walks by the texts of the arm: they must describe the run's path from its start to its end.
@@ -75,7 +76,7 @@ impl Arm {
         match self {
             Self::Unchanged | Self::Again => true,
             Self::Other | Self::Forward => false,
-            Self::Changed(change) => *change != Change::Whole(Whole::Reverse) && !self.is_edit(),
+            Self::Changed(change) => *change != Change::Whole(WholeChange::Reverse) && !self.is_edit(),
         }
     }
 }
@@ -87,8 +88,8 @@ mod tests {
     #[test]
     fn arms_to_compare_with_come_first() {
         let arms = |typed: &[&str]| -> Vec<String> {
-            let changes: Vec<Change> = typed.iter().flat_map(|typed| Change::parse(typed).unwrap()).collect();
-            Arm::of(&changes).iter().map(Arm::id).collect()
+            let changes: Vec<Change> = typed.iter().flat_map(|typed| Change::parse_list(typed).unwrap()).collect();
+            RobustnessArm::for_changes(&changes).iter().map(RobustnessArm::id).collect()
         };
         assert_eq!(arms(&["mirror"]), ["unchanged", "mirror"]);
         assert_eq!(arms(&["reverse"]), ["unchanged", "forward", "reverse"]);

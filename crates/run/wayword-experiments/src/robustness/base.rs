@@ -6,36 +6,36 @@ use std::{
 };
 use wayword_core::Path;
 use wayword_formats::jsonl;
-use wayword_report::pages::robustness::results::Again;
+use wayword_report::pages::robustness::results::RepeatedTexts;
 use wayword_run::{
-    error::Error,
+    error::CommandError,
     run_folder::{WalkRecord, file, lines, settings_of},
-    settings::{Settings, TargetMode},
-    styles::{self, Measured},
+    settings::{RunSettings, TargetMode},
+    styles::{self, MeasuredStyle},
 };
 
 /// A run: its settings, paths, styles and texts.
-pub(super) struct Base {
+pub(super) struct BaseRun {
     pub(super) folder: PathBuf,
     /// Its settings, with one text for each path and style.
-    pub(super) settings: Settings,
+    pub(super) settings: RunSettings,
     pub(super) paths: Vec<Path>,
-    pub(super) styles: Vec<Measured>,
+    pub(super) styles: Vec<MeasuredStyle>,
     /// Its first texts, by path and style.
     texts: BTreeMap<(String, String), String>,
 }
 
-impl Base {
+impl BaseRun {
     /// Reads a run folder.
     ///
     /// # Errors
     /// When it cannot be read, a style is not known, or no path is left.
-    pub(super) fn read(folder: &FilePath, limit: Option<u32>) -> Result<Self, Error> {
-        let settings = Settings { per_path: 1, ..settings_of(folder)? };
-        let styles = styles::find(&settings.style)?;
+    pub(super) fn read_run(folder: &FilePath, limit: Option<u32>) -> Result<Self, CommandError> {
+        let settings = RunSettings { per_path: 1, ..settings_of(folder)? };
+        let styles = styles::find_styles(&settings.style)?;
         let most = limit.map_or(usize::MAX, |limit| limit as usize);
         let mut paths: Vec<Path> = Vec::new();
-        lines::each(&folder.join(file::WALKS), |line| {
+        lines::each_line(&folder.join(file::WALKS), |line| {
             if paths.len() < most {
                 let WalkRecord { mut path, .. } = line.parse()?;
                 // The words that distinguish the target from other things depend on the world, so every world finds them anew.
@@ -50,10 +50,10 @@ impl Base {
         })?;
         if paths.is_empty() {
             let problem = format!("{}: the run has no path yet", folder.display());
-            return Err(Error::usage(problem, "finish it with the same `wayword generate` command"));
+            return Err(CommandError::usage(problem, "finish it with the same `wayword generate` command"));
         }
         let mut texts = BTreeMap::new();
-        for record in jsonl::read(&folder.join(file::INSTRUCTIONS))? {
+        for record in jsonl::read_records(&folder.join(file::INSTRUCTIONS))? {
             let key = (record.path.id.clone(), record.instruction.style.clone());
             texts.entry(key).or_insert(record.instruction.text);
         }
@@ -61,8 +61,11 @@ impl Base {
     }
 
     /// Counts how many of these texts, given with path and style, are equal to the run's own.
-    pub(super) fn again<'t>(&self, texts: impl Iterator<Item = (&'t str, &'t str, Option<&'t str>)>) -> Again {
-        let mut again = Again::default();
+    pub(super) fn count_equal_texts<'t>(
+        &self,
+        texts: impl Iterator<Item = (&'t str, &'t str, Option<&'t str>)>,
+    ) -> RepeatedTexts {
+        let mut again = RepeatedTexts::default();
         for (path, style, text) in texts {
             let before = self.texts.get(&(path.to_owned(), style.to_owned())).map(String::as_str);
             again.of += 1;

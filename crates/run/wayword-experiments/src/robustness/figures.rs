@@ -4,68 +4,76 @@
 //! known effect, such as a mirrored world, gets the share of texts that show exactly this effect.
 
 use super::{
-    arm::Arm,
-    base::Base,
-    record::{Line, Told},
+    arm::RobustnessArm,
+    base::BaseRun,
+    record::{ArmPathRecord, ArmText},
 };
 use std::collections::BTreeMap;
-use wayword_metrics::{Estimate, clustered_interval};
-use wayword_report::pages::robustness::results::{Curve, Example, Expectation, Figure, OfChange, OfStyle};
+use wayword_metrics::{MeanEstimate, clustered_interval};
+use wayword_report::pages::robustness::results::{
+    ChangeResults, DoseCurve, ExpectationResult, RobustnessFigure, StyleResults, TextPairExample,
+};
 use wayword_robustness::{
-    Agreement, Change, Facts, Whole,
-    metamorphic::{self, Gone, Outcome, Written},
-    ratio::{Drawing, OfPath, falls_at, robustness, slope},
+    Change, TextAgreement, TextFacts, WholeChange,
+    metamorphic::{self, AnnotatedText, ChangedThing, ExpectationOutcome},
+    ratio::{BootstrapOptions, PathAgreements, dose_slope, falls_at, robustness_ratios},
 };
 
 /// A change matters if its R is below this.
-const LEAST: f64 = 0.8;
+const MIN_HARMLESS_R: f64 = 0.8;
 /// Most pairs of texts, before and after, that are shown of each change.
-const EXAMPLES: usize = 5;
+const MAX_CHANGE_EXAMPLES: usize = 5;
 /// Most pairs of texts that are shown because they do not keep an expectation.
-const BROKEN: usize = 10;
+const MAX_BROKEN_EXAMPLES: usize = 10;
 
 /// All lines of `texts.jsonl`, by arm and path.
-pub(super) type Lines = BTreeMap<String, BTreeMap<String, Line>>;
+pub(super) type RecordsByArm = BTreeMap<String, BTreeMap<String, ArmPathRecord>>;
 
 /// The figures of one style.
-pub(super) fn of_style(base: &Base, style: &str, changes: &[Change], lines: &Lines, drawing: Drawing) -> OfStyle {
-    let texts = Texts { base, style, lines };
+pub(super) fn figures_for_style(
+    base: &BaseRun,
+    style: &str,
+    changes: &[Change],
+    lines: &RecordsByArm,
+    drawing: BootstrapOptions,
+) -> StyleResults {
+    let texts = StyleTexts { base, style, lines };
     let (exact, measured): (Vec<&Change>, Vec<&Change>) =
         changes.iter().partition(|change| matches!(change, Change::Whole(_)));
-    let measured: Vec<(&Change, OfChange)> =
-        measured.into_iter().map(|change| (change, texts.change(change, drawing))).collect();
-    OfStyle {
+    let measured: Vec<(&Change, ChangeResults)> =
+        measured.into_iter().map(|change| (change, texts.change_figures(change, drawing))).collect();
+    StyleResults {
         style: style.to_owned(),
-        curves: curves(&measured),
+        curves: dose_curves(&measured),
         changes: measured.into_iter().map(|(_, found)| found).collect(),
-        expectations: exact.into_iter().map(|change| texts.expectation(change)).collect(),
+        expectations: exact.into_iter().map(|change| texts.expectation_figures(change)).collect(),
     }
 }
 
 /// The texts of one style.
-struct Texts<'a> {
-    base: &'a Base,
+struct StyleTexts<'a> {
+    base: &'a BaseRun,
     style: &'a str,
-    lines: &'a Lines,
+    lines: &'a RecordsByArm,
 }
 
-impl<'a> Texts<'a> {
+impl<'a> StyleTexts<'a> {
     /// The text of a path in an arm, with the line that contains it.
-    fn told(&self, arm: &str, path: &str) -> Option<(&'a Line, &'a Told)> {
+    fn text_in_arm(&self, arm: &str, path: &str) -> Option<(&'a ArmPathRecord, &'a ArmText)> {
         let line = self.lines.get(arm)?.get(path)?;
-        Some((line, line.told(self.style)?))
+        Some((line, line.text_in_style(self.style)?))
     }
 
     /// The statements of a path's text in an arm, located by the frames of the run's path.
-    fn facts(&self, arm: &str, path: &str) -> Option<Facts> {
-        let (line, told) = self.told(arm, path)?;
+    fn facts_in_arm(&self, arm: &str, path: &str) -> Option<TextFacts> {
+        let (line, told) = self.text_in_arm(arm, path)?;
         let place = |frame: usize| line.base_frame_of.get(frame).copied().unwrap_or(frame);
-        Some(Facts::of(told.text.as_ref()?, &told.mentions, place))
+        Some(TextFacts::from_mentions(told.text.as_ref()?, &told.mentions, place))
     }
 
-    fn change(&self, change: &Change, drawing: Drawing) -> OfChange {
+    fn change_figures(&self, change: &Change, drawing: BootstrapOptions) -> ChangeResults {
         let id = change.id();
-        let mut found = OfChange {
+        let mut found = ChangeResults {
             change: change.to_string(),
             paths: 0,
             lost: 0,
@@ -75,112 +83,120 @@ impl<'a> Texts<'a> {
         };
         let (mut paths, mut success) = (Vec::new(), Vec::new());
         for path in &self.base.paths {
-            let Some(before) = self.facts("unchanged", &path.id) else { continue };
-            let Some(after) = self.facts(&id, &path.id) else {
-                found.lost += usize::from(self.told(&id, &path.id).is_some());
+            let Some(before) = self.facts_in_arm("unchanged", &path.id) else { continue };
+            let Some(after) = self.facts_in_arm(&id, &path.id) else {
+                found.lost += usize::from(self.text_in_arm(&id, &path.id).is_some());
                 continue;
             };
             found.paths += 1;
-            let agreement = |arm: &str| self.facts(arm, &path.id).map(|facts| Agreement::of(&before, &facts));
+            let agreement =
+                |arm: &str| self.facts_in_arm(arm, &path.id).map(|facts| TextAgreement::from_facts(&before, &facts));
             let scene = path.scene.as_str().to_owned();
             if let Some((again, other)) = agreement("again").zip(agreement("other-path")) {
-                paths.push(OfPath { scene: scene.clone(), changed: Agreement::of(&before, &after), again, other });
+                paths.push(PathAgreements {
+                    scene: scene.clone(),
+                    changed: TextAgreement::from_facts(&before, &after),
+                    again,
+                    other,
+                });
             }
-            let arrived = |arm: &str| self.told(arm, &path.id).and_then(|(_, told)| told.arrived);
+            let arrived = |arm: &str| self.text_in_arm(arm, &path.id).and_then(|(_, told)| told.arrived);
             if let Some((then, now)) = arrived("unchanged").zip(arrived(&id)) {
                 success.push((scene, now - then));
             }
-            if found.examples.len() < EXAMPLES {
-                found.examples.extend(self.example(&id, &path.id, String::new()));
+            if found.examples.len() < MAX_CHANGE_EXAMPLES {
+                found.examples.extend(self.text_example(&id, &path.id, String::new()));
             }
         }
-        found.figures = robustness(&paths, drawing).into_iter().map(Figure::from).collect();
+        found.figures = robustness_ratios(&paths, drawing).into_iter().map(RobustnessFigure::from).collect();
         found.success = clustered_interval(&success, drawing.resamples, drawing.level, drawing.seed);
         found
     }
 
-    fn expectation(&self, change: &Change) -> Expectation {
+    fn expectation_figures(&self, change: &Change) -> ExpectationResult {
         let id = change.id();
-        let mut found = Expectation {
+        let mut found = ExpectationResult {
             change: change.to_string(),
-            expected: expected(change).to_owned(),
+            expected: expected_outcome(change).to_owned(),
             told: 0,
             holds: 0,
             examples: Vec::new(),
         };
         for path in &self.base.paths {
-            let Some(outcome) = self.outcome(change, &path.id) else { continue };
-            found.told += usize::from(outcome != Outcome::NotTold);
+            let Some(outcome) = self.expectation_outcome(change, &path.id) else { continue };
+            found.told += usize::from(outcome != ExpectationOutcome::NotTold);
             match outcome {
-                Outcome::Holds => found.holds += 1,
-                Outcome::NotTold => {}
-                Outcome::Differs(why) if found.examples.len() < BROKEN => {
-                    found.examples.extend(self.example(&id, &path.id, why));
+                ExpectationOutcome::Holds => found.holds += 1,
+                ExpectationOutcome::NotTold => {}
+                ExpectationOutcome::Differs(why) if found.examples.len() < MAX_BROKEN_EXAMPLES => {
+                    found.examples.extend(self.text_example(&id, &path.id, why));
                 }
-                Outcome::Differs(_) => {}
+                ExpectationOutcome::Differs(_) => {}
             }
         }
         found
     }
 
     /// Whether the texts of a path before and after a change keep its expectation; `None` if one of them is missing.
-    fn outcome(&self, change: &Change, path: &str) -> Option<Outcome> {
+    fn expectation_outcome(&self, change: &Change, path: &str) -> Option<ExpectationOutcome> {
         let Change::Whole(whole) = change else { return None };
-        let arm = if *whole == Whole::Reverse { Arm::Forward } else { Arm::Unchanged };
-        let (line, before) = self.told(&arm.id(), path)?;
-        let (_, after) = self.told(&change.id(), path)?;
+        let arm = if *whole == WholeChange::Reverse { RobustnessArm::Forward } else { RobustnessArm::Unchanged };
+        let (line, before) = self.text_in_arm(&arm.id(), path)?;
+        let (_, after) = self.text_in_arm(&change.id(), path)?;
         let text = before.text.as_ref()?;
         let Some(changed) = &after.text else {
-            return Some(Outcome::Differs("every text failed its checks after the change".to_owned()));
+            return Some(ExpectationOutcome::Differs("every text failed its checks after the change".to_owned()));
         };
         let last_frame = line.path.frames.len().saturating_sub(1);
-        let base = Written { text, mentions: &before.mentions, last_frame };
-        let changed = Written { text: changed, mentions: &after.mentions, last_frame };
+        let base = AnnotatedText { text, mentions: &before.mentions, last_frame };
+        let changed = AnnotatedText { text: changed, mentions: &after.mentions, last_frame };
         let edit = after.edit.as_ref();
-        let gone = || edit.map(|edit| Gone { name: &edit.name, seen_from: &edit.seen_from });
+        let gone = || edit.map(|edit| ChangedThing { name: &edit.name, seen_from: &edit.seen_from });
         Some(match whole {
-            Whole::Mirror => metamorphic::mirror(base, changed),
-            Whole::Turn => metamorphic::turn(base, changed),
-            Whole::Remove => metamorphic::remove(base, changed, gone()?),
-            Whole::Add => metamorphic::add(base, changed, gone()?),
-            Whole::Material => {
+            WholeChange::Mirror => metamorphic::check_mirrored_world(base, changed),
+            WholeChange::Turn => metamorphic::check_turned_world(base, changed),
+            WholeChange::Remove => metamorphic::check_removed_thing(base, changed, gone()?),
+            WholeChange::Add => metamorphic::check_added_thing(base, changed, gone()?),
+            WholeChange::Material => {
                 let [old, new] = edit?.colours.as_ref()?;
-                metamorphic::material(base, changed, old, new)
+                metamorphic::check_changed_material(base, changed, old, new)
             }
-            Whole::Reverse => metamorphic::reverse(base, changed),
+            WholeChange::Reverse => metamorphic::check_reversed_path(base, changed),
         })
     }
 
-    fn example(&self, arm: &str, path: &str, note: String) -> Option<Example> {
+    fn text_example(&self, arm: &str, path: &str, note: String) -> Option<TextPairExample> {
         let reference = if arm == "reverse" { "forward" } else { "unchanged" };
-        let text = |arm: &str| Some(self.told(arm, path)?.1.text.clone().unwrap_or_default());
-        Some(Example { path: path.to_owned(), before: text(reference)?, after: text(arm)?, note })
+        let text = |arm: &str| Some(self.text_in_arm(arm, path)?.1.text.clone().unwrap_or_default());
+        Some(TextPairExample { path: path.to_owned(), before: text(reference)?, after: text(arm)?, note })
     }
 }
 
 /// The expectation of a change, in words.
-fn expected(change: &Change) -> &'static str {
+fn expected_outcome(change: &Change) -> &'static str {
     match change {
-        Change::Whole(Whole::Mirror) => "the text is equal but left and right",
-        Change::Whole(Whole::Turn) => "the text is equal, byte for byte",
-        Change::Whole(Whole::Remove) => "its name is gone, and clauses of frames that did not see it are unchanged",
-        Change::Whole(Whole::Add) => "only clauses of frames that see it change",
-        Change::Whole(Whole::Material) => "only the word for its colour changes",
+        Change::Whole(WholeChange::Mirror) => "the text is equal but left and right",
+        Change::Whole(WholeChange::Turn) => "the text is equal, byte for byte",
+        Change::Whole(WholeChange::Remove) => {
+            "its name is gone, and clauses of frames that did not see it are unchanged"
+        }
+        Change::Whole(WholeChange::Add) => "only clauses of frames that see it change",
+        Change::Whole(WholeChange::Material) => "only the word for its colour changes",
         _ => "as many turns, each to the other side, rooms and climbs in reverse order",
     }
 }
 
 /// A curve of R over the dose for each change with several doses.
-fn curves(measured: &[(&Change, OfChange)]) -> Vec<Curve> {
-    let mut curves: Vec<Curve> = Vec::new();
+fn dose_curves(measured: &[(&Change, ChangeResults)]) -> Vec<DoseCurve> {
+    let mut curves: Vec<DoseCurve> = Vec::new();
     for (change, found) in measured {
-        let Some(dose) = change.dose() else { continue };
+        let Some(dose) = change.dose_value() else { continue };
         let r = found.figures.last().and_then(|mean| mean.r);
         match curves.iter_mut().find(|curve| curve.change == change.name()) {
             Some(curve) => curve.points.push((dose, r)),
-            None => curves.push(Curve {
+            None => curves.push(DoseCurve {
                 change: change.name().to_owned(),
-                unchanged: change.unchanged(),
+                unchanged: change.unchanged_dose(),
                 points: vec![(dose, r)],
                 slope: None,
                 falls_at: Vec::new(),
@@ -190,9 +206,9 @@ fn curves(measured: &[(&Change, OfChange)]) -> Vec<Curve> {
     curves.retain(|curve| curve.points.len() > 1);
     for curve in &mut curves {
         let known: Vec<(f64, f64)> =
-            curve.points.iter().filter_map(|(dose, r)| r.map(|r: Estimate| (*dose, r.mean))).collect();
-        curve.slope = slope(&known);
-        curve.falls_at = falls_at(&known, curve.unchanged, LEAST);
+            curve.points.iter().filter_map(|(dose, r)| r.map(|r: MeanEstimate| (*dose, r.mean))).collect();
+        curve.slope = dose_slope(&known);
+        curve.falls_at = falls_at(&known, curve.unchanged, MIN_HARMLESS_R);
     }
     curves
 }

@@ -1,19 +1,19 @@
 //! Finds another path of the same building with as many hops. A text about it shows how much two unrelated texts agree by chance.
 
-use super::{making::Unchanged, record::Line};
+use super::{making::UnchangedRecords, record::ArmPathRecord};
 use crate::demands::SAME_GOAL_M;
-use wayword_core::{Path, PathRequest, Platform, PlatformError, seed::derive};
-use wayword_run::error::Error;
+use wayword_core::{Path, PathRequest, Platform, PlatformError, seed::derive_seed};
+use wayword_run::error::CommandError;
 
 /// Most paths that are drawn at random in search of one with as many hops.
-const DRAWS: u64 = 60;
+const MAX_PATH_DRAWS: u64 = 60;
 /// A path that is drawn differs in length from the run's path by at most this share.
-const LENGTH: f64 = 0.25;
+const LENGTH_TOLERANCE_SHARE: f64 = 0.25;
 
 /// Another path of the same building.
-pub(super) enum Other {
+pub(super) enum OtherPathChoice {
     /// A path of the run, which has its texts already.
-    Told(Box<Line>),
+    Told(Box<ArmPathRecord>),
     /// A path that was drawn, under the id of the run's path.
     New(Path),
 }
@@ -22,26 +22,29 @@ pub(super) enum Other {
 ///
 /// # Errors
 /// When the scene cannot be read.
-pub(super) fn other(
+pub(super) fn find_other_path(
     platform: &dyn Platform,
     path: &Path,
-    unchanged: &Unchanged,
+    unchanged: &UnchangedRecords,
     seed: u64,
-) -> Result<Option<Other>, Error> {
-    let told: Vec<&Line> = unchanged.values().filter(|line| is_other(path, &line.path)).collect();
-    let at = derive(seed, &["robustness", "other", &path.id]).checked_rem(told.len() as u64);
+) -> Result<Option<OtherPathChoice>, CommandError> {
+    let told: Vec<&ArmPathRecord> = unchanged.values().filter(|line| is_other(path, &line.path)).collect();
+    let at = derive_seed(seed, &["robustness", "other", &path.id]).checked_rem(told.len() as u64);
     if let Some(line) = at.and_then(|at| told.get(usize::try_from(at).ok()?)) {
-        return Ok(Some(Other::Told(Box::new((*line).clone()))));
+        return Ok(Some(OtherPathChoice::Told(Box::new((*line).clone()))));
     }
     let Some(length_m) = path.length_m() else { return Ok(None) };
     let hops = path.frames.len() - 1;
-    let request = PathRequest { hops: hops..=hops, length_m: length_m * (1.0 - LENGTH)..=length_m * (1.0 + LENGTH) };
-    for draw in 0..DRAWS {
-        let seed = derive(seed, &["robustness", "other", &path.id, &draw.to_string()]);
+    let request = PathRequest {
+        hops: hops..=hops,
+        length_m: length_m * (1.0 - LENGTH_TOLERANCE_SHARE)..=length_m * (1.0 + LENGTH_TOLERANCE_SHARE),
+    };
+    for draw in 0..MAX_PATH_DRAWS {
+        let seed = derive_seed(seed, &["robustness", "other", &path.id, &draw.to_string()]);
         match platform.sample_path(&path.scene, &request, seed) {
             Ok(other) if is_other(path, &other) => {
                 // The random numbers of the writing depend on the path's id, so it stays the same.
-                return Ok(Some(Other::New(Path { id: path.id.clone(), ..other })));
+                return Ok(Some(OtherPathChoice::New(Path { id: path.id.clone(), ..other })));
             }
             Ok(_) | Err(PlatformError::NoSuchPath { .. }) => {}
             Err(error) => return Err(error.into()),

@@ -1,15 +1,15 @@
 //! The lines of `texts.jsonl`: a path in one arm, with its texts.
 
-use super::arm::Arm;
+use super::arm::RobustnessArm;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::BTreeMap;
-use wayword_core::{Instruction, Mention, Path};
-use wayword_synthesis::repair::Outcome;
+use wayword_core::{Instruction, Path, TextMention};
+use wayword_synthesis::repair::WritingOutcome;
 
 /// A path in one arm, with its texts.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub(super) struct Line {
+pub(super) struct ArmPathRecord {
     /// The arm.
     pub(super) arm: String,
     /// The path in that arm; its id is that of the run's path.
@@ -17,7 +17,7 @@ pub(super) struct Line {
     /// For each of its frames, the index of the corresponding frame of the run's path.
     pub(super) base_frame_of: Vec<usize>,
     /// Its texts, one for each style.
-    pub(super) texts: Vec<Told>,
+    pub(super) texts: Vec<ArmText>,
     /// The reason why there are no texts, if the arm does not apply to the path.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) left_out: Option<String>,
@@ -25,7 +25,7 @@ pub(super) struct Line {
 
 /// A text of one style.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub(super) struct Told {
+pub(super) struct ArmText {
     pub(super) style: String,
     /// Its words; `None` where every text failed its checks.
     pub(super) text: Option<String>,
@@ -33,10 +33,10 @@ pub(super) struct Told {
     #[serde(default)]
     pub(super) candidate: u32,
     /// The statements of the text that have evidence.
-    pub(super) mentions: Vec<Mention>,
+    pub(super) mentions: Vec<TextMention>,
     /// The thing that was changed for this text, in an arm that changes one thing.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(super) edit: Option<Edit>,
+    pub(super) edit: Option<ThingEdit>,
     /// 1 if the agent arrived by the text, 0 if not; `None` if it did not walk.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) arrived: Option<f64>,
@@ -44,7 +44,7 @@ pub(super) struct Told {
 
 /// One thing that was removed, added, or given another colour.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub(super) struct Edit {
+pub(super) struct ThingEdit {
     /// Its name.
     pub(super) name: String,
     /// The indices of the frames that see it or another thing of its name.
@@ -54,44 +54,44 @@ pub(super) struct Edit {
     pub(super) colours: Option<[String; 2]>,
 }
 
-impl Told {
+impl ArmText {
     /// Makes the record of a text from the outcome of its writing.
-    pub(super) fn of(style: &str, outcome: Outcome) -> Self {
+    pub(super) fn from_outcome(style: &str, outcome: WritingOutcome) -> Self {
         let none =
             Self { style: style.to_owned(), text: None, candidate: 0, mentions: Vec::new(), edit: None, arrived: None };
         match outcome {
-            Outcome::Accepted(Instruction { text, mentions, provenance, .. }) => {
+            WritingOutcome::Accepted(Instruction { text, mentions, provenance, .. }) => {
                 let candidate = provenance.chosen.map_or(0, |chosen| chosen.number);
                 Self { text: Some(text), candidate, mentions, ..none }
             }
-            Outcome::Rejected { .. } => none,
+            WritingOutcome::Rejected { .. } => none,
         }
     }
 }
 
 /// The key of a line: an arm and a path.
-pub(super) fn key(arm: &str, path: &str) -> String {
+pub(super) fn record_key(arm: &str, path: &str) -> String {
     format!("{arm}\u{1f}{path}")
 }
 
-impl Line {
+impl ArmPathRecord {
     pub(super) fn key_of(value: &Value) -> Option<String> {
-        Some(key(value.get("arm")?.as_str()?, value.get("path")?.get("id")?.as_str()?))
+        Some(record_key(value.get("arm")?.as_str()?, value.get("path")?.get("id")?.as_str()?))
     }
 
     /// The line of a path to which an arm does not apply, with the reason.
-    pub(super) fn left_out(arm: &Arm, path: &Path, reason: &str) -> Self {
+    pub(super) fn left_out(arm: &RobustnessArm, path: &Path, reason: &str) -> Self {
         let left_out = Some(reason.to_owned());
         Self { arm: arm.id(), path: path.clone(), base_frame_of: Vec::new(), texts: Vec::new(), left_out }
     }
 
     /// The number of the candidate that each text is, by style.
-    pub(super) fn candidates(&self) -> BTreeMap<String, u32> {
+    pub(super) fn candidates_by_style(&self) -> BTreeMap<String, u32> {
         self.texts.iter().map(|told| (told.style.clone(), told.candidate)).collect()
     }
 
     /// The text of a style.
-    pub(super) fn told(&self, style: &str) -> Option<&Told> {
+    pub(super) fn text_in_style(&self, style: &str) -> Option<&ArmText> {
         self.texts.iter().find(|told| told.style == style)
     }
 }

@@ -2,13 +2,15 @@
 
 use serde::Serialize;
 use std::fmt::Write as _;
-use wayword_metrics::Estimate;
-use wayword_report::pages::robustness::results::{Expectation, Figure, OfChange, Results};
-use wayword_robustness::{Change, Dose, Whole};
+use wayword_metrics::MeanEstimate;
+use wayword_report::pages::robustness::results::{
+    ChangeResults, ExpectationResult, RobustnessFigure, RobustnessResults,
+};
+use wayword_robustness::{Change, DoseKind, WholeChange};
 
 /// A change as `--list --json` has it.
 #[derive(Debug, Serialize)]
-pub(super) struct Listed {
+pub(super) struct ListedChange {
     name: &'static str,
     unit: Option<&'static str>,
     range: Option<(f64, f64)>,
@@ -18,26 +20,26 @@ pub(super) struct Listed {
 }
 
 /// All changes.
-pub(super) fn listed() -> Vec<Listed> {
+pub(super) fn list_changes() -> Vec<ListedChange> {
     let default = Change::default_set();
     let is_default = |name: &str| default.iter().any(|change| change.name() == name);
-    let whole = Whole::ALL.into_iter().map(|whole| Listed {
+    let whole = WholeChange::ALL.into_iter().map(|whole| ListedChange {
         name: whole.name(),
         unit: None,
         range: None,
         unchanged: None,
         is_default: is_default(whole.name()),
-        what: whole.description().to_owned(),
+        what: whole.describe_effect().to_owned(),
     });
-    let dosed = Dose::ALL.into_iter().map(|dose| Listed {
+    let dosed = DoseKind::ALL.into_iter().map(|dose| ListedChange {
         name: dose.name(),
         unit: Some(dose.unit()),
-        range: Some(dose.range()),
-        unchanged: dose.unchanged(),
+        range: Some(dose.value_range()),
+        unchanged: dose.unchanged_value(),
         is_default: is_default(dose.name()),
-        what: format!("as in {}={}", dose.name(), dose.example()),
+        what: format!("as in {}={}", dose.name(), dose.example_values()),
     });
-    let platform = Listed {
+    let platform = ListedChange {
         name: "platform",
         unit: None,
         range: None,
@@ -51,9 +53,9 @@ pub(super) fn listed() -> Vec<Listed> {
 }
 
 /// The list of all changes as text, with the default set.
-pub(super) fn list() -> String {
+pub(super) fn format_change_list() -> String {
     let mut text = String::from("changes:\n");
-    for Listed { name, unit, range, what, .. } in listed() {
+    for ListedChange { name, unit, range, what, .. } in list_changes() {
         let doses = range.map(|(low, high)| format!("{low} to {high} {}; ", unit.unwrap_or_default()));
         let _ = writeln!(text, "  {name:<24} {}{what}", doses.unwrap_or_default());
     }
@@ -63,42 +65,44 @@ pub(super) fn list() -> String {
 }
 
 /// The results as text: a table of R for each style, then the expectations.
-pub(super) fn results(results: &Results) -> String {
+pub(super) fn format_results(results: &RobustnessResults) -> String {
     let mut text = String::new();
     for style in &results.styles {
         let _ = writeln!(text, "style {}", style.style);
         if let Some(first) = style.changes.first() {
-            let _ = writeln!(text, "{:<28}{}  success", "R", heading(&first.figures));
+            let _ = writeln!(text, "{:<28}{}  success", "R", figure_heading(&first.figures));
             for change in &style.changes {
-                let _ = writeln!(text, "{}", row(change));
+                let _ = writeln!(text, "{}", change_row(change));
             }
         }
         for one in &style.expectations {
-            let _ = writeln!(text, "{}", expectation(one));
+            let _ = writeln!(text, "{}", expectation_row(one));
         }
     }
     text
 }
 
-fn heading(figures: &[Figure]) -> String {
+fn figure_heading(figures: &[RobustnessFigure]) -> String {
     figures.iter().map(|figure| format!(" {:>10}", figure.kind)).collect()
 }
 
-fn row(change: &OfChange) -> String {
-    let cell = |figure: &Figure| match figure.r {
-        Some(Estimate { mean, .. }) => format!(" {mean:>10.2}"),
+fn change_row(change: &ChangeResults) -> String {
+    let cell = |figure: &RobustnessFigure| match figure.r {
+        Some(MeanEstimate { mean, .. }) => format!(" {mean:>10.2}"),
         None => format!(" {:>10}", "-"),
     };
     let figures: String = change.figures.iter().map(cell).collect();
     let success = change.success.map_or_else(
         || "-".to_owned(),
-        |Estimate { mean, low, high, .. }| format!("{:+.1} [{:+.1}, {:+.1}]", mean * 100.0, low * 100.0, high * 100.0),
+        |MeanEstimate { mean, low, high, .. }| {
+            format!("{:+.1} [{:+.1}, {:+.1}]", mean * 100.0, low * 100.0, high * 100.0)
+        },
     );
     format!("{:<28}{figures}  {success}", change.change)
 }
 
-fn expectation(one: &Expectation) -> String {
-    let Expectation { change, expected, told, holds, .. } = one;
-    let share = one.share().map_or_else(|| "-".to_owned(), |share| format!("{:.1} %", share * 100.0));
+fn expectation_row(one: &ExpectationResult) -> String {
+    let ExpectationResult { change, expected, told, holds, .. } = one;
+    let share = one.share_that_holds().map_or_else(|| "-".to_owned(), |share| format!("{:.1} %", share * 100.0));
     format!("{change:<28} {share:>10}  {holds} of {told}: {expected}")
 }

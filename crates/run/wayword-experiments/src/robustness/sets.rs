@@ -1,23 +1,23 @@
 //! `wayword robustness --compared`: how much agents' success varies among sets of instructions, and whether sets rank agents alike.
 
-use crate::compare::{Kept, file};
+use crate::compare::{ComparisonSettings, file};
 use serde::Serialize;
 use std::{collections::BTreeSet, fmt, path::PathBuf};
 use wayword_robustness::{
-    ratio::Drawing,
-    sets::{Followed, OfAgent, Ranking, Shares, of_agents, rankings},
+    ratio::BootstrapOptions,
+    sets::{AgentSuccess, FollowResult, RankingAgreement, VarianceShares, agent_success_rates, compare_rankings},
 };
 use wayword_run::{
-    error::Error,
+    error::CommandError,
     run_folder::{read_lines, refuse_other_format},
 };
 
 /// The figures of several sets of instructions together.
 #[derive(Serialize)]
-pub(super) struct Report {
+pub(super) struct SetVarianceReport {
     sets: BTreeSet<String>,
-    agents: Vec<OfAgent>,
-    rankings: Vec<Ranking>,
+    agents: Vec<AgentSuccess>,
+    rankings: Vec<RankingAgreement>,
     /// Confidence level of the intervals, which draw whole scenes.
     level: f64,
 }
@@ -27,35 +27,38 @@ pub(super) struct Report {
 ///
 /// # Errors
 /// When a folder has no walks, or there is a single set.
-pub(super) fn of(folders: &[PathBuf], drawing: Drawing) -> Result<Report, Error> {
-    let mut all: Vec<Followed> = Vec::new();
+pub(super) fn compare_sets(folders: &[PathBuf], drawing: BootstrapOptions) -> Result<SetVarianceReport, CommandError> {
+    let mut all: Vec<FollowResult> = Vec::new();
     for folder in folders {
-        refuse_other_format::<Kept>(folder)?;
-        let found: Vec<Followed> = read_lines(&folder.join(file::FOLLOWED))?;
+        refuse_other_format::<ComparisonSettings>(folder)?;
+        let found: Vec<FollowResult> = read_lines(&folder.join(file::FOLLOWED))?;
         if found.is_empty() {
             let problem = format!("{}: it has no {}", folder.display(), file::FOLLOWED);
-            return Err(Error::usage(problem, "finish it with the same `wayword compare` command"));
+            return Err(CommandError::usage(problem, "finish it with the same `wayword compare` command"));
         }
         let name = folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-        let named = |one: Followed| match folders.len() {
+        let named = |one: FollowResult| match folders.len() {
             1 => one,
-            _ => Followed { set: format!("{name}/{}", one.set), ..one },
+            _ => FollowResult { set: format!("{name}/{}", one.set), ..one },
         };
         all.extend(found.into_iter().map(named));
     }
     let sets: BTreeSet<String> = all.iter().map(|one| one.set.clone()).collect();
     if sets.len() < 2 {
         let problem = "there is a single set, so nothing varies among sets";
-        return Err(Error::usage(problem, "compare several: `wayword compare --instructions A=… --instructions B=…`"));
+        return Err(CommandError::usage(
+            problem,
+            "compare several: `wayword compare --instructions A=… --instructions B=…`",
+        ));
     }
-    let agents = of_agents(&all, drawing);
+    let agents = agent_success_rates(&all, drawing);
     if agents.is_empty() {
-        return Err(Error::usage("the sets have no path in common", "compare sets of the same paths"));
+        return Err(CommandError::usage("the sets have no path in common", "compare sets of the same paths"));
     }
-    Ok(Report { sets, agents, rankings: rankings(&all, drawing), level: drawing.level })
+    Ok(SetVarianceReport { sets, agents, rankings: compare_rankings(&all, drawing), level: drawing.level })
 }
 
-impl fmt::Display for Report {
+impl fmt::Display for SetVarianceReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{} sets: {}", self.sets.len(), self.sets.iter().cloned().collect::<Vec<_>>().join(", "))?;
         writeln!(
@@ -63,7 +66,7 @@ impl fmt::Display for Report {
             "\n{:<20} {:>7} {:>7} {:>7} {:>7} {:>6}",
             "success rate, %", "mean", "spread", "least", "most", "paths"
         )?;
-        for OfAgent { agent, of_set, mean, spread, paths, .. } in &self.agents {
+        for AgentSuccess { agent, of_set, mean, spread, paths, .. } in &self.agents {
             let ends = of_set.values().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], one| {
                 [f64::min(low, *one), f64::max(high, *one)]
             });
@@ -73,8 +76,8 @@ impl fmt::Display for Report {
         }
         let level = self.level * 100.0;
         writeln!(f, "\n{:<20} {:>17} {:>17} {:>17} {:>17}", "shares of variance, %", "scene", "path", "set", "rest")?;
-        for OfAgent { agent, shares, .. } in &self.agents {
-            let Some(Shares { scene, path, set, rest }) = shares else {
+        for AgentSuccess { agent, shares, .. } in &self.agents {
+            let Some(VarianceShares { scene, path, set, rest }) = shares else {
                 writeln!(
                     f,
                     "{agent:<20} {:>17} (needs two scenes, one of them with two paths, and success that varies)",
@@ -89,7 +92,7 @@ impl fmt::Display for Report {
             writeln!(f, "{agent:<20} {:>17} {:>17} {:>17} {:>17}", cells[0], cells[1], cells[2], cells[3])?;
         }
         writeln!(f, "\nKendall's tau-b of the agents' ranking, with its {level:.0} % interval")?;
-        let rows = self.rankings.iter().map(|Ranking { one, other, tau_b, interval }| {
+        let rows = self.rankings.iter().map(|RankingAgreement { one, other, tau_b, interval }| {
             let tau = tau_b.map_or_else(|| "- (needs two agents that differ)".to_owned(), |tau| format!("{tau:.2}"));
             let ends = interval.map_or_else(String::new, |[low, high]| format!(" [{low:.2}, {high:.2}]"));
             format!("{one} and {other}: {tau}{ends}")

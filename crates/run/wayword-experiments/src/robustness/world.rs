@@ -1,17 +1,18 @@
 //! Makes the changed world of an arm: an altered platform, or a changed path through the same one.
 
-use super::arm::Arm;
+use super::arm::RobustnessArm;
 use wayword_core::{Path, Platform};
 use wayword_robustness::{
-    Change, Dose, Whole,
+    Change, DoseKind, WholeChange,
     paths::{self, ChangedPath},
     worlds::{
-        Alter, Altered, CameraHeight, FieldOfView, HeadingNoise, Mirror, PictureChange, QuarterTurn, Tilt, TiltError,
+        AlteredPlatform, CameraHeight, CameraTilt, FieldOfView, HeadingNoise, PictureChange, QuarterTurn, TiltError,
+        WorldAlteration, WorldMirror,
     },
 };
 
 /// A world with a path through it.
-pub(super) struct World<'a> {
+pub(super) struct ChangedWorld<'a> {
     pub(super) platform: Box<dyn Platform + 'a>,
     pub(super) path: Path,
     /// For each frame of the path, the index of the corresponding frame of the run's path.
@@ -22,53 +23,69 @@ pub(super) struct World<'a> {
 const EYE_M: f64 = 1.5;
 
 /// The world of an arm for a path; the reason as an error if it cannot be made.
-pub(super) fn of<'a>(arm: &Arm, platform: &'a dyn Platform, path: &Path, seed: u64) -> Result<World<'a>, String> {
-    let walked =
-        |ChangedPath { path, base_frame_of }: ChangedPath| World { platform: Box::new(platform), path, base_frame_of };
+pub(super) fn world_for_arm<'a>(
+    arm: &RobustnessArm,
+    platform: &'a dyn Platform,
+    path: &Path,
+    seed: u64,
+) -> Result<ChangedWorld<'a>, String> {
+    let walked = |ChangedPath { path, base_frame_of }: ChangedPath| ChangedWorld {
+        platform: Box::new(platform),
+        path,
+        base_frame_of,
+    };
     let change = match arm {
-        Arm::Changed(change) => change,
-        Arm::Forward => return Ok(walked(paths::along(path))),
+        RobustnessArm::Changed(change) => change,
+        RobustnessArm::Forward => return Ok(walked(paths::face_first_hop(path))),
         _ => return Err("the world is not changed".to_owned()),
     };
     Ok(match change {
-        Change::Whole(Whole::Mirror) => altered(platform, Mirror, path),
-        Change::Whole(Whole::Turn) => altered(platform, QuarterTurn, path),
-        Change::Whole(Whole::Reverse) => walked(paths::reversed(path)),
-        Change::By(Dose::CameraHeight, height_m) => {
-            altered(platform, CameraHeight { height_m: *height_m, eye_m: EYE_M }, path)
+        Change::Whole(WholeChange::Mirror) => altered_world(platform, WorldMirror, path),
+        Change::Whole(WholeChange::Turn) => altered_world(platform, QuarterTurn, path),
+        Change::Whole(WholeChange::Reverse) => walked(paths::reverse_path(path)),
+        Change::By(DoseKind::CameraHeight, height_m) => {
+            altered_world(platform, CameraHeight { height_m: *height_m, eye_m: EYE_M }, path)
         }
-        Change::By(Dose::FieldOfView, deg) => altered(platform, FieldOfView { deg: *deg }, path),
-        Change::By(Dose::HeadingNoise, deg) => altered(platform, HeadingNoise { deg: *deg, seed }, path),
-        Change::By(Dose::FrameSpacing, spacing_m) => walked(paths::spaced(path, *spacing_m)),
-        Change::By(Dose::DroppedFrames, percent) => walked(paths::dropped(path, *percent, seed)),
-        Change::By(Dose::StartHeading, deg) => walked(paths::start_heading(path, *deg)),
-        Change::By(Dose::Pitch, deg) => tilted(platform, path, Tilt::new(*deg, 0.0))?,
-        Change::By(Dose::Roll, deg) => tilted(platform, path, Tilt::new(0.0, *deg))?,
-        other => match pixels(other, seed) {
-            Some(pixels) => altered(platform, pixels, path),
+        Change::By(DoseKind::FieldOfView, deg) => altered_world(platform, FieldOfView { deg: *deg }, path),
+        Change::By(DoseKind::HeadingNoise, deg) => altered_world(platform, HeadingNoise { deg: *deg, seed }, path),
+        Change::By(DoseKind::FrameSpacing, spacing_m) => walked(paths::space_frames(path, *spacing_m)),
+        Change::By(DoseKind::DroppedFrames, percent) => walked(paths::drop_frames(path, *percent, seed)),
+        Change::By(DoseKind::StartHeading, deg) => walked(paths::start_heading(path, *deg)),
+        Change::By(DoseKind::Pitch, deg) => tilted_world(platform, path, CameraTilt::new(*deg, 0.0))?,
+        Change::By(DoseKind::Roll, deg) => tilted_world(platform, path, CameraTilt::new(0.0, *deg))?,
+        other => match pixel_change(other, seed) {
+            Some(pixels) => altered_world(platform, pixels, path),
             None => return Err("the world is not changed".to_owned()),
         },
     })
 }
 
-fn tilted<'a>(platform: &'a dyn Platform, path: &Path, tilt: Result<Tilt, TiltError>) -> Result<World<'a>, String> {
-    tilt.map(|tilt| altered(platform, tilt, path)).map_err(|error| error.to_string())
+fn tilted_world<'a>(
+    platform: &'a dyn Platform,
+    path: &Path,
+    tilt: Result<CameraTilt, TiltError>,
+) -> Result<ChangedWorld<'a>, String> {
+    tilt.map(|tilt| altered_world(platform, tilt, path)).map_err(|error| error.to_string())
 }
 
 /// The change of pictures that a dose of blur, noise and the like means; `None` for other changes.
-fn pixels(change: &Change, seed: u64) -> Option<PictureChange> {
+fn pixel_change(change: &Change, seed: u64) -> Option<PictureChange> {
     let Change::By(dose, value) = *change else { return None };
     Some(match dose {
-        Dose::Exposure => PictureChange::Exposure { stops: value },
-        Dose::ColourTemperature => PictureChange::ColourTemperature { kelvin: value },
-        Dose::Blur => PictureChange::Blur { sigma_px: value },
-        Dose::Noise => PictureChange::Noise { percent: value, seed },
-        Dose::JpegQuality => PictureChange::Jpeg { quality_percent: value as u8 },
+        DoseKind::Exposure => PictureChange::Exposure { stops: value },
+        DoseKind::ColourTemperature => PictureChange::ColourTemperature { kelvin: value },
+        DoseKind::Blur => PictureChange::Blur { sigma_px: value },
+        DoseKind::Noise => PictureChange::Noise { percent: value, seed },
+        DoseKind::JpegQuality => PictureChange::Jpeg { quality_percent: value as u8 },
         _ => return None,
     })
 }
 
-fn altered<'a, A: Alter + 'a>(platform: &'a dyn Platform, alter: A, path: &Path) -> World<'a> {
+fn altered_world<'a, A: WorldAlteration + 'a>(platform: &'a dyn Platform, alter: A, path: &Path) -> ChangedWorld<'a> {
     let path = alter.path_after(path.clone());
-    World { base_frame_of: (0..path.frames.len()).collect(), path, platform: Box::new(Altered::new(platform, alter)) }
+    ChangedWorld {
+        base_frame_of: (0..path.frames.len()).collect(),
+        path,
+        platform: Box::new(AlteredPlatform::new(platform, alter)),
+    }
 }

@@ -1,6 +1,6 @@
 //! The command line of `wayword similarity`.
 
-use crate::by_pictures::args::Pictured;
+use crate::by_pictures::args::PictureCriticArgs;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -18,7 +18,7 @@ Examples:
       BLEU, ROUGE-L and CIDEr-D as papers print them, beside another person's text and another path's text.
   wayword similarity runs/val_seen#r2r R2R_val_seen.json --by path --metrics --clip hf/openai/clip-vit-base-patch32
       The same, and how well the texts agree with the run's pictures.")]
-pub struct Similarity {
+pub struct SimilarityArgs {
     /// Instructions: a run folder, or a file in R2R, REVERIE, RxR, VLN-CE or Wayword format. Add #STYLE to take one style.
     #[arg(value_name = "A")]
     pub a: String,
@@ -28,7 +28,7 @@ pub struct Similarity {
     pub b: String,
     /// Compare texts of the same item, or of the same path.
     #[arg(long, default_value = "item")]
-    pub by: By,
+    pub by: TextPairing,
     /// Sentence encoder as hf/ORG/NAME, or `words` to count words without a model.
     #[arg(long, value_name = "MODEL", default_value = "hf/sentence-transformers/all-MiniLM-L6-v2")]
     pub encoder: String,
@@ -42,7 +42,7 @@ pub struct Similarity {
     /// Tokens of the metrics: `ptb` as pycocoevalcap makes them, or `split` as the speakers of R2R do: lower case, words and
     /// marks apart.
     #[arg(long, default_value = "ptb", requires = "metrics")]
-    pub tokens: Tokens,
+    pub tokens: MetricTokens,
     /// Cut texts off after so many characters before the metrics, on both sides, as some papers do.
     #[arg(long, value_name = "N", requires = "metrics", value_parser = clap::value_parser!(u32).range(1..))]
     pub truncate_characters: Option<u32>,
@@ -57,7 +57,7 @@ pub struct Similarity {
     pub java: PathBuf,
     /// The pictures that the metrics hold texts against.
     #[command(flatten)]
-    pub pictured: Pictured,
+    pub pictured: PictureCriticArgs,
     /// Number of bootstrap resamples for the intervals.
     #[arg(long, value_name = "N", default_value_t = 2000, value_parser = clap::value_parser!(u32).range(100..=100_000))]
     pub resamples: u32,
@@ -68,7 +68,7 @@ pub struct Similarity {
 
 /// What two texts have in common.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum By {
+pub enum TextPairing {
     /// The item: its id.
     Item,
     /// The path: its scene and path id. The target may differ.
@@ -77,7 +77,7 @@ pub enum By {
 
 /// How texts become tokens.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Tokens {
+pub enum MetricTokens {
     /// As Stanford's `PTBTokenizer` in pycocoevalcap.
     Ptb,
     /// As the speakers of R2R.

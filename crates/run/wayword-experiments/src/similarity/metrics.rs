@@ -4,47 +4,48 @@
 //! by: the score of another person's text, and that of a text about another path.
 
 use super::{
-    Compared, LEVEL,
-    java::{self, Outside},
-    pictures::{self, ByPictures},
-    sides,
+    CONFIDENCE_LEVEL, SimilaritySide,
+    java::{self, JavaScores},
+    pictures::{self, PictureAgreementReport},
+    write_sides,
 };
 use crate::{
-    similarity::args::{By, Similarity as Args, Tokens},
-    texts::{Items, Texts},
+    similarity::args::{MetricTokens, SimilarityArgs as Args, TextPairing},
+    texts::{ItemTexts, TextSet},
 };
 use serde::Serialize;
 use std::fmt;
 use wayword_metrics::{
-    Drawing, Estimate,
+    MeanEstimate, ResamplingOptions,
     captions::{
-        Anchored, Described, Diversity, Figures, Sets, Text, Vocabulary, anchored, collapsed, diversity, ptb, split,
+        AnchoredCaptionFigures, CaptionFigures, CaptionItem, CaptionRowSets, CaptionVocabulary, NumberedText,
+        TextDiversity, anchored_caption_figures, collapse_white_space, measure_diversity, ptb_tokens, split_tokens,
     },
 };
-use wayword_run::{count::count, error::Error, output::Output};
+use wayword_run::{count::count_phrase, error::CommandError, output::CommandOutput};
 
 /// The metrics of a set of texts against reference texts.
 #[derive(Serialize)]
-pub(super) struct Report {
-    protocol: Protocol,
-    a: Compared,
-    b: Compared,
+pub(super) struct TextMetricsReport {
+    protocol: MetricProtocol,
+    a: SimilaritySide,
+    b: SimilaritySide,
     /// Confidence level of the intervals.
     level: f64,
     #[serde(flatten)]
-    figures: Anchored,
+    figures: AnchoredCaptionFigures,
     /// METEOR and SPICE, if the user has these programs.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    outside: Vec<Outside>,
+    outside: Vec<JavaScores>,
     /// How well the texts agree with pictures, if a CLIP was named.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pictures: Option<ByPictures>,
-    diversity: Sides,
+    pictures: Option<PictureAgreementReport>,
+    diversity: SideDiversity,
 }
 
 /// The conditions under which the figures were computed. Figures are comparable only under the same ones.
 #[derive(Serialize)]
-struct Protocol {
+struct MetricProtocol {
     tokens: &'static str,
     /// Whether the references of a text are those of its item or of its path.
     references: &'static str,
@@ -58,33 +59,33 @@ struct Protocol {
 
 /// How diverse the texts of each side are.
 #[derive(Serialize)]
-struct Sides {
-    a: Diversity,
-    b: Diversity,
+struct SideDiversity {
+    a: TextDiversity,
+    b: TextDiversity,
 }
 
 /// Turns strings into tokenised texts with a common vocabulary.
-struct Reader<'a> {
+struct MetricTextReader<'a> {
     args: &'a Args,
-    vocabulary: Vocabulary,
+    vocabulary: CaptionVocabulary,
 }
 
-impl Reader<'_> {
-    fn text(&mut self, said: &str) -> Text {
-        let said = collapsed(said);
+impl MetricTextReader<'_> {
+    fn read_text(&mut self, said: &str) -> NumberedText {
+        let said = collapse_white_space(said);
         let most = self.args.truncate_characters.map_or(usize::MAX, |most| most as usize);
         let end = said.char_indices().nth(most).map_or(said.len(), |(end, _)| end);
         let tokens = match self.args.tokens {
-            Tokens::Ptb => ptb(&said[..end]),
-            Tokens::Split => split(&said[..end]),
+            MetricTokens::Ptb => ptb_tokens(&said[..end]),
+            MetricTokens::Split => split_tokens(&said[..end]),
         };
-        self.vocabulary.text(&tokens)
+        self.vocabulary.number_text(&tokens)
     }
 
     /// The tokenised texts of each item, with its id and its path.
-    fn items<'i>(&mut self, items: &'i Items) -> Vec<(&'i str, &'i str, Vec<Text>)> {
-        let of_item = |(id, item): (&'i String, &'i Texts)| {
-            let texts = item.texts.iter().map(|said| self.text(said)).collect();
+    fn read_items<'i>(&mut self, items: &'i TextSet) -> Vec<(&'i str, &'i str, Vec<NumberedText>)> {
+        let of_item = |(id, item): (&'i String, &'i ItemTexts)| {
+            let texts = item.texts.iter().map(|said| self.read_text(said)).collect();
             (id.as_str(), item.path.as_str(), texts)
         };
         items.iter().map(of_item).collect()
@@ -92,64 +93,68 @@ impl Reader<'_> {
 }
 
 /// Computes the metrics of A's texts against B's.
-pub(super) fn of(args: &Args, (a, b): (&Items, &Items), output: &Output) -> Result<Report, Error> {
+pub(super) fn measure_texts(
+    args: &Args,
+    (a, b): (&TextSet, &TextSet),
+    output: &CommandOutput,
+) -> Result<TextMetricsReport, CommandError> {
     // Pictures come first, so that a missing model or picture is reported before the metrics are computed.
-    let drawing = Drawing { resamples: args.resamples as usize, level: LEVEL, seed: args.seed };
-    let pictures = pictures::of(args, (a, b), &drawing, output)?;
-    let mut reader = Reader { args, vocabulary: Vocabulary::default() };
-    let (judged, references) = (reader.items(a), reader.items(b));
+    let drawing = ResamplingOptions { resamples: args.resamples as usize, level: CONFIDENCE_LEVEL, seed: args.seed };
+    let pictures = pictures::measure_pictures(args, (a, b), &drawing, output)?;
+    let mut reader = MetricTextReader { args, vocabulary: CaptionVocabulary::default() };
+    let (judged, references) = (reader.read_items(a), reader.read_items(b));
     let in_b = |id: &str| references.binary_search_by_key(&id, |(other, ..)| other).ok().map(|at| &references[at]);
-    let mut items: Vec<Described<'_>> = Vec::new();
+    let mut items: Vec<CaptionItem<'_>> = Vec::new();
     let mut not_judged = 0;
     for (id, _, texts) in &judged {
         let (Some((_, cluster, references)), Some(text)) = (in_b(id), texts.first()) else { continue };
         not_judged += texts.len() - 1;
-        items.push(Described { id, cluster, text, references: references.iter().collect() });
+        items.push(CaptionItem { id, cluster, text, references: references.iter().collect() });
     }
-    let told = |items: &[(&str, &str, Vec<Text>)]| {
-        let all: Vec<(&str, &Text)> =
+    let told = |items: &[(&str, &str, Vec<NumberedText>)]| {
+        let all: Vec<(&str, &NumberedText)> =
             items.iter().flat_map(|(_, path, texts)| texts.iter().map(move |text| (*path, text))).collect();
-        diversity(&all, args.seed)
+        measure_diversity(&all, args.seed)
     };
-    let sets = Sets::of(&items, args.seed);
-    Ok(Report {
-        protocol: Protocol {
-            tokens: if args.tokens == Tokens::Ptb { "ptb" } else { "split" },
-            references: if args.by == By::Path { "path" } else { "item" },
+    let sets = CaptionRowSets::from_items(&items, args.seed);
+    Ok(TextMetricsReport {
+        protocol: MetricProtocol {
+            tokens: if args.tokens == MetricTokens::Ptb { "ptb" } else { "split" },
+            references: if args.by == TextPairing::Path { "path" } else { "item" },
             truncate_characters: args.truncate_characters,
             judged: items.len(),
             not_judged,
             only_in_a: judged.len() - items.len(),
         },
-        a: Compared::of(&args.a, a),
-        b: Compared::of(&args.b, b),
-        level: LEVEL,
-        figures: anchored(&sets, &drawing),
-        outside: java::of(args, &sets, &reader.vocabulary)?,
+        a: SimilaritySide::from_items(&args.a, a),
+        b: SimilaritySide::from_items(&args.b, b),
+        level: CONFIDENCE_LEVEL,
+        figures: anchored_caption_figures(&sets, &drawing),
+        outside: java::run_java_scorers(args, &sets, &reader.vocabulary)?,
         pictures,
-        diversity: Sides { a: told(&judged), b: told(&references) },
+        diversity: SideDiversity { a: told(&judged), b: told(&references) },
     })
 }
 
-impl fmt::Display for Report {
+impl fmt::Display for TextMetricsReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        sides(f, [&self.a, &self.b])?;
+        write_sides(f, [&self.a, &self.b])?;
         writeln!(f, "{}", self.protocol)?;
         let interval = format!("({:.0} % interval)", self.level * 100.0);
         writeln!(f, "\n{:<42} {:>22} {:>22} {:>22}", format!("times 100 {interval}"), "BLEU-4", "ROUGE-L", "CIDEr-D")?;
-        let Anchored { all, rest, person, other_path, single } = &self.figures;
-        row(f, "A against all of B's texts", all.as_ref())?;
-        row(f, "A against all but the first", rest.as_ref())?;
-        row(f, "  another person's text against the same", person.as_ref())?;
-        row(f, "  another path's text against the same", other_path.as_ref())?;
+        let AnchoredCaptionFigures { all, rest, person, other_path, single } = &self.figures;
+        write_metric_row(f, "A against all of B's texts", all.as_ref())?;
+        write_metric_row(f, "A against all but the first", rest.as_ref())?;
+        write_metric_row(f, "  another person's text against the same", person.as_ref())?;
+        write_metric_row(f, "  another path's text against the same", other_path.as_ref())?;
         if *single > 0 {
-            writeln!(f, "only in the first row, because B has one text for them: {}", count(*single, "item"))?;
+            writeln!(f, "only in the first row, because B has one text for them: {}", count_phrase(*single, "item"))?;
         }
         if let Some(figures) = all {
-            let [one, two, three, _] = figures.bleu.map(|bleu| percent(&bleu));
+            let [one, two, three, _] = figures.bleu.map(|bleu| format_percent(&bleu));
             writeln!(f, "A against all of B's texts: BLEU-1 {one}, BLEU-2 {two}, BLEU-3 {three}")?;
         }
-        for Outside { name, all, rest, person, other_path } in &self.outside {
+        for JavaScores { name, all, rest, person, other_path } in &self.outside {
             let [all, rest, person, other] = [all, rest, person, other_path]
                 .map(|of| of.map_or_else(|| "-".to_owned(), |value| format!("{:.1}", value * 100.0)));
             writeln!(f, "{name}: A {all}; but the first {rest}, another person {person}, another path {other}")?;
@@ -162,13 +167,13 @@ impl fmt::Display for Report {
         let rows: Vec<String> = a
             .iter()
             .zip(&b)
-            .map(|((name, a), (_, b))| format!("{name:<44} {:>8} {:>8}", share(*a), share(*b)))
+            .map(|((name, a), (_, b))| format!("{name:<44} {:>8} {:>8}", format_share(*a), format_share(*b)))
             .collect();
         write!(f, "{}", rows.join("\n"))
     }
 }
 
-impl fmt::Display for Protocol {
+impl fmt::Display for MetricProtocol {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { tokens, references, judged, not_judged, only_in_a, .. } = self;
         let cut = match self.truncate_characters {
@@ -176,18 +181,18 @@ impl fmt::Display for Protocol {
             None => "not cut off".to_owned(),
         };
         write!(f, "protocol: {tokens} tokens; references by {references}; white space collapsed; texts {cut}; ")?;
-        write!(f, "the first text of {}", count(*judged, "item"))?;
+        write!(f, "the first text of {}", count_phrase(*judged, "item"))?;
         if *not_judged > 0 {
-            write!(f, " ({} not judged)", count(*not_judged, "other text"))?;
+            write!(f, " ({} not judged)", count_phrase(*not_judged, "other text"))?;
         }
         if *only_in_a > 0 {
-            write!(f, "; only in A: {}", count(*only_in_a, "item"))?;
+            write!(f, "; only in A: {}", count_phrase(*only_in_a, "item"))?;
         }
         Ok(())
     }
 }
 
-fn of_diversity(of: &Diversity) -> [(&'static str, Option<f64>); 6] {
+fn of_diversity(of: &TextDiversity) -> [(&'static str, Option<f64>); 6] {
     let [one, two, three] = of.distinct;
     [
         ("self-BLEU-4 (less is more diverse)", of.self_bleu_4),
@@ -199,19 +204,19 @@ fn of_diversity(of: &Diversity) -> [(&'static str, Option<f64>); 6] {
     ]
 }
 
-fn share(value: Option<f64>) -> String {
+fn format_share(value: Option<f64>) -> String {
     value.map_or_else(|| "-".to_owned(), |value| format!("{value:.3}"))
 }
 
-pub(super) fn percent(Estimate { mean, low, high, .. }: &Estimate) -> String {
+pub(super) fn format_percent(MeanEstimate { mean, low, high, .. }: &MeanEstimate) -> String {
     let [mean, low, high] = [mean, low, high].map(|value| format!("{:.1}", value * 100.0));
     format!("{mean} ({low} to {high})")
 }
 
-fn row(f: &mut fmt::Formatter<'_>, name: &str, figures: Option<&Figures>) -> fmt::Result {
+fn write_metric_row(f: &mut fmt::Formatter<'_>, name: &str, figures: Option<&CaptionFigures>) -> fmt::Result {
     match figures {
-        Some(Figures { bleu, rouge_l, cider_d }) => {
-            let [bleu, rouge_l, cider_d] = [&bleu[3], rouge_l, cider_d].map(percent);
+        Some(CaptionFigures { bleu, rouge_l, cider_d }) => {
+            let [bleu, rouge_l, cider_d] = [&bleu[3], rouge_l, cider_d].map(format_percent);
             writeln!(f, "{name:<42} {bleu:>22} {rouge_l:>22} {cider_d:>22}")
         }
         None => writeln!(f, "{name:<42} {:>22} nothing to measure", "-"),

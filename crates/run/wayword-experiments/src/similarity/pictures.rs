@@ -1,29 +1,32 @@
 //! How well texts agree with pictures, with the same two anchors as the other metrics: another person's text, and another path's.
 
-use super::metrics::percent;
+use super::metrics::format_percent;
 use crate::{
-    by_pictures::Critic,
-    similarity::args::Similarity as Args,
-    texts::{self, Items},
+    by_pictures::PictureCritic,
+    similarity::args::SimilarityArgs as Args,
+    texts::{self, TextSet},
 };
 use serde::Serialize;
 use std::fmt;
 use wayword_metrics::{
-    Drawing,
-    captions::elsewhere,
-    pictures::{Agreed, Anchored, Figures, PREFIX, Seen, anchored},
+    ResamplingOptions,
+    captions::draw_other_paths,
+    pictures::{
+        AnchoredPictureFigures, CLIP_PROMPT_PREFIX, PictureFigures, PictureScores, PicturedItem,
+        anchored_picture_figures,
+    },
 };
-use wayword_run::{count::count, error::Error, interrupt, output::Output};
+use wayword_run::{count::count_phrase, error::CommandError, interrupt, output::CommandOutput};
 
 /// How well the texts of a set agree with pictures.
 #[derive(Debug, Serialize)]
-pub(super) struct ByPictures {
+pub(super) struct PictureAgreementReport {
     /// The name of the CLIP model.
     clip: String,
     /// The words that were put before each text.
     prefix: &'static str,
     #[serde(flatten)]
-    figures: Anchored,
+    figures: AnchoredPictureFigures,
     /// Common items without a picture. No figure includes them.
     without_pictures: usize,
     /// Items for which B has only the text that is judged, so that there is no other person's.
@@ -31,7 +34,7 @@ pub(super) struct ByPictures {
 }
 
 /// An item that both sides have.
-struct Common<'a> {
+struct CommonItem<'a> {
     id: &'a str,
     path: &'a str,
     /// A's first text.
@@ -46,75 +49,80 @@ struct Common<'a> {
 ///
 /// # Errors
 /// When the model or the pictures cannot be read, or no item has pictures.
-pub(super) fn of(
+pub(super) fn measure_pictures(
     args: &Args,
-    (a, b): (&Items, &Items),
-    drawing: &Drawing,
-    output: &Output,
-) -> Result<Option<ByPictures>, Error> {
+    (a, b): (&TextSet, &TextSet),
+    drawing: &ResamplingOptions,
+    output: &CommandOutput,
+) -> Result<Option<PictureAgreementReport>, CommandError> {
     let runs: Vec<_> = [&args.a, &args.b].into_iter().filter_map(|name| texts::run_of(name)).collect();
-    let Some(critic) = Critic::open(&args.pictured, &runs, &texts::file_of(&args.a), output)? else { return Ok(None) };
-    let mut common: Vec<Common<'_>> = Vec::new();
+    let Some(critic) = PictureCritic::open(&args.pictured, &runs, &texts::file_of(&args.a), output)? else {
+        return Ok(None);
+    };
+    let mut common: Vec<CommonItem<'_>> = Vec::new();
     for (id, of_a) in a {
         let Some(of_b) = b.get(id) else { continue };
         let (Some(text), Some(first)) = (of_a.texts.first(), of_b.texts.first()) else { continue };
         let person = of_b.texts.iter().find(|other| *other != text).map(String::as_str);
-        common.push(Common { id, path: &of_a.path, text, first, person });
+        common.push(CommonItem { id, path: &of_a.path, text, first, person });
     }
     let names: Vec<(&str, &str)> = common.iter().map(|item| (item.id, item.path)).collect();
-    let others = elsewhere(&names, drawing.seed);
-    let bar = output.progress(common.len(), "items");
+    let others = draw_other_paths(&names, drawing.seed);
+    let bar = output.progress_bar(common.len(), "items");
     let mut seen = Vec::new();
     for (at, item) in common.iter().enumerate() {
-        interrupt::check()?;
-        let pictures = critic.frames.of(item.id, item.path)?;
+        interrupt::check_interrupt()?;
+        let pictures = critic.frames.views_for_item(item.id, item.path)?;
         let other = others.as_ref().map(|others| common[others[at]].first);
         let asked: Vec<&str> = [Some(item.text), item.person, other].into_iter().flatten().collect();
-        let mut found = critic.agreed(&pictures, &asked)?.into_iter();
-        let mut next = |is_asked: bool| -> Option<Agreed> { if is_asked { found.next().flatten() } else { None } };
+        let mut found = critic.score_texts(&pictures, &asked)?.into_iter();
+        let mut next =
+            |is_asked: bool| -> Option<PictureScores> { if is_asked { found.next().flatten() } else { None } };
         let (text, person, other_path) = (next(true), next(item.person.is_some()), next(other.is_some()));
-        seen.extend(text.map(|text| Seen { cluster: item.path, text, person, other_path }));
+        seen.extend(text.map(|text| PicturedItem { cluster: item.path, text, person, other_path }));
         bar.inc(1);
     }
     bar.finish_and_clear();
     if seen.is_empty() {
-        let problem = format!("--clip: there is no picture of any of {}", count(common.len(), "item"));
-        return Err(Error::usage(
+        let problem = format!("--clip: there is no picture of any of {}", count_phrase(common.len(), "item"));
+        return Err(CommandError::usage(
             problem,
             "give the run of these paths with --pictures RUN, or a platform that has pictures with --platform (`wayword platforms`)",
         ));
     }
-    Ok(Some(ByPictures {
+    Ok(Some(PictureAgreementReport {
         clip: critic.name().to_owned(),
-        prefix: PREFIX,
-        figures: anchored(&seen, drawing),
+        prefix: CLIP_PROMPT_PREFIX,
+        figures: anchored_picture_figures(&seen, drawing),
         without_pictures: common.len() - seen.len(),
         without_person: seen.iter().filter(|item| item.person.is_none()).count(),
     }))
 }
 
-impl fmt::Display for ByPictures {
+impl fmt::Display for PictureAgreementReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let heading = format!("with pictures, by {}", self.clip);
         writeln!(f, "{heading}\n{:<42} {:>22} {:>22}", "2.5 times the cosine, times 100", "sentences", "whole text")?;
-        let Anchored { text, person, other_path } = &self.figures;
-        row(f, "A", text.as_ref())?;
-        row(f, "  another person's text", person.as_ref())?;
-        row(f, "  another path's text", other_path.as_ref())?;
+        let AnchoredPictureFigures { text, person, other_path } = &self.figures;
+        write_picture_row(f, "A", text.as_ref())?;
+        write_picture_row(f, "  another person's text", person.as_ref())?;
+        write_picture_row(f, "  another path's text", other_path.as_ref())?;
         if self.without_person > 0 {
-            let left = count(self.without_person, "item");
+            let left = count_phrase(self.without_person, "item");
             writeln!(f, "not in the second row, because B has no other text for them: {left}")?;
         }
         if self.without_pictures > 0 {
-            writeln!(f, "in no row, because there is no picture: {}", count(self.without_pictures, "item"))?;
+            writeln!(f, "in no row, because there is no picture: {}", count_phrase(self.without_pictures, "item"))?;
         }
         writeln!(f, "CLIP hardly tells left from right, and does not know what comes first")
     }
 }
 
-fn row(f: &mut fmt::Formatter<'_>, name: &str, figures: Option<&Figures>) -> fmt::Result {
+fn write_picture_row(f: &mut fmt::Formatter<'_>, name: &str, figures: Option<&PictureFigures>) -> fmt::Result {
     match figures {
-        Some(Figures { parts, whole }) => writeln!(f, "{name:<42} {:>22} {:>22}", percent(parts), percent(whole)),
+        Some(PictureFigures { parts, whole }) => {
+            writeln!(f, "{name:<42} {:>22} {:>22}", format_percent(parts), format_percent(whole))
+        }
         None => writeln!(f, "{name:<42} {:>22} nothing to measure", "-"),
     }
 }

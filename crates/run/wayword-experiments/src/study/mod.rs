@@ -7,96 +7,97 @@ mod serve;
 mod told;
 mod walks;
 
-use crate::study_args::{Study as Args, StudyCommand, StudyForget, StudyInvite, StudyResults, StudyStatus};
+use crate::study_args::{StudyArgs as Args, StudyCommand, StudyForget, StudyInvite, StudyResults, StudyStatus};
 use serde::Serialize;
 use std::{fmt, path::PathBuf};
-use told::{Closed, Links, Matched, Removed, Standing};
+use told::{ClosedNotice, PersonalLinks, ReconciliationTable, RemovalReport, StudyStatusReport};
 use wayword_run::{
-    count::count,
-    error::{Error, Exit},
-    output::Output,
+    count::count_phrase,
+    error::{CommandError, Exit},
+    output::CommandOutput,
 };
-use wayword_study::{Study, now_ms, results::Outlook};
+use wayword_study::{Study, now_ms, results::StudyOutlook};
 
-pub fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
+pub fn run_study(args: &Args, output: &CommandOutput) -> Result<Exit, CommandError> {
     match &args.command {
-        StudyCommand::New(args) => new::make(args, output)?,
-        StudyCommand::Serve(args) => return serve::run(args, output),
-        StudyCommand::Invite(args) => invite(args, output)?,
+        StudyCommand::New(args) => new::make_study(args, output)?,
+        StudyCommand::Serve(args) => return serve::run_serve(args, output),
+        StudyCommand::Invite(args) => run_invite(args, output)?,
         StudyCommand::Plan(args) => {
             let study = Study::open(&args.study)?;
-            let outlook = Outlook::new(&study.plan, &study.settings, &study.items);
-            output.data(&outlook, &outlook);
+            let outlook = StudyOutlook::new(&study.plan, &study.settings, &study.items);
+            output.print_result(&outlook, &outlook);
         }
-        StudyCommand::Status(args) => status(args, output)?,
-        StudyCommand::Results(args) => results(args, output)?,
-        StudyCommand::Forget(args) => forget(args, output)?,
+        StudyCommand::Status(args) => show_status(args, output)?,
+        StudyCommand::Results(args) => write_results(args, output)?,
+        StudyCommand::Forget(args) => forget_participant(args, output)?,
         StudyCommand::Reconcile(args) => {
-            let matched = Study::open(&args.study)?.reconcile(&args.csv)?;
-            output.data(&matched, Matched(&matched));
+            let matched = Study::open(&args.study)?.reconcile_recruiter_list(&args.csv)?;
+            output.print_result(&matched, ReconciliationTable(&matched));
         }
         StudyCommand::Close(args) => {
             Study::open(&args.study)?.close(args.even_if_live)?;
-            output.data(&Closed, Closed);
+            output.print_result(&ClosedNotice, ClosedNotice);
         }
     }
     Ok(Exit::Done)
 }
 
-fn invite(args: &StudyInvite, output: &Output) -> Result<(), Error> {
-    let links = links(&Study::open(&args.study)?, args.count, &args.url)?;
-    output.data(&links, &links);
+fn run_invite(args: &StudyInvite, output: &CommandOutput) -> Result<(), CommandError> {
+    let links = make_links(&Study::open(&args.study)?, args.count, &args.url)?;
+    output.print_result(&links, &links);
     Ok(())
 }
 
 /// New personal links to the site at an address.
-fn links(study: &Study, count: u32, url: &str) -> Result<Links, Error> {
-    let tokens = study.invite(count)?.tokens;
-    Ok(Links { links: tokens.into_iter().map(|token| format!("{url}/t/{token}")).collect() })
+fn make_links(study: &Study, count: u32, url: &str) -> Result<PersonalLinks, CommandError> {
+    let tokens = study.invite_participants(count)?.tokens;
+    Ok(PersonalLinks { links: tokens.into_iter().map(|token| format!("{url}/t/{token}")).collect() })
 }
 
-fn status(args: &StudyStatus, output: &Output) -> Result<(), Error> {
+fn show_status(args: &StudyStatus, output: &CommandOutput) -> Result<(), CommandError> {
     let study = Study::open(&args.study)?;
-    let progress = study.progress()?;
+    let progress = study.read_progress()?;
     // Results that were written before a deletion still contain the deleted answers.
-    let exports = if progress.forgotten > 0 { study.exports()? } else { Vec::new() };
-    let participants = args.participants.then(|| study.data().map(|data| data.participants)).transpose()?;
-    let standing = Standing { progress, exports, participants };
-    output.data(&standing, &standing);
+    let exports = if progress.forgotten > 0 { study.list_exports()? } else { Vec::new() };
+    let participants = args.participants.then(|| study.into_data().map(|data| data.participants)).transpose()?;
+    let standing = StudyStatusReport { progress, exports, participants };
+    output.print_result(&standing, &standing);
     Ok(())
 }
 
-fn forget(args: &StudyForget, output: &Output) -> Result<(), Error> {
+fn forget_participant(args: &StudyForget, output: &CommandOutput) -> Result<(), CommandError> {
     let study = Study::open(&args.study)?;
-    let exports = study.exports()?;
-    let removed = Removed { removed: study.forget(&args.participant, args.dry_run)?, exports };
-    output.data(&removed, &removed);
+    let exports = study.list_exports()?;
+    let removed = RemovalReport { removed: study.forget_participant(&args.participant, args.dry_run)?, exports };
+    output.print_result(&removed, &removed);
     Ok(())
 }
 
 /// The files that `wayword study results` wrote.
 #[derive(Debug, Serialize)]
-struct Written {
+struct WrittenResults {
     /// The number of answers that the figures are computed from.
     answers: usize,
     files: Vec<PathBuf>,
 }
 
-impl fmt::Display for Written {
+impl fmt::Display for WrittenResults {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for file in &self.files {
             writeln!(f, "{}", file.display())?;
         }
-        write!(f, "{}", count(self.answers, "answer"))
+        write!(f, "{}", count_phrase(self.answers, "answer"))
     }
 }
 
-fn results(args: &StudyResults, output: &Output) -> Result<(), Error> {
+fn write_results(args: &StudyResults, output: &CommandOutput) -> Result<(), CommandError> {
     let study = Study::open(&args.study)?;
     study.note_export(&args.out)?;
-    let data = study.data()?;
+    let data = study.into_data()?;
     let answers = data.slots.iter().filter(|slot| slot.answer.is_some() && slot.position.is_some()).count();
-    let written = Written { answers, files: wayword_study::results(&data, now_ms())?.write(&args.out)? };
-    output.data(&written, &written);
+    let written =
+        WrittenResults { answers, files: wayword_study::compute_results(&data, now_ms())?.write_files(&args.out)? };
+    output.print_result(&written, &written);
     Ok(())
 }

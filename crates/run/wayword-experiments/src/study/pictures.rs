@@ -1,30 +1,30 @@
 //! Draws the pictures of a study: panoramas of the places where people walk, and films of the paths that they watch.
 
-use super::walks::Walk;
+use super::walks::StudyWalk;
 use rayon::prelude::*;
 use sha2::{Digest as _, Sha256};
 use std::{
     collections::{BTreeMap, BTreeSet},
     path::Path as FilePath,
 };
-use wayword_core::{Frame, Gaze, Heading, Platform, Pose, SceneId, ViewpointGraph, ViewpointId};
+use wayword_core::{Frame, Heading, Platform, Pose, SceneId, ViewGaze, ViewpointGraph, ViewpointId};
 use wayword_report::view::{
-    panorama::around,
-    path::between::{Step, steps},
+    panorama::draw_panorama,
+    path::between::{FilmStep, film_steps},
     picture,
-    unfinished::Unfinished,
+    unfinished::UnfinishedFile,
 };
-use wayword_run::{error::Error, interrupt, output::Output};
-use wayword_study::{Picture, Place, Scene};
+use wayword_run::{error::CommandError, interrupt, output::CommandOutput};
+use wayword_study::{FilmPicture, StudyScene, StudyViewpoint};
 
 /// Platforms for which this program draws pictures itself, at any place.
-const DRAWN: [&str; 2] = ["house", "habitat"];
+const DRAWING_PLATFORMS: [&str; 2] = ["house", "habitat"];
 /// Width of a panorama, pixels: a phone shows a third of it, a desk's screen half.
 const PANORAMA_PX: u32 = 2400;
 /// Most places between two frames of a film, on platforms that can draw there.
-const BETWEEN: usize = 5;
+const MAX_FRAMES_BETWEEN: usize = 5;
 /// The number of pictures that a film should have: half a minute, at two for each second.
-const FILM: usize = 60;
+const TARGET_FILM_PICTURES: usize = 60;
 /// A film mentions a turn if it is larger than this since the last picture, radians.
 const TURNED_RAD: f64 = 0.15;
 
@@ -32,19 +32,19 @@ const TURNED_RAD: f64 = 0.15;
 ///
 /// # Errors
 /// When a scene cannot be read or drawn, or a picture cannot be written.
-pub(super) fn scenes(
-    walks: &[Walk],
+pub(super) fn draw_scenes(
+    walks: &[StudyWalk],
     platform: &dyn Platform,
     folder: &FilePath,
-    output: &Output,
-) -> Result<Vec<Scene>, Error> {
+    output: &CommandOutput,
+) -> Result<Vec<StudyScene>, CommandError> {
     let mut starts: BTreeMap<&SceneId, BTreeSet<&ViewpointId>> = BTreeMap::new();
     for walk in walks {
         starts.entry(&walk.path.scene).or_default().extend(walk.viewpoints.first());
     }
     let mut wanted = Vec::new();
     for (scene, starts) in starts {
-        let graph = platform.graph(scene)?;
+        let graph = platform.graph_for_scene(scene)?;
         let mut reached: BTreeSet<ViewpointId> = BTreeSet::new();
         for start in starts {
             if !reached.contains(start) {
@@ -57,71 +57,82 @@ pub(super) fn scenes(
         wanted.push((scene.clone(), graph, reached));
     }
     let all: usize = wanted.iter().map(|(_, _, reached)| reached.len()).sum();
-    let bar = output.progress(all, "panoramas");
+    let bar = output.progress_bar(all, "panoramas");
     let draw = |(scene, graph, reached): (SceneId, std::sync::Arc<ViewpointGraph>, BTreeSet<ViewpointId>)| {
         let place = |id: &ViewpointId| {
-            interrupt::check()?;
-            let place = place(&scene, &graph, id, platform, folder, output)?;
+            interrupt::check_interrupt()?;
+            let place = draw_place(&scene, &graph, id, platform, folder, output)?;
             bar.inc(1);
             Ok((id.clone(), place))
         };
-        let places = reached.par_iter().map(place).collect::<Result<BTreeMap<_, _>, Error>>()?;
-        Ok(Scene { scene, places })
+        let places = reached.par_iter().map(place).collect::<Result<BTreeMap<_, _>, CommandError>>()?;
+        Ok(StudyScene { scene, places })
     };
     let drawn = wanted.into_iter().map(draw).collect();
     bar.finish_and_clear();
     drawn
 }
 
-fn place(
+fn draw_place(
     scene: &SceneId,
     graph: &ViewpointGraph,
     id: &ViewpointId,
     platform: &dyn Platform,
     folder: &FilePath,
-    output: &Output,
-) -> Result<Place, Error> {
+    output: &CommandOutput,
+) -> Result<StudyViewpoint, CommandError> {
     let unknown = || wayword_core::PlatformError::UnknownViewpoint { scene: scene.clone(), viewpoint: id.clone() };
-    let position = graph.position(id).ok_or_else(unknown)?;
-    let level = graph.level(id);
-    let frame = Frame { pose: Pose::level(position, Heading::NORTH), viewpoint: Some(id.clone()), level };
+    let position = graph.position_of(id).ok_or_else(unknown)?;
+    let level = graph.level_of(id);
+    let frame = Frame { pose: Pose::looking_level(position, Heading::NORTH), viewpoint: Some(id.clone()), level };
     // The name holds all that the picture depends on: a command that was stopped and given anew with other paths draws others.
     let panorama = file_name(&["panorama", platform.name(), scene.as_str(), id.as_str(), &format!("{position:?}")]);
     let file = folder.join(&panorama);
     // A command that was stopped goes on with the pictures that it has.
     if !file.is_file() {
-        let whole = around(platform, scene, &frame, Some(PANORAMA_PX), output)?;
-        Unfinished::whole(&file, &picture::jpeg(&whole)?)?;
+        let whole = draw_panorama(platform, scene, &frame, Some(PANORAMA_PX), output)?;
+        UnfinishedFile::write_whole(&file, &picture::encode_jpeg(&whole)?)?;
     }
-    let neighbours = graph.neighbours(id).into_iter().cloned().collect();
-    Ok(Place { position: position.to_array(), level, neighbours, panorama })
+    let neighbours = graph.neighbours_of(id).into_iter().cloned().collect();
+    Ok(StudyViewpoint { position: position.to_array(), level, neighbours, panorama })
 }
 
 /// Draws the film of a walk.
 ///
 /// # Errors
 /// When the platform has no picture of the walk, or a picture cannot be written.
-pub(super) fn film(walk: &Walk, platform: &dyn Platform, folder: &FilePath) -> Result<Vec<Picture>, Error> {
-    interrupt::check()?;
-    let draws_anywhere = DRAWN.contains(&platform.name()) && walk.path.motion.is_known();
-    let between = (FILM / walk.path.frames.len().max(1)).saturating_sub(1).min(BETWEEN);
-    let steps = steps(&walk.path, if draws_anywhere { between } else { 0 })?;
-    let picture = |(number, step): (usize, &Step)| {
+pub(super) fn draw_film(
+    walk: &StudyWalk,
+    platform: &dyn Platform,
+    folder: &FilePath,
+) -> Result<Vec<FilmPicture>, CommandError> {
+    interrupt::check_interrupt()?;
+    let draws_anywhere = DRAWING_PLATFORMS.contains(&platform.name()) && walk.path.motion.is_known();
+    let between = (TARGET_FILM_PICTURES / walk.path.frames.len().max(1)).saturating_sub(1).min(MAX_FRAMES_BETWEEN);
+    let steps = film_steps(&walk.path, if draws_anywhere { between } else { 0 })?;
+    let picture = |(number, step): (usize, &FilmStep)| {
         let name = file_name(&["film", platform.name(), walk.path.scene.as_str(), &format!("{:?}", step.frame)]);
         let file = folder.join(&name);
         if !file.is_file() {
-            let view = platform.look(&walk.path.scene, &step.frame, Gaze::quarter(step.frame.pose.heading))?;
+            let view =
+                platform.look_from(&walk.path.scene, &step.frame, ViewGaze::quarter_view(step.frame.pose.heading))?;
             let Some(image) = view.image else { return Ok(None) };
-            Unfinished::whole(&file, &picture::jpeg(&image)?)?;
+            UnfinishedFile::write_whole(&file, &picture::encode_jpeg(&image)?)?;
         }
         let before = number.checked_sub(1).map(|before| &steps[before]);
-        Ok(Some(Picture { file: name, alt: told(before, step, walk.path.motion.is_known()) }))
+        Ok(Some(FilmPicture { file: name, alt: describe_motion(before, step, walk.path.motion.is_known()) }))
     };
-    let pictures: Vec<Picture> =
-        steps.par_iter().enumerate().map(picture).collect::<Result<Vec<_>, Error>>()?.into_iter().flatten().collect();
+    let pictures: Vec<FilmPicture> = steps
+        .par_iter()
+        .enumerate()
+        .map(picture)
+        .collect::<Result<Vec<_>, CommandError>>()?
+        .into_iter()
+        .flatten()
+        .collect();
     if pictures.is_empty() {
         let problem = format!("path {}: there is no picture of it", walk.name);
-        return Err(Error::usage(
+        return Err(CommandError::usage(
             problem,
             "`wayword platforms` says which platforms have pictures, and what they need",
         ));
@@ -131,7 +142,7 @@ pub(super) fn film(walk: &Walk, platform: &dyn Platform, folder: &FilePath) -> R
 
 /// Describes the motion in a picture of a film, as its alternative text. It names no thing in the picture, because people judge
 /// whether the text names the right things.
-fn told(before: Option<&Step>, step: &Step, is_known: bool) -> String {
+fn describe_motion(before: Option<&FilmStep>, step: &FilmStep, is_known: bool) -> String {
     let Some(before) = before else { return "The walk begins.".to_owned() };
     if !is_known {
         return "The walk goes on.".to_owned();

@@ -1,19 +1,19 @@
 //! `wayword study serve`: runs the site of a study, and prints its address and links.
 
-use super::links;
+use super::make_links;
 use crate::study_args::StudyServe;
 use qrcode::{QrCode, render::unicode::Dense1x2};
 use serde::Serialize;
 use wayword_run::{
-    error::{Error, Exit},
+    error::{CommandError, Exit},
     interrupt,
-    output::Output,
+    output::CommandOutput,
 };
-use wayword_study::{Listen, Recruiter, Security, Started, Study, serve};
+use wayword_study::{ListenOptions, RecruiterSettings, SiteAddress, SiteSecurity, Study, serve_study};
 
 /// The addresses under which the site can be reached.
 #[derive(Debug, Serialize)]
-struct Serving {
+struct ServedSite {
     url: String,
     /// The link for the recruiter. For Prolific it contains placeholders that Prolific fills in.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -21,44 +21,49 @@ struct Serving {
     links: Vec<String>,
 }
 
-pub fn run(args: &StudyServe, output: &Output) -> Result<Exit, Error> {
+pub fn run_serve(args: &StudyServe, output: &CommandOutput) -> Result<Exit, CommandError> {
     let _graceful = interrupt::finish_first(None);
     let study = Study::open(&args.study)?;
     let security = match &args.tls {
-        Some(files) => Security::Tls { certificate: files[0].clone(), key: files[1].clone() },
-        None if args.self_signed => Security::SelfSigned,
-        None if args.insecure_lan => Security::InsecureLan,
-        None => Security::Loopback,
+        Some(files) => SiteSecurity::Tls { certificate: files[0].clone(), key: files[1].clone() },
+        None if args.self_signed => SiteSecurity::SelfSigned,
+        None if args.insecure_lan => SiteSecurity::InsecureLan,
+        None => SiteSecurity::Loopback,
     };
-    if security == Security::InsecureLan {
+    if security == SiteSecurity::InsecureLan {
         output
             .say("warning: without TLS, others in this network can read what participants send, and take their place");
     }
-    let listen = Listen { address: args.listen, security, public: args.public.clone() };
+    let listen = ListenOptions { address: args.listen, security, public: args.public.clone() };
     let told = study.clone();
     let mut made = Ok(());
-    let started = |started: &Started| made = tell(&told, started, args, output);
-    serve(study, &listen, started, interrupt::is_asked)?;
+    let started = |started: &SiteAddress| made = announce_site(&told, started, args, output);
+    serve_study(study, &listen, started, interrupt::is_asked)?;
     made?;
     output.say("stopped; the same command goes on");
     Ok(Exit::Done)
 }
 
-fn tell(study: &Study, started: &Started, args: &StudyServe, output: &Output) -> Result<(), Error> {
-    let links = if args.links > 0 { links(study, args.links, &started.url)?.links } else { Vec::new() };
+fn announce_site(
+    study: &Study,
+    started: &SiteAddress,
+    args: &StudyServe,
+    output: &CommandOutput,
+) -> Result<(), CommandError> {
+    let links = if args.links > 0 { make_links(study, args.links, &started.url)?.links } else { Vec::new() };
     let recruiter_link = match &study.settings.recruiter {
-        Recruiter::Links => None,
-        Recruiter::Parameters { person, session, study, .. } => {
+        RecruiterSettings::Links => None,
+        RecruiterSettings::Parameters { person, session, study, .. } => {
             Some(recruiter_link(&started.url, [person, study, session]))
         }
     };
-    let serving = Serving { url: started.url.clone(), recruiter_link, links };
-    output.data(&serving, said(&serving, args.self_signed));
+    let serving = ServedSite { url: started.url.clone(), recruiter_link, links };
+    output.print_result(&serving, describe_site(&serving, args.self_signed));
     if study.settings.contact.trim().is_empty() {
         output
             .say("study.toml: `contact` is empty: participants could ask nobody. Fill it in before you invite anybody");
     }
-    if let Recruiter::Parameters { only_study, .. } = &study.settings.recruiter
+    if let RecruiterSettings::Parameters { only_study, .. } = &study.settings.recruiter
         && only_study.is_empty()
     {
         output.say("study.toml: `only_study` is empty: links of any study of the recruiter are let in");
@@ -78,7 +83,7 @@ fn recruiter_link(url: &str, [person, study, session]: [&String; 3]) -> String {
     format!("{url}/join?{}", query.join("&"))
 }
 
-fn said(serving: &Serving, has_code: bool) -> String {
+fn describe_site(serving: &ServedSite, has_code: bool) -> String {
     let mut lines = vec![format!("the study is at {}", serving.url)];
     if let Some(link) = &serving.recruiter_link {
         lines.push(format!("link for the recruiter: {link}"));

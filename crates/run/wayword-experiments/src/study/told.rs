@@ -2,16 +2,16 @@
 
 use serde::Serialize;
 use std::{fmt, path::PathBuf};
-use wayword_run::count::count;
-use wayword_study::{Forgotten, Participant, Progress, Reconciliation, Status};
+use wayword_run::count::count_phrase;
+use wayword_study::{ErasureReport, Participant, ParticipantStatus, Reconciliation, StudyProgress};
 
 /// New personal links.
 #[derive(Debug, Serialize)]
-pub(super) struct Links {
+pub(super) struct PersonalLinks {
     pub(super) links: Vec<String>,
 }
 
-impl fmt::Display for Links {
+impl fmt::Display for PersonalLinks {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.links.join("\n"))
     }
@@ -19,9 +19,9 @@ impl fmt::Display for Links {
 
 /// The progress of a study, for `wayword study status`.
 #[derive(Debug, Serialize)]
-pub(super) struct Standing {
+pub(super) struct StudyStatusReport {
     #[serde(flatten)]
-    pub(super) progress: Progress,
+    pub(super) progress: StudyProgress,
     /// Folders with exported results, listed if a participant was forgotten: they may still contain the answers.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(super) exports: Vec<PathBuf>,
@@ -29,7 +29,7 @@ pub(super) struct Standing {
     pub(super) participants: Option<Vec<Participant>>,
 }
 
-impl fmt::Display for Standing {
+impl fmt::Display for StudyStatusReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let progress = &self.progress;
         writeln!(f, "{}", if progress.is_closed { "closed" } else { "open" })?;
@@ -40,54 +40,54 @@ impl fmt::Display for Standing {
                 "{}: {} of {}, {} now with people; per item {least} to {most}",
                 row.condition,
                 row.answered,
-                count(row.wanted, "answer"),
+                count_phrase(row.wanted, "answer"),
                 row.live
             )?;
         }
         let people: Vec<String> =
-            progress.participants.iter().map(|(status, number)| format!("{number} {}", word(*status))).collect();
+            progress.participants.iter().map(|(status, number)| format!("{number} {}", status_word(*status))).collect();
         let people = if people.is_empty() { "nobody yet".to_owned() } else { people.join(", ") };
         write!(f, "participants: {people}; {} at it now", progress.live)?;
         if progress.forgotten > 0 {
             write!(f, "; {} forgotten", progress.forgotten)?;
         }
         if progress.unused_links > 0 {
-            write!(f, "; {} not used", count(progress.unused_links, "personal link"))?;
+            write!(f, "; {} not used", count_phrase(progress.unused_links, "personal link"))?;
         }
         for folder in &self.exports {
             let folder = folder.display();
             write!(f, "\n{folder} may hold answers of somebody who was forgotten since: write the results again")?;
         }
         for participant in self.participants.iter().flatten() {
-            write!(f, "\n{} {}", participant.id, word(participant.status))?;
+            write!(f, "\n{} {}", participant.id, status_word(participant.status))?;
         }
         Ok(())
     }
 }
 
-fn word(status: Status) -> &'static str {
+fn status_word(status: ParticipantStatus) -> &'static str {
     match status {
-        Status::Started => "started",
-        Status::Complete => "complete",
-        Status::Withdrawn => "withdrawn",
-        Status::ScreenedOut => "screened out",
-        Status::AttentionFailed => "failed attention checks",
+        ParticipantStatus::Started => "started",
+        ParticipantStatus::Complete => "complete",
+        ParticipantStatus::Withdrawn => "withdrawn",
+        ParticipantStatus::ScreenedOut => "screened out",
+        ParticipantStatus::AttentionFailed => "failed attention checks",
     }
 }
 
 /// The data that `forget` removed, or would remove.
 #[derive(Debug, Serialize)]
-pub(super) struct Removed {
+pub(super) struct RemovalReport {
     #[serde(flatten)]
-    pub(super) removed: Forgotten,
+    pub(super) removed: ErasureReport,
     /// Folders to which results were written: they still contain the answers.
     pub(super) exports: Vec<PathBuf>,
 }
 
-impl fmt::Display for Removed {
+impl fmt::Display for RemovalReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Forgotten { participant, answers, items, is_done } = &self.removed;
-        let what = format!("{} in {}", count(*answers, "answer"), count(*items, "item"));
+        let ErasureReport { participant, answers, items, is_done } = &self.removed;
+        let what = format!("{} in {}", count_phrase(*answers, "answer"), count_phrase(*items, "item"));
         let verb = if *is_done { "removed" } else { "would remove" };
         write!(f, "{verb} participant {participant} with {what}")?;
         for folder in &self.exports {
@@ -98,25 +98,25 @@ impl fmt::Display for Removed {
 }
 
 /// The comparison of our list of participants with the recruiter's.
-pub(super) struct Matched<'a>(pub(super) &'a Reconciliation);
+pub(super) struct ReconciliationTable<'a>(pub(super) &'a Reconciliation);
 
-impl fmt::Display for Matched<'_> {
+impl fmt::Display for ReconciliationTable<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for row in &self.0.rows {
-            let ours = row.ours.map_or("unknown", word);
+            let ours = row.ours.map_or("unknown", status_word);
             let theirs = row.theirs.as_deref().unwrap_or("not listed");
             let problem = row.problem.map_or(String::new(), |problem| format!("  <- {problem}"));
             writeln!(f, "{}: ours {ours}, theirs {theirs}{problem}", row.recruiter_id)?;
         }
-        write!(f, "{} of {} do not agree", self.0.problems, count(self.0.rows.len(), "participant"))
+        write!(f, "{} of {} do not agree", self.0.problems, count_phrase(self.0.rows.len(), "participant"))
     }
 }
 
 /// The message that a study is closed.
 #[derive(Debug, Serialize)]
-pub(super) struct Closed;
+pub(super) struct ClosedNotice;
 
-impl fmt::Display for Closed {
+impl fmt::Display for ClosedNotice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("closed: it takes no more answers, and the recruiter's ids are gone")
     }

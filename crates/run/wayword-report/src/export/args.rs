@@ -3,7 +3,7 @@
 use crate::export::steps_args::AskedSteps;
 use clap::{Args, ValueEnum};
 use std::{fmt, path::PathBuf};
-use wayword_formats::Format;
+use wayword_formats::DatasetFormat;
 use wayword_run::check::args::AskedWorld;
 use wayword_run::settings::AskedPlatform;
 
@@ -33,13 +33,13 @@ pub enum ExportFormat {
 impl ExportFormat {
     /// The format of the single file that is written, which the program can also read; `None` for formats of several files.
     #[must_use]
-    pub fn of_one_file(self) -> Option<Format> {
+    pub fn file_format(self) -> Option<DatasetFormat> {
         match self {
-            Self::R2r => Some(Format::R2r),
-            Self::Reverie => Some(Format::Reverie),
-            Self::Rxr => Some(Format::Rxr),
-            Self::Vlnce => Some(Format::Vlnce),
-            Self::Wayword => Some(Format::Wayword),
+            Self::R2r => Some(DatasetFormat::R2r),
+            Self::Reverie => Some(DatasetFormat::Reverie),
+            Self::Rxr => Some(DatasetFormat::Rxr),
+            Self::Vlnce => Some(DatasetFormat::Vlnce),
+            Self::Wayword => Some(DatasetFormat::Wayword),
             Self::Duet | Self::Parquet | Self::Hf | Self::Steps => None,
         }
     }
@@ -58,7 +58,7 @@ impl ExportFormat {
 
     /// Whether the written files name the split of each text.
     #[must_use]
-    pub fn says_splits(self) -> bool {
+    pub fn names_splits(self) -> bool {
         matches!(self, Self::Rxr | Self::Duet | Self::Parquet | Self::Hf | Self::Steps)
     }
 }
@@ -94,7 +94,7 @@ Examples:
   wayword export --run runs/houses --format steps --shard 100 --size-px 640x480 --out shards
   wayword export --run runs/val_seen --style r2r --highlight doubts
   wayword export --texts R2R_val_seen.json --platform matterport --data DATA --highlight doubts")]
-pub struct Export {
+pub struct ExportArgs {
     /// Run folder. Several can be merged in the formats wayword, parquet and hf.
     #[arg(long, value_name = "DIR")]
     pub run: Vec<PathBuf>,

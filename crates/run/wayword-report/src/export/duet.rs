@@ -2,37 +2,42 @@
 //! ids of each instruction are added. One file for each split.
 
 use super::{items, splits, tell_overwriting, tell_terms, tell_written};
-use crate::export::args::{AgentDataset, Export, ExportFormat};
+use crate::export::args::{AgentDataset, ExportArgs, ExportFormat};
 use std::{
     collections::BTreeMap,
     fs,
     path::{Path, PathBuf},
 };
 use wayword_core::MentionKind;
-use wayword_formats::{Format, jsonl::Record};
-use wayword_run::{error::Error, output::Output};
+use wayword_formats::{DatasetFormat, jsonl::InstructionRecord};
+use wayword_run::{error::CommandError, output::CommandOutput};
 
 /// The models with the tokenizers that these agents use.
-const BERT: &str = "hf/google-bert/bert-base-uncased";
+const BERT_MODEL: &str = "hf/google-bert/bert-base-uncased";
 const XLM_ROBERTA: &str = "hf/FacebookAI/xlm-roberta-base";
 
 /// The token ids of each text, and whether the tokenizer is XLM-RoBERTa's.
-struct Encoded {
+struct EncodedInstructions {
     is_xlm: bool,
     ids: Vec<Vec<u32>>,
 }
 
-pub(super) fn write(args: &Export, out: &Path, records: &[Record], output: &Output) -> Result<(), Error> {
+pub(super) fn write_duet(
+    args: &ExportArgs,
+    out: &Path,
+    records: &[InstructionRecord],
+    output: &CommandOutput,
+) -> Result<(), CommandError> {
     items::refuse_without_poses(ExportFormat::Duet, records)?;
     refuse_without_viewpoints(records)?;
     let splits = splits::of_records(args, records)?;
-    let dataset = args.dataset.unwrap_or_else(|| usual(records));
-    let Encoded { is_xlm, ids } = encoded(args.tokenizer.as_deref(), records, output)?;
+    let dataset = args.dataset.unwrap_or_else(|| usual_dataset(records));
+    let EncodedInstructions { is_xlm, ids } = encode_instructions(args.tokenizer.as_deref(), records, output)?;
     if dataset == AgentDataset::Rxr && !is_xlm {
         let problem = "RxR's agents read the ids of XLM-RoBERTa's tokenizer, and this one is of BERT's family";
-        return Err(Error::usage(problem, format!("give --tokenizer {XLM_ROBERTA}, or another --dataset")));
+        return Err(CommandError::usage(problem, format!("give --tokenizer {XLM_ROBERTA}, or another --dataset")));
     }
-    fs::create_dir_all(out).map_err(Error::io(out, "make the folder"))?;
+    fs::create_dir_all(out).map_err(CommandError::io(out, "make the folder"))?;
     let mut parts: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
     for (index, split) in splits.iter().enumerate() {
         parts.entry(split).or_default().push(index);
@@ -49,44 +54,44 @@ pub(super) fn write(args: &Export, out: &Path, records: &[Record], output: &Outp
 }
 
 /// Refuses paths over open ground, because these agents walk a viewpoint graph.
-fn refuse_without_viewpoints(records: &[Record]) -> Result<(), Error> {
-    let is_blind = |record: &&Record| record.path.frames.iter().any(|frame| frame.viewpoint.is_none());
+fn refuse_without_viewpoints(records: &[InstructionRecord]) -> Result<(), CommandError> {
+    let is_blind = |record: &&InstructionRecord| record.path.frames.iter().any(|frame| frame.viewpoint.is_none());
     let Some(record) = records.iter().find(is_blind) else { return Ok(()) };
     let problem = format!(
         "path {} of platform {} names no viewpoints, and these agents need them",
         record.path.id, record.platform
     );
-    Err(Error::usage(problem, "use --format vlnce, wayword, parquet or hf"))
+    Err(CommandError::usage(problem, "use --format vlnce, wayword, parquet or hf"))
 }
 
 /// Writes the records of a split, and returns the files.
 fn write_split(
-    args: &Export,
+    args: &ExportArgs,
     dataset: AgentDataset,
     split: &str,
     file: &Path,
-    (records, ids, indices): (&[Record], &[Vec<u32>], &[usize]),
-    output: &Output,
-) -> Result<Vec<PathBuf>, Error> {
+    (records, ids, indices): (&[InstructionRecord], &[Vec<u32>], &[usize]),
+    output: &CommandOutput,
+) -> Result<Vec<PathBuf>, CommandError> {
     let format = match dataset {
-        AgentDataset::R2r => Format::R2r,
-        AgentDataset::Reverie => Format::Reverie,
-        AgentDataset::Rxr => Format::Rxr,
+        AgentDataset::R2r => DatasetFormat::R2r,
+        AgentDataset::Reverie => DatasetFormat::Reverie,
+        AgentDataset::Rxr => DatasetFormat::Rxr,
     };
-    let of_split: Vec<Record> = indices.iter().map(|index| records[*index].clone()).collect();
-    let mut episodes = items::episodes(format, &args.run, &of_split, output);
+    let of_split: Vec<InstructionRecord> = indices.iter().map(|index| records[*index].clone()).collect();
+    let mut episodes = items::episodes_from_records(format, &args.run, &of_split, output);
     for (episode, index) in episodes.iter_mut().zip(indices) {
         episode.split = Some(split.to_owned());
         episode.encodings = vec![ids[*index].clone()];
     }
-    let beside = items::write(format, file, &of_split, episodes)?;
+    let beside = items::write_items(format, file, &of_split, episodes)?;
     Ok([file.to_owned()].into_iter().chain(beside).collect())
 }
 
 /// The dataset that the texts resemble: the one that their style is named after, else REVERIE if most of them name a target, else R2R.
-fn usual(records: &[Record]) -> AgentDataset {
+fn usual_dataset(records: &[InstructionRecord]) -> AgentDataset {
     let is = |name: &str| records.iter().all(|record| record.instruction.style == name);
-    let names_target = |record: &&Record| {
+    let names_target = |record: &&InstructionRecord| {
         record.path.target.is_some()
             && record.instruction.mentions.iter().any(|mention| mention.kind == MentionKind::Target)
     };
@@ -111,43 +116,52 @@ fn file_name(dataset: AgentDataset, split: &str, is_xlm: bool) -> String {
     }
 }
 
-fn no_tokenizer() -> Error {
+fn no_tokenizer() -> CommandError {
     let problem = "--tokenizer is missing: these files hold the ids of the tokens that an agent was trained with";
     let hint = format!(
-        "`wayword models fetch --tokenizer {BERT}` fetches that of VLN-DUET and VLN-HAMT; then give --tokenizer {BERT}. For RxR \
+        "`wayword models fetch --tokenizer {BERT_MODEL}` fetches that of VLN-DUET and VLN-HAMT; then give --tokenizer {BERT_MODEL}. For RxR \
          it is {XLM_ROBERTA}. A tokenizer.json of your own serves too"
     );
-    Error::usage(problem, hint)
+    CommandError::usage(problem, hint)
 }
 
 #[cfg(feature = "local")]
-fn encoded(tokenizer: Option<&str>, records: &[Record], output: &Output) -> Result<Encoded, Error> {
+fn encode_instructions(
+    tokenizer: Option<&str>,
+    records: &[InstructionRecord],
+    output: &CommandOutput,
+) -> Result<EncodedInstructions, CommandError> {
     use wayword_local::{InstructionTokenizer, TokenizerKind};
     let file = file_of(tokenizer.ok_or_else(no_tokenizer)?, output)?;
     let tokenizer = InstructionTokenizer::load(&file)?;
-    let ids = records.iter().map(|record| tokenizer.ids(&record.instruction.text)).collect::<Result<_, _>>()?;
-    Ok(Encoded { is_xlm: tokenizer.kind() == TokenizerKind::XlmRoberta, ids })
+    let ids =
+        records.iter().map(|record| tokenizer.instruction_ids(&record.instruction.text)).collect::<Result<_, _>>()?;
+    Ok(EncodedInstructions { is_xlm: tokenizer.kind() == TokenizerKind::XlmRoberta, ids })
 }
 
 /// The file of a tokenizer. If a model is named instead of a file, its tokenizer is downloaded unless it is on this machine already.
 #[cfg(feature = "local")]
-fn file_of(tokenizer: &str, output: &Output) -> Result<PathBuf, Error> {
-    use wayword_local::{Hub, HubConfig, ModelName, Needs};
+fn file_of(tokenizer: &str, output: &CommandOutput) -> Result<PathBuf, CommandError> {
+    use wayword_local::{HubConfig, ModelHub, ModelName, NeededFiles};
     use wayword_run::download_bar::DownloadBar;
     let path = Path::new(tokenizer);
     if path.exists() || !tokenizer.starts_with("hf/") {
         return Ok(if path.is_dir() { path.join("tokenizer.json") } else { path.to_owned() });
     }
     let name = ModelName::parse(tokenizer)?;
-    let hub = Hub::new(HubConfig::from_env()?)?;
-    let folder = hub.folder(&name, &Needs::tokenizer(), &DownloadBar::new(output))?;
+    let hub = ModelHub::new(HubConfig::from_env()?)?;
+    let folder = hub.model_folder(&name, &NeededFiles::for_tokenizer(), &DownloadBar::new(output))?;
     Ok(folder.path.join("tokenizer.json"))
 }
 
 #[cfg(not(feature = "local"))]
-fn encoded(tokenizer: Option<&str>, _records: &[Record], _output: &Output) -> Result<Encoded, Error> {
+fn encode_instructions(
+    tokenizer: Option<&str>,
+    _records: &[InstructionRecord],
+    _output: &CommandOutput,
+) -> Result<EncodedInstructions, CommandError> {
     tokenizer.ok_or_else(no_tokenizer)?;
-    Err(Error::not_built("--format duet: this build has no tokenizers"))
+    Err(CommandError::not_built("--format duet: this build has no tokenizers"))
 }
 
 #[cfg(test)]

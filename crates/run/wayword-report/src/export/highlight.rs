@@ -1,8 +1,8 @@
 //! `wayword export --highlight`: checks texts, and writes a page and a JSON file in which the doubtful words are marked.
 
 use crate::{
-    export::args::Export,
-    pages::doubts::{Highlights, write_json, write_page},
+    export::args::ExportArgs,
+    pages::doubts::{DoubtHighlights, write_json, write_page},
 };
 use serde::Serialize;
 use std::{
@@ -10,28 +10,28 @@ use std::{
     fmt,
     path::{Path, PathBuf},
 };
-use wayword_core::Grade;
+use wayword_core::DoubtGrade;
 use wayword_run::{
-    check::{How, check_file},
-    count::count,
-    error::{Error, Exit},
-    output::Output,
+    check::{CheckOptions, check_file},
+    count::count_phrase,
+    error::{CommandError, Exit},
+    output::CommandOutput,
     run_folder::{file, settings_of},
-    settings::{Asked, AskedPlatform},
+    settings::{AskedPlatform, AskedSettings},
 };
 
 /// The written files, with how much in them is doubted. Printed at the end.
 #[derive(Debug, Serialize)]
-struct Written {
+struct WrittenHighlights {
     page: PathBuf,
     file: PathBuf,
     #[serde(flatten)]
-    highlights: Counts,
+    highlights: DoubtCounts,
 }
 
 /// How much is doubted.
 #[derive(Debug, Serialize)]
-struct Counts {
+struct DoubtCounts {
     texts: usize,
     /// Texts with a doubt.
     doubted: usize,
@@ -43,26 +43,26 @@ struct Counts {
     uncertain: usize,
 }
 
-impl fmt::Display for Written {
+impl fmt::Display for WrittenHighlights {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Counts { texts, doubted, unfollowed, words, likely, uncertain } = &self.highlights;
-        writeln!(f, "{}: {doubted} with words to doubt", count(*texts, "text"))?;
+        let DoubtCounts { texts, doubted, unfollowed, words, likely, uncertain } = &self.highlights;
+        writeln!(f, "{}: {doubted} with words to doubt", count_phrase(*texts, "text"))?;
         writeln!(
             f,
             "{}: {likely} {}, {uncertain} {}",
-            count(*words, "word"),
-            Grade::Likely.told(),
-            Grade::Uncertain.told()
+            count_phrase(*words, "word"),
+            DoubtGrade::Likely.reader_label(),
+            DoubtGrade::Uncertain.reader_label()
         )?;
         if *unfollowed > 0 {
-            writeln!(f, "not followed: {}", count(*unfollowed, "text"))?;
+            writeln!(f, "not followed: {}", count_phrase(*unfollowed, "text"))?;
         }
         write!(f, "written to {} and {}", self.page.display(), self.file.display())
     }
 }
 
-pub(super) fn write(args: &Export, name: &Path, output: &Output) -> Result<Exit, Error> {
-    let highlights = found(args, output)?;
+pub(super) fn write_highlights(args: &ExportArgs, name: &Path, output: &CommandOutput) -> Result<Exit, CommandError> {
+    let highlights = find_highlights(args, output)?;
     let [page, file] = ["html", "json"].map(|end| file_of(name, end));
     for old in [&page, &file].into_iter().filter(|old| old.exists()) {
         output.say(format_args!("overwriting the old file {}", old.display()));
@@ -70,16 +70,16 @@ pub(super) fn write(args: &Export, name: &Path, output: &Output) -> Result<Exit,
     write_json(&file, &highlights)?;
     write_page(&page, &highlights)?;
     let summary = &highlights.summary;
-    let counts = Counts {
+    let counts = DoubtCounts {
         texts: summary.texts,
         doubted: summary.doubted,
         unfollowed: summary.unfollowed,
         words: summary.words,
-        likely: summary.of(Grade::Likely),
-        uncertain: summary.of(Grade::Uncertain),
+        likely: summary.words_of_grade(DoubtGrade::Likely),
+        uncertain: summary.words_of_grade(DoubtGrade::Uncertain),
     };
-    let written = Written { page, file, highlights: counts };
-    output.data(&written, &written);
+    let written = WrittenHighlights { page, file, highlights: counts };
+    output.print_result(&written, &written);
     Ok(Exit::Done)
 }
 
@@ -94,49 +94,49 @@ fn file_of(name: &Path, end: &str) -> PathBuf {
 }
 
 /// Checks the chosen texts, of a run or of a file, and returns their doubts.
-fn found(args: &Export, output: &Output) -> Result<Highlights, Error> {
+fn find_highlights(args: &ExportArgs, output: &CommandOutput) -> Result<DoubtHighlights, CommandError> {
     refuse_what_datasets_bear(args)?;
-    let how = How { world: args.world, doubts: true, ..How::default() };
+    let how = CheckOptions { world: args.world, doubts: true, ..CheckOptions::default() };
     let report = match (&args.texts, &args.run[..]) {
         (Some(texts), []) => {
-            let settings = Asked::from(args.platform.clone()).resolve()?;
+            let settings = AskedSettings::from(args.platform.clone()).resolve()?;
             check_file(texts, &settings, how, output)?
         }
         (None, [run]) => {
             refuse_a_platform(args)?;
-            let how = How { captions: Some(run), ..how };
+            let how = CheckOptions { captions: Some(run), ..how };
             check_file(&run.join(file::INSTRUCTIONS), &settings_of(run)?, how, output)?
         }
         _ => {
             let problem = "--highlight takes the texts of one run, or of one file";
-            return Err(Error::usage(problem, "give either --run RUN or --texts FILE, once"));
+            return Err(CommandError::usage(problem, "give either --run RUN or --texts FILE, once"));
         }
     };
     let styles: BTreeSet<String> = report.doubted.iter().filter_map(|text| text.style.clone()).collect();
-    let highlights = Highlights::of(report, args.style.as_deref());
+    let highlights = DoubtHighlights::from_report(report, args.style.as_deref());
     if highlights.texts.is_empty() {
         let styles = styles.into_iter().collect::<Vec<_>>().join(", ");
         let hint = if styles.is_empty() { "give a file with texts".to_owned() } else { format!("there are: {styles}") };
         let of = args.style.as_ref().map_or_else(String::new, |style| format!(" of style {style}"));
-        return Err(Error::usage(format!("there is no text{of}"), hint));
+        return Err(CommandError::usage(format!("there is no text{of}"), hint));
     }
     Ok(highlights)
 }
 
-fn refuse_what_datasets_bear(args: &Export) -> Result<(), Error> {
+fn refuse_what_datasets_bear(args: &ExportArgs) -> Result<(), CommandError> {
     if args.format.is_some() || args.out.is_some() || args.val_share.is_some() {
         let problem = "--highlight writes no dataset, so --format, --out and --val-share say nothing";
-        return Err(Error::usage(problem, "leave them out, or export the dataset by itself"));
+        return Err(CommandError::usage(problem, "leave them out, or export the dataset by itself"));
     }
     Ok(())
 }
 
-fn refuse_a_platform(args: &Export) -> Result<(), Error> {
+fn refuse_a_platform(args: &ExportArgs) -> Result<(), CommandError> {
     if args.platform == AskedPlatform::default() {
         return Ok(());
     }
     let problem = "a run knows its platform and data";
-    Err(Error::usage(problem, "leave out --platform, --data, --at and --island, or give --texts FILE"))
+    Err(CommandError::usage(problem, "leave out --platform, --data, --at and --island, or give --texts FILE"))
 }
 
 #[cfg(test)]

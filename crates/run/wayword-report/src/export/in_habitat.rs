@@ -4,17 +4,17 @@
 
 use std::path::{Path, PathBuf};
 use wayword_core::{DVec3, Path as Walk, Platform, PlatformError, SceneId};
-use wayword_formats::{Episode, InHabitat, jsonl::Record};
+use wayword_formats::{Episode, InHabitat, jsonl::InstructionRecord};
 use wayword_house::seed_of;
-use wayword_run::{error::Error, platforms, run_folder::settings_of, stores};
+use wayword_run::{error::CommandError, platforms, run_folder::settings_of, stores};
 
 /// The folder in which habitat-lab keeps scenes; a `scene_id` is a path below it.
-const SCENES: &str = "scene_datasets";
+const SCENES_FOLDER: &str = "scene_datasets";
 /// Corners closer together than this count as one, metres.
 const SAME_M: f64 = 1e-3;
 
 /// Where the scenes of a run can be looked up: its Habitat scenes and its generated houses.
-pub(super) struct World {
+pub(super) struct HabitatSceneSource {
     /// Habitat's own scenes, with the folder or file that they come from.
     scenes: Option<(Box<dyn Platform>, PathBuf)>,
     /// The generated houses, if the run has any.
@@ -23,19 +23,19 @@ pub(super) struct World {
     lack: Option<String>,
 }
 
-impl World {
+impl HabitatSceneSource {
     /// Opens the platforms of a run's records. If its Habitat scenes cannot be opened, they stay closed, and `warning` reports it.
-    pub(super) fn of(run: &Path, records: &[Record]) -> Self {
+    pub(super) fn from_run(run: &Path, records: &[InstructionRecord]) -> Self {
         let has = |platform: &str| records.iter().any(|record| record.platform == platform);
         let houses = has("house").then(|| platforms::open_named("house", None, None, None).ok()).flatten();
-        match has("habitat").then(|| scenes(run)).transpose() {
+        match has("habitat").then(|| open_scenes(run)).transpose() {
             Ok(scenes) => Self { scenes, houses, lack: None },
             Err(error) => Self { scenes: None, houses, lack: Some(first_line(&error)) },
         }
     }
 
     /// Adds the scene's file, the corners and the distance to an episode, as far as they are known.
-    pub(super) fn tell(&mut self, record: &Record, episode: &mut Episode) {
+    pub(super) fn describe_scene(&mut self, record: &InstructionRecord, episode: &mut Episode) {
         let scene = &record.path.scene;
         match (record.platform.as_str(), &self.scenes) {
             ("habitat", Some((platform, data))) => {
@@ -52,14 +52,14 @@ impl World {
                 {
                     episode.floor_positions = path;
                 }
-                episode.in_habitat = house(scene);
+                episode.in_habitat = in_generated_house(scene);
             }
-            (other, _) => episode.in_habitat = unknown(other, scene),
+            (other, _) => episode.in_habitat = in_foreign_scene(other, scene),
         }
     }
 
     /// The warning if Habitat scenes could not be opened.
-    pub(super) fn warning(&self) -> Option<String> {
+    pub(super) fn lack_warning(&self) -> Option<String> {
         let told = |lack: &String| {
             format!(
                 "warning: the Habitat scenes cannot be opened ({lack}), so the path corners and distances in their episodes \
@@ -71,10 +71,10 @@ impl World {
 }
 
 /// The scenes that a run was made in, and where they come from.
-fn scenes(run: &Path) -> Result<(Box<dyn Platform>, PathBuf), Error> {
+fn open_scenes(run: &Path) -> Result<(Box<dyn Platform>, PathBuf), CommandError> {
     let settings = settings_of(run)?;
-    let platform = platforms::open(&settings)?;
-    let data = settings.data.as_deref().map(stores::local).transpose()?.unwrap_or_default().into_owned();
+    let platform = platforms::open_platform(&settings)?;
+    let data = settings.data.as_deref().map(stores::local_data).transpose()?.unwrap_or_default().into_owned();
     Ok((platform, data))
 }
 
@@ -102,7 +102,7 @@ fn tell_of_scene(
 /// data.
 fn below_scenes(file: &Path, data: &Path) -> String {
     let parts: Vec<_> = file.iter().map(|part| part.to_string_lossy()).collect();
-    let below = match parts.iter().rposition(|part| part == SCENES) {
+    let below = match parts.iter().rposition(|part| part == SCENES_FOLDER) {
         Some(at) => &parts[at + 1..],
         None => {
             let above = if data.is_dir() { data.iter().count() } else { parts.len().saturating_sub(1) };
@@ -113,7 +113,7 @@ fn below_scenes(file: &Path, data: &Path) -> String {
 }
 
 /// The fields for a generated house. Habitat can load it once the user has saved it.
-fn house(scene: &SceneId) -> InHabitat {
+fn in_generated_house(scene: &SceneId) -> InHabitat {
     let seed = seed_of(scene.as_str()).unwrap_or_default();
     InHabitat {
         scene_id: Some(format!("house/{scene}/{scene}.glb")),
@@ -130,7 +130,7 @@ fn without_scene(scene: &SceneId) -> InHabitat {
 }
 
 /// The fields for a platform with scenes that Habitat cannot read.
-fn unknown(platform: &str, scene: &SceneId) -> InHabitat {
+fn in_foreign_scene(platform: &str, scene: &SceneId) -> InHabitat {
     let scene_id = format!("{platform}/{scene}/{scene}.glb");
     let needs =
         format!("put your own scene at SCENES/{scene_id}, because platform {platform} has none that Habitat can read");
@@ -143,7 +143,7 @@ fn around_corners(platform: &dyn Platform, walk: &Walk, episode: &Episode) -> Re
     let floors = &episode.floor_positions;
     let mut path: Vec<DVec3> = floors.first().copied().into_iter().collect();
     for (frames, floor) in walk.frames.windows(2).zip(floors.iter().skip(1)) {
-        let way = platform.way(&walk.scene, &frames[0], &frames[1])?;
+        let way = platform.ground_route(&walk.scene, &frames[0], &frames[1])?;
         let corners = way.as_ref().map_or(&[][..], |way| &way.corners);
         for corner in corners.iter().skip(1).rev().skip(1).rev() {
             let is_new = path.last().is_none_or(|last| last.distance(*corner) > SAME_M);
@@ -159,7 +159,7 @@ fn around_corners(platform: &dyn Platform, walk: &Walk, episode: &Episode) -> Re
 /// The distance from start to goal over the navmesh, metres; `None` if the platform knows no ways.
 fn geodesic_m(platform: &dyn Platform, walk: &Walk) -> Result<Option<f64>, PlatformError> {
     let (Some(first), Some(last)) = (walk.frames.first(), walk.frames.last()) else { return Ok(None) };
-    Ok(platform.way(&walk.scene, first, last)?.map(|way| way.length_m))
+    Ok(platform.ground_route(&walk.scene, first, last)?.map(|way| way.length_m))
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Converts records to items of R2R, REVERIE, RxR and VLN-CE, and writes these formats.
 
-use super::in_habitat::World;
+use super::in_habitat::HabitatSceneSource;
 use crate::export::args::ExportFormat;
 use serde_json::{Value, json};
 use std::{
@@ -9,13 +9,13 @@ use std::{
 };
 use wayword_core::ObjectId;
 use wayword_formats::{
-    Episode, Format, jsonl,
-    jsonl::Record,
+    DatasetFormat, Episode, jsonl,
+    jsonl::InstructionRecord,
     r2r, reverie, rxr,
-    vlnce::{self, Dataset},
+    vlnce::{self, VlnceDataset},
     write_sidecar,
 };
-use wayword_run::{error::Error, output::Output};
+use wayword_run::{error::CommandError, output::CommandOutput};
 
 /// Height of the eye over the floor, metres: Matterport3D's camera, and the eye in houses. VLN-CE's positions are on
 /// the floor.
@@ -23,19 +23,25 @@ const EYE_HEIGHT_M: f64 = 1.5;
 
 /// Whether items have a place for provenance: VLN-CE's loader fails on unknown fields, and an R2R item holds several
 /// instructions.
-fn bears_provenance(format: Format) -> bool {
-    matches!(format, Format::Reverie | Format::Rxr)
+fn bears_provenance(format: DatasetFormat) -> bool {
+    matches!(format, DatasetFormat::Reverie | DatasetFormat::Rxr)
 }
 
 /// The records as items, one for each.
-pub fn episodes(format: Format, runs: &[PathBuf], records: &[Record], output: &Output) -> Vec<Episode> {
-    let mut episodes: Vec<Episode> = records.iter().map(|record| episode(record, bears_provenance(format))).collect();
-    if let (Format::Vlnce, [run]) = (format, runs) {
-        let mut world = World::of(run, records);
+pub fn episodes_from_records(
+    format: DatasetFormat,
+    runs: &[PathBuf],
+    records: &[InstructionRecord],
+    output: &CommandOutput,
+) -> Vec<Episode> {
+    let mut episodes: Vec<Episode> =
+        records.iter().map(|record| episode_from_record(record, bears_provenance(format))).collect();
+    if let (DatasetFormat::Vlnce, [run]) = (format, runs) {
+        let mut world = HabitatSceneSource::from_run(run, records);
         for (record, episode) in records.iter().zip(&mut episodes) {
-            world.tell(record, episode);
+            world.describe_scene(record, episode);
         }
-        if let Some(warning) = world.warning() {
+        if let Some(warning) = world.lack_warning() {
             output.say(warning);
         }
     }
@@ -44,25 +50,25 @@ pub fn episodes(format: Format, runs: &[PathBuf], records: &[Record], output: &O
 
 /// Writes one of these formats. If its items have no place for provenance, that goes into a second file in the same folder, and the
 /// name of that file is returned.
-pub fn write(
-    format: Format,
+pub fn write_items(
+    format: DatasetFormat,
     file: &Path,
-    records: &[Record],
+    records: &[InstructionRecord],
     episodes: Vec<Episode>,
-) -> Result<Option<PathBuf>, Error> {
+) -> Result<Option<PathBuf>, CommandError> {
     match format {
-        Format::R2r => r2r::write(file, &episodes)?,
-        Format::Reverie => reverie::write(file, &gathered(episodes))?,
-        Format::Rxr => rxr::write(file, &episodes)?,
-        Format::Vlnce => vlnce::write(file, &Dataset::of(episodes))?,
-        Format::Wayword => jsonl::write(file, records)?,
+        DatasetFormat::R2r => r2r::write_r2r_file(file, &episodes)?,
+        DatasetFormat::Reverie => reverie::write_reverie_file(file, &gather_reverie_items(episodes))?,
+        DatasetFormat::Rxr => rxr::write_rxr_file(file, &episodes)?,
+        DatasetFormat::Vlnce => vlnce::write_vlnce_file(file, &VlnceDataset::from_episodes(episodes))?,
+        DatasetFormat::Wayword => jsonl::write_records(file, records)?,
     }
     if bears_provenance(format) {
         return Ok(None);
     }
     let lines: Vec<Value> = records
         .iter()
-        .map(|record| json!({"path": record.path.id, "text": record.instruction.text, "wayword": about(record)}))
+        .map(|record| json!({"path": record.path.id, "text": record.instruction.text, "wayword": provenance_json(record)}))
         .collect();
     Ok(Some(write_sidecar(file, &lines)?))
 }
@@ -70,13 +76,13 @@ pub fn write(
 /// A name for the episode of each record, in their order: that of its path, and where a path has several texts also the
 /// style and the number of the text.
 #[cfg(feature = "habitat")]
-pub fn episode_names(records: &[Record]) -> Vec<String> {
+pub fn episode_names(records: &[InstructionRecord]) -> Vec<String> {
     let mut texts: BTreeMap<&str, usize> = BTreeMap::new();
     for record in records {
         *texts.entry(&record.path.id).or_default() += 1;
     }
     let mut taken = std::collections::BTreeSet::new();
-    let name = |record: &Record| match texts.get(record.path.id.as_str()) {
+    let name = |record: &InstructionRecord| match texts.get(record.path.id.as_str()) {
         Some(1) => record.path.id.clone(),
         _ => format!("{}-{}", record.path.id, wayword_run::run_folder::name_of_text(record)),
     };
@@ -89,9 +95,9 @@ pub fn episode_names(records: &[Record]) -> Vec<String> {
 }
 
 /// Refuses recordings without poses, because all of these formats contain the agent's position and heading.
-pub(super) fn refuse_without_poses(format: ExportFormat, records: &[Record]) -> Result<(), Error> {
+pub(super) fn refuse_without_poses(format: ExportFormat, records: &[InstructionRecord]) -> Result<(), CommandError> {
     match records.iter().find(|record| !record.path.motion.is_known()) {
-        Some(record) => Err(Error::usage(
+        Some(record) => Err(CommandError::usage(
             format!("format {format} needs poses, and path {} is from a recording without poses", record.path.id),
             "use --format wayword",
         )),
@@ -101,7 +107,7 @@ pub(super) fn refuse_without_poses(format: ExportFormat, records: &[Record]) -> 
 
 /// REVERIE names an item by its path and object. Items that share a path, a start and an object, or have none, become one
 /// item with several instructions; those without an object that start with another heading become another path.
-fn gathered(episodes: Vec<Episode>) -> Vec<Episode> {
+fn gather_reverie_items(episodes: Vec<Episode>) -> Vec<Episode> {
     let mut items: Vec<Episode> = Vec::new();
     let mut starts: BTreeMap<(String, Option<ObjectId>, Option<u64>), usize> = BTreeMap::new();
     let mut starts_of_path: BTreeMap<String, usize> = BTreeMap::new();
@@ -109,7 +115,7 @@ fn gathered(episodes: Vec<Episode>) -> Vec<Episode> {
         let object = episode.target_object.clone();
         let start = (episode.path_id.clone(), object, episode.start_heading.map(|heading| heading.rad().to_bits()));
         if let Some(at) = starts.get(&start) {
-            join(&mut items[*at], episode);
+            join_episodes(&mut items[*at], episode);
             continue;
         }
         if episode.target_object.is_some() {
@@ -128,7 +134,7 @@ fn gathered(episodes: Vec<Episode>) -> Vec<Episode> {
     items
 }
 
-fn join(item: &mut Episode, other: Episode) {
+fn join_episodes(item: &mut Episode, other: Episode) {
     item.instructions.extend(other.instructions);
     item.encodings.extend(other.encodings);
     for (key, value) in other.extra {
@@ -139,17 +145,17 @@ fn join(item: &mut Episode, other: Episode) {
 }
 
 /// A record as an item of a dataset. Provenance is a list, one entry for each instruction.
-fn episode(record: &Record, with_provenance: bool) -> Episode {
+fn episode_from_record(record: &InstructionRecord, with_provenance: bool) -> Episode {
     let mut episode =
         Episode::from_path(&record.path, vec![record.instruction.text.clone()]).on_floor_of(&record.path, EYE_HEIGHT_M);
     episode.path_id = record.path_id();
     if with_provenance {
-        episode.extra.insert("wayword".into(), json!([about(record)]));
+        episode.extra.insert("wayword".into(), json!([provenance_json(record)]));
     }
     episode
 }
 
-fn about(record: &Record) -> Value {
+fn provenance_json(record: &InstructionRecord) -> Value {
     json!({
         "verdict": record.instruction.verdict,
         "provenance": record.instruction.provenance,
@@ -172,7 +178,7 @@ mod tests {
 
     #[test]
     fn reverie_items_without_an_object_gather_by_path_and_start() {
-        let items = gathered(vec![
+        let items = gather_reverie_items(vec![
             episode("7", None, 1.0, "a"),
             episode("7", Some("3"), 1.0, "b"),
             episode("7", None, 1.0, "c"),

@@ -15,7 +15,7 @@ mod steps;
 mod steps;
 pub mod steps_args;
 #[cfg(feature = "habitat")]
-pub use steps::{Replayed, replayed};
+pub use steps::{TrajectoryReplay, replay_export};
 #[cfg(not(feature = "parquet"))]
 #[path = "no_table.rs"]
 mod table;
@@ -23,7 +23,7 @@ mod table;
 mod table;
 
 use crate::export::{
-    args::{Export, ExportFormat},
+    args::{ExportArgs, ExportFormat},
     steps_args::AskedSteps,
 };
 use serde::Serialize;
@@ -31,12 +31,12 @@ use std::{
     collections::{BTreeMap, BTreeSet},
     path::{Path, PathBuf},
 };
-use wayword_formats::{Format, jsonl, jsonl::Record, split};
+use wayword_formats::{DatasetFormat, jsonl, jsonl::InstructionRecord, split_by_scene};
 use wayword_run::{
     check::args::AskedWorld,
-    count::count,
-    error::{Error, Exit},
-    output::Output,
+    count::count_phrase,
+    error::{CommandError, Exit},
+    output::CommandOutput,
     run_folder::{file, refuse_unmerged},
     settings::AskedPlatform,
     terms,
@@ -47,7 +47,7 @@ const NEEDS_SHOWN: usize = 5;
 
 /// Result of an export into one file.
 #[derive(Debug, Serialize)]
-struct Written {
+struct WrittenDataset {
     instructions: usize,
     file: PathBuf,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -66,21 +66,21 @@ struct WrittenSplits {
     files: Vec<PathBuf>,
 }
 
-pub fn run(args: &Export, output: &Output) -> Result<Exit, Error> {
+pub fn run_export(args: &ExportArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
     if let Some(name) = &args.highlight {
-        return highlight::write(args, name, output);
+        return highlight::write_highlights(args, name, output);
     }
-    let (format, out) = asked(args)?;
+    let (format, out) = check_dataset_args(args)?;
     refuse_what_does_not_fit(args, format)?;
-    let mut records = records(&args.run, args.style.as_deref())?;
+    let mut records = read_records(&args.run, args.style.as_deref())?;
     if let Some(share) = args.val_share {
-        split(&mut records, share, args.seed);
+        split_by_scene(&mut records, share, args.seed);
     }
     match format {
-        ExportFormat::Duet => duet::write(args, out, &records, output)?,
-        ExportFormat::Parquet => table::write(args, out, &records, output)?,
-        ExportFormat::Hf => table::publish(args, out, &records, output)?,
-        ExportFormat::Steps => return steps::write(args, out, &records, output),
+        ExportFormat::Duet => duet::write_duet(args, out, &records, output)?,
+        ExportFormat::Parquet => table::write_table(args, out, &records, output)?,
+        ExportFormat::Hf => table::publish_tables(args, out, &records, output)?,
+        ExportFormat::Steps => return steps::write_steps(args, out, &records, output),
         ExportFormat::R2r | ExportFormat::Reverie | ExportFormat::Rxr | ExportFormat::Vlnce | ExportFormat::Wayword => {
             one_file(args, format, out, &records, output)?;
         }
@@ -89,13 +89,16 @@ pub fn run(args: &Export, output: &Output) -> Result<Exit, Error> {
 }
 
 /// Refuses flags that belong to `--highlight`, and returns the format and the place to write to.
-fn asked(args: &Export) -> Result<(ExportFormat, &Path), Error> {
+fn check_dataset_args(args: &ExportArgs) -> Result<(ExportFormat, &Path), CommandError> {
     if args.texts.is_some() || args.platform != AskedPlatform::default() || args.world != AskedWorld::default() {
         let problem = "--texts, --world and the flags of a platform are for --highlight";
-        return Err(Error::usage(problem, "leave them out, or give --highlight NAME"));
+        return Err(CommandError::usage(problem, "leave them out, or give --highlight NAME"));
     }
     let lacks = |what: &str| {
-        Error::usage(format!("{what} is missing"), "give --run, --format and --out for a dataset, or --highlight NAME")
+        CommandError::usage(
+            format!("{what} is missing"),
+            "give --run, --format and --out for a dataset, or --highlight NAME",
+        )
     };
     if args.run.is_empty() {
         return Err(lacks("--run"));
@@ -104,15 +107,15 @@ fn asked(args: &Export) -> Result<(ExportFormat, &Path), Error> {
     Ok((format, args.out.as_deref().ok_or_else(|| lacks("--out"))?))
 }
 
-fn refuse_what_does_not_fit(args: &Export, format: ExportFormat) -> Result<(), Error> {
-    let refused = |problem: String, hint: &str| Err(Error::usage(problem, hint));
+fn refuse_what_does_not_fit(args: &ExportArgs, format: ExportFormat) -> Result<(), CommandError> {
+    let refused = |problem: String, hint: &str| Err(CommandError::usage(problem, hint));
     if !format.takes_several_runs() && args.run.len() > 1 {
         return refused(
             format!("format {format} takes one run only"),
             "merge runs with --format wayword, parquet or hf",
         );
     }
-    let splits_itself = format.says_splits() || format == ExportFormat::Wayword;
+    let splits_itself = format.names_splits() || format == ExportFormat::Wayword;
     if args.val_share.is_some() && !splits_itself {
         let problem = format!("format {format} has no splits within a file");
         return refused(problem, "use --val-share with --format wayword, rxr, duet, parquet, hf or steps");
@@ -137,10 +140,10 @@ fn refuse_what_does_not_fit(args: &Export, format: ExportFormat) -> Result<(), E
 }
 
 /// The records of runs, merged; only those of one style if it is named.
-fn records(runs: &[PathBuf], style: Option<&str>) -> Result<Vec<Record>, Error> {
+fn read_records(runs: &[PathBuf], style: Option<&str>) -> Result<Vec<InstructionRecord>, CommandError> {
     runs.iter().try_for_each(|run| refuse_unmerged(run))?;
     let files: Vec<PathBuf> = runs.iter().map(|run| run.join(file::INSTRUCTIONS)).collect();
-    let mut records = jsonl::merge(&files)?;
+    let mut records = jsonl::merge_records(&files)?;
     let styles: BTreeSet<String> = records.iter().map(|record| record.instruction.style.clone()).collect();
     records.retain(|record| style.is_none_or(|style| record.instruction.style == style));
     if records.is_empty() {
@@ -148,48 +151,61 @@ fn records(runs: &[PathBuf], style: Option<&str>) -> Result<Vec<Record>, Error> 
         return Err(match style.filter(|_| !styles.is_empty()) {
             Some(style) => {
                 let styles = styles.into_iter().collect::<Vec<_>>().join(", ");
-                Error::usage(format!("{runs}: no instruction of style {style}"), format!("there are: {styles}"))
+                CommandError::usage(format!("{runs}: no instruction of style {style}"), format!("there are: {styles}"))
             }
-            None => Error::usage(format!("{runs}: no instruction"), "see errors.jsonl and rejected.jsonl of the run"),
+            None => {
+                CommandError::usage(format!("{runs}: no instruction"), "see errors.jsonl and rejected.jsonl of the run")
+            }
         });
     }
     Ok(records)
 }
 
 /// Writes a format that is one file.
-fn one_file(args: &Export, format: ExportFormat, out: &Path, records: &[Record], output: &Output) -> Result<(), Error> {
-    let Some(of_file) = format.of_one_file() else { return Ok(()) };
+fn one_file(
+    args: &ExportArgs,
+    format: ExportFormat,
+    out: &Path,
+    records: &[InstructionRecord],
+    output: &CommandOutput,
+) -> Result<(), CommandError> {
+    let Some(of_file) = format.file_format() else { return Ok(()) };
     let splits = splits_of(args, format, records, output)?;
     tell_overwriting(out, output);
     let mut scene_needs = BTreeSet::new();
-    let provenance = if of_file == Format::Wayword {
-        jsonl::write(out, records)?;
+    let provenance = if of_file == DatasetFormat::Wayword {
+        jsonl::write_records(out, records)?;
         None
     } else {
         items::refuse_without_poses(format, records)?;
-        let mut episodes = items::episodes(of_file, &args.run, records, output);
+        let mut episodes = items::episodes_from_records(of_file, &args.run, records, output);
         for (episode, split) in episodes.iter_mut().zip(splits) {
             episode.split = Some(split);
         }
         scene_needs.extend(episodes.iter().filter_map(|episode| episode.in_habitat.scene_needs.clone()));
-        items::write(of_file, out, records, episodes)?
+        items::write_items(of_file, out, records, episodes)?
     };
     tell_needs(&scene_needs, output);
     tell_terms(records, output);
-    let written = Written { instructions: records.len(), file: out.to_owned(), provenance, scene_needs };
+    let written = WrittenDataset { instructions: records.len(), file: out.to_owned(), provenance, scene_needs };
     let beside =
         written.provenance.as_ref().map_or(String::new(), |file| format!("; provenance in {}", file.display()));
-    output.data(
+    output.print_result(
         &written,
-        format_args!("{} written to {}{beside}", count(written.instructions, "instruction"), out.display()),
+        format_args!("{} written to {}{beside}", count_phrase(written.instructions, "instruction"), out.display()),
     );
     Ok(())
 }
 
 /// The split of each record, if the format contains splits or the user chose one. Otherwise the list is empty, and texts in scenes
 /// that are officially held out cause only a message.
-fn splits_of(args: &Export, format: ExportFormat, records: &[Record], output: &Output) -> Result<Vec<String>, Error> {
-    if format.says_splits() || args.split.is_some() {
+fn splits_of(
+    args: &ExportArgs,
+    format: ExportFormat,
+    records: &[InstructionRecord],
+    output: &CommandOutput,
+) -> Result<Vec<String>, CommandError> {
+    if format.names_splits() || args.split.is_some() {
         return splits::of_records(args, records);
     }
     if args.val_share.is_none() {
@@ -198,17 +214,17 @@ fn splits_of(args: &Export, format: ExportFormat, records: &[Record], output: &O
     Ok(Vec::new())
 }
 
-fn tell_overwriting(file: &Path, output: &Output) {
+fn tell_overwriting(file: &Path, output: &CommandOutput) {
     if file.exists() {
         output.say(format_args!("overwriting the old file {}", file.display()));
     }
 }
 
-fn tell_terms(records: &[Record], output: &Output) {
-    terms::tell(records.iter().map(|record| record.platform.as_str()), output);
+fn tell_terms(records: &[InstructionRecord], output: &CommandOutput) {
+    terms::print_terms(records.iter().map(|record| record.platform.as_str()), output);
 }
 
-fn tell_needs(scene_needs: &BTreeSet<String>, output: &Output) {
+fn tell_needs(scene_needs: &BTreeSet<String>, output: &CommandOutput) {
     if scene_needs.is_empty() {
         return;
     }
@@ -220,13 +236,13 @@ fn tell_needs(scene_needs: &BTreeSet<String>, output: &Output) {
 }
 
 /// Prints the result of an export into several files.
-fn tell_written(out: &Path, files: Vec<PathBuf>, splits: &[String], output: &Output) {
+fn tell_written(out: &Path, files: Vec<PathBuf>, splits: &[String], output: &CommandOutput) {
     let mut counts: BTreeMap<String, usize> = BTreeMap::new();
     for split in splits {
         *counts.entry(split.clone()).or_default() += 1;
     }
     let each: Vec<String> = counts.iter().map(|(split, count)| format!("{split} {count}")).collect();
-    let instructions = count(splits.len(), "instruction");
+    let instructions = count_phrase(splits.len(), "instruction");
     let written = WrittenSplits { instructions: splits.len(), splits: counts, files };
-    output.data(&written, format_args!("{instructions} written to {} ({})", out.display(), each.join(", ")));
+    output.print_result(&written, format_args!("{instructions} written to {} ({})", out.display(), each.join(", ")));
 }

@@ -2,37 +2,39 @@
 //! of the scene, else train. A scene that a dataset officially holds out (val_unseen, test) must not get into another split, because
 //! agents are tested in it.
 
-use crate::export::args::Export;
+use crate::export::args::ExportArgs;
 use std::{
     collections::BTreeMap,
     path::{Path, PathBuf},
 };
 use wayword_core::SceneId;
-use wayword_formats::{Format, OfficialSplit, jsonl, jsonl::Record};
-use wayword_run::{count::count, error::Error, output::Output, run_folder as run, run_folder::file};
+use wayword_formats::{DatasetFormat, OfficialSplit, jsonl, jsonl::InstructionRecord};
+use wayword_run::{
+    count::count_phrase, error::CommandError, output::CommandOutput, run_folder as run, run_folder::file,
+};
 
 /// The split of a text if neither its episode nor its scene determines one.
-const USUAL: &str = "train";
+const DEFAULT_SPLIT: &str = "train";
 /// Splits that occur in file names of the known datasets; a name that contains another comes first.
-const NAMES: [&str; 6] = ["val_train_seen", "val_unseen", "val_seen", "minival", "train", "test"];
+const KNOWN_SPLITS: [&str; 6] = ["val_train_seen", "val_unseen", "val_seen", "minival", "train", "test"];
 /// Longest name of a split.
-const LONGEST: usize = 64;
+const MAX_SPLIT_NAME_BYTES: usize = 64;
 
 /// Splits by platform and name of the item.
-type Declared = BTreeMap<(String, String), String>;
+type DeclaredSplits = BTreeMap<(String, String), String>;
 
 /// The split of each record, in their order.
 ///
 /// # Errors
 /// When a name is no name of a split, a scene that is officially held out would come into another split, or the run's files
 /// cannot be read.
-pub(super) fn of_records(args: &Export, records: &[Record]) -> Result<Vec<String>, Error> {
+pub(super) fn of_records(args: &ExportArgs, records: &[InstructionRecord]) -> Result<Vec<String>, CommandError> {
     let declared = match args.split {
-        Some(_) => Declared::new(),
-        None => declared(&args.run, records)?,
+        Some(_) => DeclaredSplits::new(),
+        None => read_declared_splits(&args.run, records)?,
     };
-    let of = |record: &Record| {
-        let official = OfficialSplit::of(&record.path.scene);
+    let of = |record: &InstructionRecord| {
+        let official = OfficialSplit::for_scene(&record.path.scene);
         let split = match (&args.split, record.split) {
             (Some(split), _) => split.clone(),
             // The drawn share decides, except for scenes that are officially held out: they stay in their own split.
@@ -41,7 +43,7 @@ pub(super) fn of_records(args: &Export, records: &[Record]) -> Result<Vec<String
             }
             (None, None) => {
                 let declared = declared.get(&(record.platform.clone(), record.path.id.clone())).cloned();
-                declared.unwrap_or_else(|| official.map_or(USUAL, OfficialSplit::name).to_owned())
+                declared.unwrap_or_else(|| official.map_or(DEFAULT_SPLIT, OfficialSplit::name).to_owned())
             }
         };
         check_name(&split)?;
@@ -52,31 +54,31 @@ pub(super) fn of_records(args: &Export, records: &[Record]) -> Result<Vec<String
 }
 
 /// Reports how many texts lie in scenes that are officially held out, for files that do not name their split.
-pub(super) fn tell_held_out(records: &[Record], output: &Output) {
+pub(super) fn tell_held_out(records: &[InstructionRecord], output: &CommandOutput) {
     let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
-    let official = records.iter().filter_map(|record| OfficialSplit::of(&record.path.scene));
+    let official = records.iter().filter_map(|record| OfficialSplit::for_scene(&record.path.scene));
     for split in official.filter(|split| split.is_held_out()) {
         *counts.entry(split.name()).or_default() += 1;
     }
     for (split, number) in counts {
-        let texts = count(number, "text");
+        let texts = count_phrase(number, "text");
         output.say(format_args!("{texts} in scenes of the official split {split}: do not train on what you test with"));
     }
 }
 
 /// Refuses names that are unsafe in a file name, because the split's name becomes part of one.
-fn check_name(split: &str) -> Result<(), Error> {
-    let is_name = (1..=LONGEST).contains(&split.len())
+fn check_name(split: &str) -> Result<(), CommandError> {
+    let is_name = (1..=MAX_SPLIT_NAME_BYTES).contains(&split.len())
         && split.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'_')
         && split.bytes().any(|byte| byte.is_ascii_alphanumeric());
     if is_name {
         return Ok(());
     }
     let problem = format!("{split:?} is not the name of a split");
-    Err(Error::usage(problem, "use letters, digits and _, at most 64: --split val_seen"))
+    Err(CommandError::usage(problem, "use letters, digits and _, at most 64: --split val_seen"))
 }
 
-fn refuse_held_out(split: &str, official: Option<OfficialSplit>, scene: &SceneId) -> Result<(), Error> {
+fn refuse_held_out(split: &str, official: Option<OfficialSplit>, scene: &SceneId) -> Result<(), CommandError> {
     let Some(official) = official.filter(|official| !official.may_be_in(split)) else { return Ok(()) };
     let name = official.name();
     let problem = format!("scene {scene} is of the official split {name}, and may not come into split {split}");
@@ -84,12 +86,12 @@ fn refuse_held_out(split: &str, official: Option<OfficialSplit>, scene: &SceneId
         "give --split {name}, or generate without this scene; without --split, and without episodes that say \
                         otherwise, each scene goes into its official split"
     );
-    Err(Error::usage(problem, hint))
+    Err(CommandError::usage(problem, hint))
 }
 
 /// The splits that the episode files of the runs declare, by platform and item.
-fn declared(runs: &[PathBuf], records: &[Record]) -> Result<Declared, Error> {
-    let mut declared = Declared::new();
+fn read_declared_splits(runs: &[PathBuf], records: &[InstructionRecord]) -> Result<DeclaredSplits, CommandError> {
+    let mut declared = DeclaredSplits::new();
     for run in runs {
         // A run folder that a user put together has no settings.
         let episodes = run::settings_of(run).ok().and_then(|settings| settings.episodes);
@@ -98,7 +100,7 @@ fn declared(runs: &[PathBuf], records: &[Record]) -> Result<Declared, Error> {
         let of_file = of_file_name(&episodes);
         let of_run = match runs {
             [_] => records.to_vec(),
-            _ => jsonl::read(&run.join(file::INSTRUCTIONS))?,
+            _ => jsonl::read_records(&run.join(file::INSTRUCTIONS))?,
         };
         for record in of_run {
             if let Some(split) = by_item.get(&record.path.id).map(String::as_str).or(of_file) {
@@ -111,8 +113,8 @@ fn declared(runs: &[PathBuf], records: &[Record]) -> Result<Declared, Error> {
 
 /// The split of each item of a file; empty if the file is gone or its format has no field for splits.
 fn of_items(episodes: &Path) -> BTreeMap<String, String> {
-    let says = matches!(wayword_formats::detect(episodes), Ok(Format::Rxr | Format::Wayword));
-    let read = says.then(|| wayword_formats::read(episodes).ok()).flatten().unwrap_or_default();
+    let says = matches!(wayword_formats::detect_format(episodes), Ok(DatasetFormat::Rxr | DatasetFormat::Wayword));
+    let read = says.then(|| wayword_formats::read_any_format(episodes).ok()).flatten().unwrap_or_default();
     read.into_iter().filter_map(|episode| Some((episode.id, episode.split?))).collect()
 }
 
@@ -120,7 +122,7 @@ fn of_items(episodes: &Path) -> BTreeMap<String, String> {
 fn of_file_name(file: &Path) -> Option<&'static str> {
     let name = file.file_name()?.to_string_lossy().to_lowercase().replace('-', "_");
     let stem = format!("_{}_", name.split('.').next()?);
-    NAMES.into_iter().find(|split| stem.contains(&format!("_{split}_")))
+    KNOWN_SPLITS.into_iter().find(|split| stem.contains(&format!("_{split}_")))
 }
 
 #[cfg(test)]
@@ -156,7 +158,7 @@ mod tests {
     #[test]
     fn refuse_held_out_names_the_scene_and_its_split() {
         let scene = SceneId::new("2azQ1b91cZZ").unwrap();
-        let official = OfficialSplit::of(&scene);
+        let official = OfficialSplit::for_scene(&scene);
         assert!(refuse_held_out("val_unseen", official, &scene).is_ok());
         let error = refuse_held_out("train", official, &scene).unwrap_err().to_string();
         assert!(error.contains("2azQ1b91cZZ") && error.contains("hint: give --split val_unseen"), "{error}");

@@ -9,7 +9,7 @@ use std::{
     ops::Range,
     path::{Path, PathBuf},
 };
-use wayword_run::error::Error;
+use wayword_run::error::CommandError;
 
 /// Paths on a page: with five pictures each, they make about ten megabytes, and thirty sheets of paper.
 pub(super) const WALKS_PER_PAGE: usize = 50;
@@ -21,7 +21,7 @@ const IN_ADDRESS: &AsciiSet = &NON_ALPHANUMERIC.remove(b'-').remove(b'.').remove
 const MARK_WITHIN: u64 = 4096;
 
 /// The files of a report.
-pub(super) struct Book<'a> {
+pub(super) struct ReportFiles<'a> {
     out: &'a Path,
     /// Which report a page of paths belongs to: the names of the overview and of the run folder, escaped as in
     /// addresses.
@@ -35,12 +35,12 @@ pub(super) struct Book<'a> {
 pub(super) struct Pager {
     /// The address of the overview.
     overview: String,
-    pages: Vec<Leaf>,
+    pages: Vec<PageLink>,
 }
 
 /// A link to a page of paths.
 #[derive(Debug, Serialize)]
-struct Leaf {
+struct PageLink {
     href: String,
     /// The numbers of its paths, from 1.
     first: usize,
@@ -48,12 +48,12 @@ struct Leaf {
     is_here: bool,
 }
 
-impl<'a> Book<'a> {
+impl<'a> ReportFiles<'a> {
     /// The files for `walks` paths of a run.
     pub(super) fn new(out: &'a Path, run: &Path, walks: usize, per_page: usize) -> Self {
         // "." has a name, too. The folders around it stay private, because pages are passed on.
         let run = fs::canonicalize(run).unwrap_or_else(|_| run.to_owned());
-        Self { out, page_of: format!("{} {}", address(out), address(&run)), walks, per_page }
+        Self { out, page_of: format!("{} {}", file_address(out), file_address(&run)), walks, per_page }
     }
 
     /// The mark of a page of paths, so that no other report's page is taken for it.
@@ -62,18 +62,18 @@ impl<'a> Book<'a> {
     }
 
     /// Number of pages of paths; 0 if the overview contains the paths itself.
-    pub(super) fn pages(&self) -> usize {
+    pub(super) fn page_count(&self) -> usize {
         if self.walks <= self.per_page { 0 } else { self.walks.div_ceil(self.per_page) }
     }
 
     /// The paths (from 0) of a page (from 1).
-    pub(super) fn walks(&self, page: usize) -> Range<usize> {
+    pub(super) fn walks_on_page(&self, page: usize) -> Range<usize> {
         let first = (page - 1) * self.per_page;
         first..(first + self.per_page).min(self.walks)
     }
 
     /// The file of a page (from 1).
-    pub(super) fn file(&self, page: usize) -> PathBuf {
+    pub(super) fn page_file(&self, page: usize) -> PathBuf {
         let mut name = self.out.file_stem().unwrap_or_default().to_owned();
         name.push(format!("-{page}"));
         if let Some(end) = self.out.extension() {
@@ -84,34 +84,38 @@ impl<'a> Book<'a> {
     }
 
     /// The address of a path (from 0), from any page.
-    pub(super) fn address(&self, walk: usize, anchor: &str) -> String {
-        let file = if self.pages() == 0 { String::new() } else { address(&self.file(walk / self.per_page + 1)) };
+    pub(super) fn walk_address(&self, walk: usize, anchor: &str) -> String {
+        let file = if self.page_count() == 0 {
+            String::new()
+        } else {
+            file_address(&self.page_file(walk / self.per_page + 1))
+        };
         format!("{file}#{anchor}")
     }
 
     /// The links on page `here` (from 1; `None` for the overview); `None` if the report is one file.
-    pub(super) fn pager(&self, here: Option<usize>) -> Option<Pager> {
+    pub(super) fn pager_for_page(&self, here: Option<usize>) -> Option<Pager> {
         let leaf = |page: usize| {
-            let walks = self.walks(page);
-            Leaf {
-                href: address(&self.file(page)),
+            let walks = self.walks_on_page(page);
+            PageLink {
+                href: file_address(&self.page_file(page)),
                 first: walks.start + 1,
                 last: walks.end,
                 is_here: here == Some(page),
             }
         };
-        let pages: Vec<Leaf> = (1..=self.pages()).map(leaf).collect();
-        (!pages.is_empty()).then(|| Pager { overview: address(self.out), pages })
+        let pages: Vec<PageLink> = (1..=self.page_count()).map(leaf).collect();
+        (!pages.is_empty()).then(|| Pager { overview: file_address(self.out), pages })
     }
 
     /// Refuses to replace files that are not pages of this report, because they may be another run's.
     ///
     /// # Errors
     /// When one of them would be replaced.
-    pub(super) fn refuse_to_replace_others(&self) -> Result<(), Error> {
+    pub(super) fn refuse_to_replace_others(&self) -> Result<(), CommandError> {
         let is_other = |file: &PathBuf| fs::symlink_metadata(file).is_ok() && !self.is_ours(file);
-        match (1..=self.pages()).map(|page| self.file(page)).find(is_other) {
-            Some(file) => Err(Error::usage(
+        match (1..=self.page_count()).map(|page| self.page_file(page)).find(is_other) {
+            Some(file) => Err(CommandError::usage(
                 format!("{}: it exists, and is not a page of this report", file.display()),
                 "give another name with --out, or remove the file",
             )),
@@ -123,9 +127,9 @@ impl<'a> Book<'a> {
     ///
     /// # Errors
     /// When one cannot be removed.
-    pub(super) fn remove_older_pages(&self) -> Result<(), Error> {
-        for file in (self.pages() + 1..).map(|page| self.file(page)).take_while(|file| self.is_ours(file)) {
-            fs::remove_file(&file).map_err(Error::io(&file, "remove the older page"))?;
+    pub(super) fn remove_older_pages(&self) -> Result<(), CommandError> {
+        for file in (self.page_count() + 1..).map(|page| self.page_file(page)).take_while(|file| self.is_ours(file)) {
+            fs::remove_file(&file).map_err(CommandError::io(&file, "remove the older page"))?;
         }
         Ok(())
     }
@@ -134,17 +138,17 @@ impl<'a> Book<'a> {
     fn is_ours(&self, file: &Path) -> bool {
         let mut beginning = Vec::new();
         let read = File::open(file).and_then(|file| file.take(MARK_WITHIN).read_to_end(&mut beginning));
-        read.is_ok() && String::from_utf8_lossy(&beginning).contains(&mark(&self.page_of))
+        read.is_ok() && String::from_utf8_lossy(&beginning).contains(&page_mark(&self.page_of))
     }
 }
 
 /// The mark of a page of paths, as in `open.html`.
-fn mark(page_of: &str) -> String {
+fn page_mark(page_of: &str) -> String {
     format!("<meta name=\"wayword-page-of\" content=\"{page_of}\">")
 }
 
 /// The link to a file in the same folder.
-fn address(file: &Path) -> String {
+fn file_address(file: &Path) -> String {
     let name = file.file_name().unwrap_or_default().to_string_lossy();
     utf8_percent_encode(&name, IN_ADDRESS).to_string()
 }
@@ -156,14 +160,14 @@ mod tests {
     #[test]
     fn few_walks_are_one_file_and_many_are_pages_beside_it() {
         let out = Path::new("runs/my report.html");
-        let one = Book::new(out, Path::new("runs"), 50, 50);
-        assert_eq!((one.pages(), one.address(49, "w50")), (0, "#w50".to_owned()));
-        assert!(one.pager(None).is_none());
-        let many = Book::new(out, Path::new("runs"), 101, 50);
-        assert_eq!((many.pages(), many.walks(3)), (3, 100..101));
-        assert_eq!(many.file(2), Path::new("runs/my report-2.html"));
-        assert_eq!(many.address(50, "w51"), "my%20report-2.html#w51");
-        let pager = many.pager(Some(3)).unwrap();
+        let one = ReportFiles::new(out, Path::new("runs"), 50, 50);
+        assert_eq!((one.page_count(), one.walk_address(49, "w50")), (0, "#w50".to_owned()));
+        assert!(one.pager_for_page(None).is_none());
+        let many = ReportFiles::new(out, Path::new("runs"), 101, 50);
+        assert_eq!((many.page_count(), many.walks_on_page(3)), (3, 100..101));
+        assert_eq!(many.page_file(2), Path::new("runs/my report-2.html"));
+        assert_eq!(many.walk_address(50, "w51"), "my%20report-2.html#w51");
+        let pager = many.pager_for_page(Some(3)).unwrap();
         assert_eq!(pager.overview, "my%20report.html");
         let told: Vec<_> = pager.pages.iter().map(|leaf| (leaf.first, leaf.last, leaf.is_here)).collect();
         assert_eq!(told, [(1, 50, false), (51, 100, false), (101, 101, true)]);
@@ -173,19 +177,19 @@ mod tests {
     fn only_pages_of_our_own_are_replaced_and_removed() {
         let folder = tempfile::tempdir().unwrap();
         let out = folder.path().join("my report.html");
-        let book = Book::new(&out, Path::new("runs/a"), 120, 50);
-        let others = Book::new(&out, Path::new("runs/b"), 120, 50);
-        let page = |book: &Book<'_>| format!("<!doctype html>{}", mark(book.page_of()));
+        let book = ReportFiles::new(&out, Path::new("runs/a"), 120, 50);
+        let others = ReportFiles::new(&out, Path::new("runs/b"), 120, 50);
+        let page = |book: &ReportFiles<'_>| format!("<!doctype html>{}", page_mark(book.page_of()));
         for number in 1..=5 {
-            fs::write(book.file(number), page(&book)).unwrap();
+            fs::write(book.page_file(number), page(&book)).unwrap();
         }
-        fs::write(book.file(6), page(&others)).unwrap();
+        fs::write(book.page_file(6), page(&others)).unwrap();
         book.refuse_to_replace_others().unwrap();
         book.remove_older_pages().unwrap();
-        let left: Vec<bool> = (1..=6).map(|number| book.file(number).exists()).collect();
+        let left: Vec<bool> = (1..=6).map(|number| book.page_file(number).exists()).collect();
         assert_eq!(left, [true, true, true, false, false, true]);
         for text in ["mine".to_owned(), page(&others)] {
-            fs::write(book.file(2), text).unwrap();
+            fs::write(book.page_file(2), text).unwrap();
             let refused = book.refuse_to_replace_others().unwrap_err().to_string();
             assert!(refused.contains("my report-2.html") && refused.contains("--out"), "{refused}");
         }

@@ -1,13 +1,14 @@
 //! The frames of an item as the page shows them: picture, room, caption, dialogue, and the move to the next frame.
 
 use super::{
-    palette::{Colour, colour},
-    pictures::{Picture, Pictures},
+    palette::{FrameColour, frame_colour},
+    pictures::{PagePicture, PagePictures},
     places::{frame_anchor, side_words},
 };
 use serde::Serialize;
 use wayword_core::{
-    Climb, Compass, Exchange, Found, Heading, Look, Move, Observation, Sighting, Trouble, Turn, Where, Witness,
+    AnswerTrouble, CaptionedView, ClimbDirection, CompassPoint, DetectedBox, DialogueExchange, FrameObservation,
+    Heading, ObjectSighting, PathMove, TurnKind, ViewThird, WitnessAnswer,
 };
 use wayword_run::run_folder::WalkRecord;
 
@@ -26,8 +27,8 @@ pub(super) struct FrameView {
     /// From 0, as in run folders and on the terminal.
     number: usize,
     anchor: String,
-    colour: Colour,
-    picture: Option<Picture>,
+    colour: FrameColour,
+    picture: Option<PagePicture>,
     /// The boxes of a detector, those with the highest score first.
     boxes: Vec<BoxView>,
     /// The picture in words, for readers who do not see it.
@@ -81,19 +82,19 @@ struct ExchangeView {
 }
 
 /// The first `shown` frames of a walk.
-pub(super) fn frames(walk: &WalkRecord, item: &str, shown: usize, pictures: &mut Pictures) -> Vec<FrameView> {
+pub(super) fn frame_views(walk: &WalkRecord, item: &str, shown: usize, pictures: &mut PagePictures) -> Vec<FrameView> {
     let moves = walk.path.moves();
-    let nothing = Observation::default();
+    let nothing = FrameObservation::default();
     let frame = |(at, frame): (usize, &wayword_core::Frame)| {
         let observation = walk.observations.get(at).unwrap_or(&nothing);
-        let seen: Vec<&Sighting> = sightings(&observation.looks, Witness::Seen).collect();
+        let seen: Vec<&ObjectSighting> = sightings_by_witness(&observation.looks, WitnessAnswer::Seen).collect();
         let next = moves.get(at);
         FrameView {
             number: at,
             anchor: frame_anchor(item, at),
-            colour: colour(at, shown),
-            picture: if walk.has_pictures { pictures.take(&walk.path.id, at) } else { None },
-            boxes: boxes(&observation.looks, frame.pose.heading),
+            colour: frame_colour(at, shown),
+            picture: if walk.has_pictures { pictures.take_picture(&walk.path.id, at) } else { None },
+            boxes: box_views(&observation.looks, frame.pose.heading),
             alt: format!("View at frame {at}. {}", observation.summary),
             room: observation.looks.iter().find_map(|look| look.caption.room.clone()),
             level: frame.level.filter(|_| walk.path.motion.is_known()),
@@ -108,49 +109,53 @@ pub(super) fn frames(walk: &WalkRecord, item: &str, shown: usize, pictures: &mut
     walk.path.frames.iter().take(shown).enumerate().map(frame).collect()
 }
 
-fn sightings(looks: &[Look], witness: Witness) -> impl Iterator<Item = &Sighting> {
+fn sightings_by_witness(looks: &[CaptionedView], witness: WitnessAnswer) -> impl Iterator<Item = &ObjectSighting> {
     looks.iter().flat_map(|look| &look.caption.sightings).filter(move |sighting| sighting.witness == witness)
 }
 
 /// The boxes of a detector in the view ahead, because the picture shows this view.
-fn boxes(looks: &[Look], heading: Heading) -> Vec<BoxView> {
+fn box_views(looks: &[CaptionedView], heading: Heading) -> Vec<BoxView> {
     let ahead = looks.iter().filter(|look| look.gaze.heading.turn_to(heading).abs() < SAME_RAD);
-    let seen = ahead.flat_map(|look| &look.caption.sightings).filter(|sighting| sighting.witness == Witness::Seen);
-    let mut found: Vec<(&Sighting, Found)> =
+    let seen =
+        ahead.flat_map(|look| &look.caption.sightings).filter(|sighting| sighting.witness == WitnessAnswer::Seen);
+    let mut found: Vec<(&ObjectSighting, DetectedBox)> =
         seen.filter_map(|sighting| Some((sighting, sighting.spot?.found))).collect();
     found.sort_by(|a, b| b.1.score.total_cmp(&a.1.score));
-    let view = |(sighting, Found { box_px: [left, top, right, bottom], score }): (&Sighting, Found)| BoxView {
-        name: sighting.name.clone(),
-        percent: (100.0 * score).clamp(0.0, 100.0) as u8,
-        metres: sighting.spot.and_then(|spot| spot.distance_m).map(|metres| format!("{metres:.1}")),
-        left,
-        top,
-        width: (right - left).max(0.0),
-        height: (bottom - top).max(0.0),
-    };
+    let view =
+        |(sighting, DetectedBox { box_px: [left, top, right, bottom], score }): (&ObjectSighting, DetectedBox)| {
+            BoxView {
+                name: sighting.name.clone(),
+                percent: (100.0 * score).clamp(0.0, 100.0) as u8,
+                metres: sighting.spot.and_then(|spot| spot.distance_m).map(|metres| format!("{metres:.1}")),
+                left,
+                top,
+                width: (right - left).max(0.0),
+                height: (bottom - top).max(0.0),
+            }
+        };
     found.into_iter().take(MOST_BOXES).map(view).collect()
 }
 
-fn sighting_words(sighting: &Sighting) -> String {
+fn sighting_words(sighting: &ObjectSighting) -> String {
     let several = if sighting.several { "several " } else { "" };
     let colour = sighting.colour.as_ref().map_or_else(String::new, |colour| format!("{colour} "));
     let place = match sighting.place {
-        Some(Where::Left) => ", left",
-        Some(Where::Middle) => ", middle",
-        Some(Where::Right) => ", right",
+        Some(ViewThird::Left) => ", left",
+        Some(ViewThird::Middle) => ", middle",
+        Some(ViewThird::Right) => ", right",
         None => "",
     };
     format!("{several}{colour}{}{place}", sighting.name)
 }
 
-fn look_view(look: &Look, heading: Heading) -> LookView {
+fn look_view(look: &CaptionedView, heading: Heading) -> LookView {
     let names = |witness| {
         let of = look.caption.sightings.iter().filter(|sighting| sighting.witness == witness);
         of.map(sighting_words).collect::<Vec<_>>().join("; ")
     };
-    let said = [("seen", Witness::Seen), ("denied", Witness::Denied), ("unsure", Witness::Unsure)];
+    let said = [("seen", WitnessAnswer::Seen), ("denied", WitnessAnswer::Denied), ("unsure", WitnessAnswer::Unsure)];
     LookView {
-        direction: direction(look.gaze.heading, heading),
+        direction: direction_words(look.gaze.heading, heading),
         caption: look.caption.text.clone(),
         by: look.caption.by.clone(),
         transcript: look.caption.transcript.iter().map(exchange_view).collect(),
@@ -162,58 +167,58 @@ fn look_view(look: &Look, heading: Heading) -> LookView {
     }
 }
 
-fn exchange_view(exchange: &Exchange) -> ExchangeView {
+fn exchange_view(exchange: &DialogueExchange) -> ExchangeView {
     ExchangeView {
         question: exchange.question.clone(),
         answer: exchange.answer.clone(),
         asked_twice: exchange.trouble.map(|trouble| match trouble {
-            Trouble::Empty => "the first answer was empty",
-            Trouble::Echo => "the first answer repeated the question",
-            Trouble::Loop => "the first answer repeated itself",
-            Trouble::Repeat => "the first answer was the one to an earlier question",
-            Trouble::Form => "the first answer did not have the form that was asked for",
-            Trouble::Refusal => "the first answer was a refusal",
+            AnswerTrouble::Empty => "the first answer was empty",
+            AnswerTrouble::Echo => "the first answer repeated the question",
+            AnswerTrouble::Loop => "the first answer repeated itself",
+            AnswerTrouble::Repeat => "the first answer was the one to an earlier question",
+            AnswerTrouble::Form => "the first answer did not have the form that was asked for",
+            AnswerTrouble::Refusal => "the first answer was a refusal",
         }),
     }
 }
 
 /// The direction of a gaze in words: ahead if it follows the walker's heading, else a point of the compass or a side of the walker.
-fn direction(gaze: Heading, walker: Heading) -> &'static str {
+fn direction_words(gaze: Heading, walker: Heading) -> &'static str {
     let is = |other: Heading| gaze.turn_to(other).abs() < SAME_RAD;
     if is(walker) {
         return "ahead";
     }
-    Compass::ALL
+    CompassPoint::ALL
         .into_iter()
-        .find(|point| is(point.heading()))
-        .map_or_else(|| side_words(walker.side_of(gaze)), Compass::word)
+        .find(|point| is(point.to_heading()))
+        .map_or_else(|| side_words(walker.side_of(gaze)), CompassPoint::word)
 }
 
 /// The name of the icon for a turn, in the page's `signs.html`.
-fn turn_sign(turn: Turn) -> &'static str {
+fn turn_sign(turn: TurnKind) -> &'static str {
     match turn {
-        Turn::Straight => "straight",
-        Turn::SlightLeft => "slight-left",
-        Turn::SlightRight => "slight-right",
-        Turn::Left => "left",
-        Turn::Right => "right",
-        Turn::Around => "around",
+        TurnKind::Straight => "straight",
+        TurnKind::SlightLeft => "slight-left",
+        TurnKind::SlightRight => "slight-right",
+        TurnKind::Left => "left",
+        TurnKind::Right => "right",
+        TurnKind::Around => "around",
     }
 }
 
-fn move_words(step: &Move) -> String {
+fn move_words(step: &PathMove) -> String {
     let deg = step.turn_rad.to_degrees().abs().round();
     let side = if step.turn_rad < 0.0 { "left" } else { "right" };
     let turn = match step.turn() {
-        Turn::Straight => String::new(),
-        Turn::Around => format!("turn around ({deg}° {side}), "),
-        Turn::SlightLeft | Turn::SlightRight => format!("bear {deg}° {side}, "),
-        Turn::Left | Turn::Right => format!("turn {deg}° {side}, "),
+        TurnKind::Straight => String::new(),
+        TurnKind::Around => format!("turn around ({deg}° {side}), "),
+        TurnKind::SlightLeft | TurnKind::SlightRight => format!("bear {deg}° {side}, "),
+        TurnKind::Left | TurnKind::Right => format!("turn {deg}° {side}, "),
     };
     let climb = match step.climb() {
-        Climb::Level => String::new(),
-        Climb::Up => format!(", {:.1} m up", step.rise_m),
-        Climb::Down => format!(", {:.1} m down", -step.rise_m),
+        ClimbDirection::Level => String::new(),
+        ClimbDirection::Up => format!(", {:.1} m up", step.rise_m),
+        ClimbDirection::Down => format!(", {:.1} m down", -step.rise_m),
     };
     format!("{turn}go {:.1} m{climb}", step.distance_m)
 }
@@ -221,10 +226,10 @@ fn move_words(step: &Move) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use wayword_core::{Caption, Gaze, Spot};
+    use wayword_core::{Caption, DetectionSpot, ViewGaze};
 
-    fn step(deg: f64, rise_m: f64) -> Move {
-        Move { turn_rad: deg.to_radians(), distance_m: 2.04, rise_m }
+    fn step(deg: f64, rise_m: f64) -> PathMove {
+        PathMove { turn_rad: deg.to_radians(), distance_m: 2.04, rise_m }
     }
 
     #[test]
@@ -242,20 +247,23 @@ mod tests {
 
     #[test]
     fn boxes_are_drawn_on_the_picture_that_they_are_in_the_surest_first() {
-        let spot = |score| Some(Spot::new(Found { box_px: [1.0, 2.0, 4.0, 8.0], score }, 10, 1.0));
-        let seen = |name: &str, score| Sighting { spot: spot(score), ..Sighting::new(name, Witness::Seen, "d") };
-        let look = |heading, sightings| Look {
-            gaze: Gaze::quarter(heading),
+        let spot = |score| Some(DetectionSpot::new(DetectedBox { box_px: [1.0, 2.0, 4.0, 8.0], score }, 10, 1.0));
+        let seen = |name: &str, score| ObjectSighting {
+            spot: spot(score),
+            ..ObjectSighting::new(name, WitnessAnswer::Seen, "d")
+        };
+        let look = |heading, sightings| CaptionedView {
+            gaze: ViewGaze::quarter_view(heading),
             caption: Caption { sightings, ..Caption::default() },
         };
-        let denied = Sighting { spot: spot(0.9), ..Sighting::new("bed", Witness::Denied, "d") };
-        let told = Sighting::new("rug", Witness::Seen, "eye");
+        let denied = ObjectSighting { spot: spot(0.9), ..ObjectSighting::new("bed", WitnessAnswer::Denied, "d") };
+        let told = ObjectSighting::new("rug", WitnessAnswer::Seen, "eye");
         let heading = Heading::new(1.0).unwrap();
         let looks = [
             look(heading, vec![seen("lamp", 0.4), seen("sofa", 0.8), denied, told]),
-            look(heading.turned(1.5), vec![seen("door", 0.9)]),
+            look(heading.turned_by(1.5), vec![seen("door", 0.9)]),
         ];
-        let drawn = boxes(&looks, heading);
+        let drawn = box_views(&looks, heading);
         assert_eq!(drawn.iter().map(|drawn| &*drawn.name).collect::<Vec<_>>(), ["sofa", "lamp"]);
         assert_eq!((drawn[0].percent, drawn[0].width, drawn[0].height), (80, 3.0, 6.0));
     }
@@ -263,8 +271,8 @@ mod tests {
     #[test]
     fn direction_names_points_of_the_compass_and_sides() {
         let heading = Heading::new(1.0).unwrap();
-        assert_eq!(direction(heading, heading), "ahead");
-        assert_eq!(direction(Compass::West.heading(), heading), "west");
-        assert_eq!(direction(heading.turned(1.5), heading), "on the right");
+        assert_eq!(direction_words(heading, heading), "ahead");
+        assert_eq!(direction_words(CompassPoint::West.to_heading(), heading), "west");
+        assert_eq!(direction_words(heading.turned_by(1.5), heading), "on the right");
     }
 }

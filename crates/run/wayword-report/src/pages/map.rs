@@ -1,13 +1,13 @@
 //! Computes the map of an item or a replay: converts metres in world coordinates to units of an SVG, north up.
 
 use super::{
-    palette::{Colour, colour},
-    sheet::{Paper, Sheet, tenth},
+    palette::{FrameColour, frame_colour},
+    sheet::{MapSheet, SheetLimits, round_to_tenth},
 };
 use serde::Serialize;
 use std::fmt::Write;
-use wayword_core::{Climb, DVec3, Heading, Path};
-use wayword_run::run_folder::Map;
+use wayword_core::{ClimbDirection, DVec3, Heading, Path};
+use wayword_run::run_folder::PathMap;
 
 /// A map, ready to be drawn.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -19,9 +19,9 @@ pub(super) struct MapView {
     /// Its nodes, as path data: strokes of no length, round at the ends.
     pub(super) nodes: String,
     /// The path, hop by hop.
-    pub(super) hops: Vec<Hop>,
+    pub(super) hops: Vec<MapHop>,
     /// The frames.
-    pub(super) spots: Vec<Spot>,
+    pub(super) spots: Vec<MapSpot>,
     /// Heading at the start, degrees clockwise from north.
     pub(super) start_deg: f64,
     /// Length of the scale bar.
@@ -29,19 +29,19 @@ pub(super) struct MapView {
     /// Its length in the scene, metres.
     pub(super) bar_m: u32,
     /// The annotated path, if the walk is compared with one.
-    pub(super) annotated: Option<Annotated>,
+    pub(super) annotated: Option<AnnotatedPathView>,
 }
 
 /// The path that people annotated.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub(super) struct Annotated {
+pub(super) struct AnnotatedPathView {
     pub(super) data: String,
     pub(super) goal: [f64; 2],
 }
 
 /// A straight line between two frames.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub(super) struct Hop {
+pub(super) struct MapHop {
     pub(super) data: String,
     pub(super) fill: String,
     /// Whether it goes up or down stairs.
@@ -52,7 +52,7 @@ pub(super) struct Hop {
 
 /// A frame on the map.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub(crate) struct Spot {
+pub(crate) struct MapSpot {
     /// Its place on the trail, from 0.
     pub(crate) stop: usize,
     /// The number that is shown.
@@ -64,18 +64,18 @@ pub(crate) struct Spot {
     /// The place of its number: next to the frame if another number is in the way.
     pub(crate) badge: [f64; 2],
     pub(crate) is_aside: bool,
-    pub(crate) colour: Colour,
+    pub(crate) colour: FrameColour,
 }
 
 /// A map as wide as a phone, so that its numbers are readable there. The graph goes on beyond its edge.
-const PAPER: Paper =
-    Paper { most: [360.0, 330.0], least: [220.0, 170.0], padding: 34.0, margin_m: 1.2, most_scale: 42.0 };
+const ITEM_MAP_LIMITS: SheetLimits =
+    SheetLimits { most: [360.0, 330.0], least: [220.0, 170.0], padding: 34.0, margin_m: 1.2, most_scale: 42.0 };
 /// Radius of a frame's number.
-pub(crate) const RADIUS: f64 = 9.5;
+pub(crate) const BADGE_RADIUS: f64 = 9.5;
 /// How near two numbers may come: they may touch, but each has to be readable.
-const LEAST_APART: f64 = 1.5 * RADIUS;
+const LEAST_APART: f64 = 1.5 * BADGE_RADIUS;
 /// How far the control point of a hop back is from the straight line, units.
-const BEND: f64 = 32.0;
+const HOP_BACK_BEND: f64 = 32.0;
 /// Widest part of a scene that is drawn, metres.
 pub(crate) const MOST_SPAN_M: f64 = 2_000.0;
 /// Most nodes and edges of the graph that are drawn.
@@ -83,17 +83,17 @@ pub(crate) const MOST_NODES: usize = 4_000;
 
 impl MapView {
     /// The map of the first `frames` frames, or `None` if their positions are not known or cannot be drawn.
-    pub(super) fn new(path: &Path, map: &Map, frames: usize) -> Option<Self> {
+    pub(super) fn new(path: &Path, map: &PathMap, frames: usize) -> Option<Self> {
         if !path.motion.is_known() {
             return None;
         }
         let stops: Vec<DVec3> = path.frames.iter().take(frames).map(|frame| frame.pose.position).collect();
         let start = path.frames.first()?.pose.heading;
-        Self::draw(map, &Trail::of_frames(&stops, start))
+        Self::draw_trail(map, &MapTrail::of_frames(&stops, start))
     }
 
     /// The map of a trail, or `None` if its positions cannot be drawn.
-    pub(super) fn draw(map: &Map, trail: &Trail<'_>) -> Option<Self> {
+    pub(super) fn draw_trail(map: &PathMap, trail: &MapTrail<'_>) -> Option<Self> {
         let first = *trail.stops.first()?;
         let is_near = |x: f64, y: f64| (x - first.x).abs() <= MOST_SPAN_M && (y - first.y).abs() <= MOST_SPAN_M;
         let on_it = || trail.stops.iter().chain(trail.annotated);
@@ -102,27 +102,27 @@ impl MapView {
         }
         let nodes: Vec<Option<[f64; 2]>> =
             map.nodes.iter().take(MOST_NODES).map(|[x, y]| is_near(*x, *y).then_some([*x, *y])).collect();
-        let sheet = Sheet::around(on_it().map(|stop| [stop.x, stop.y]), &PAPER)?;
-        let places: Vec<Option<[f64; 2]>> = nodes.iter().map(|node| node.map(|node| sheet.place(node))).collect();
-        let at: Vec<[f64; 2]> = trail.stops.iter().map(|stop| sheet.place([stop.x, stop.y])).collect();
-        let (bar, bar_m) = sheet.bar();
+        let sheet = MapSheet::around_points(on_it().map(|stop| [stop.x, stop.y]), &ITEM_MAP_LIMITS)?;
+        let places: Vec<Option<[f64; 2]>> = nodes.iter().map(|node| node.map(|node| sheet.place_point(node))).collect();
+        let at: Vec<[f64; 2]> = trail.stops.iter().map(|stop| sheet.place_point([stop.x, stop.y])).collect();
+        let (bar, bar_m) = sheet.scale_bar();
         Some(Self {
             width: sheet.size[0],
             height: sheet.size[1],
-            edges: edges(&places, &map.edges),
-            nodes: dots(&places),
-            hops: hops(trail, &at),
-            spots: spots(trail, &at, sheet.size),
-            start_deg: tenth(trail.start.deg()),
+            edges: edge_data(&places, &map.edges),
+            nodes: dot_data(&places),
+            hops: map_hops(trail, &at),
+            spots: place_spots(trail, &at, sheet.size),
+            start_deg: round_to_tenth(trail.start.deg()),
             bar,
             bar_m,
-            annotated: annotated(trail.annotated, &sheet),
+            annotated: annotated_path(trail.annotated, &sheet),
         })
     }
 }
 
 /// A walk to be drawn on a map; positions in metres, world frame.
-pub(crate) struct Trail<'a> {
+pub(crate) struct MapTrail<'a> {
     pub(crate) stops: &'a [DVec3],
     /// The heading at the start.
     pub(crate) start: Heading,
@@ -136,24 +136,24 @@ pub(crate) struct Trail<'a> {
     pub(crate) is_numbered_once: bool,
 }
 
-impl<'a> Trail<'a> {
+impl<'a> MapTrail<'a> {
     /// The frames of a path, numbered from 0 as in run folders and on the terminal.
     pub(crate) fn of_frames(stops: &'a [DVec3], start: Heading) -> Self {
         Self { stops, start, backs: &[], annotated: &[], first_number: 0, is_numbered_once: false }
     }
 }
 
-fn edges(places: &[Option<[f64; 2]>], edges: &[[usize; 2]]) -> String {
+fn edge_data(places: &[Option<[f64; 2]>], edges: &[[usize; 2]]) -> String {
     let mut data = String::new();
     for [from, to] in edges.iter().take(2 * MOST_NODES) {
         if let (Some(Some(from)), Some(Some(to))) = (places.get(*from), places.get(*to)) {
-            data.push_str(&line(*from, *to));
+            data.push_str(&line_data(*from, *to));
         }
     }
     data
 }
 
-fn dots(places: &[Option<[f64; 2]>]) -> String {
+fn dot_data(places: &[Option<[f64; 2]>]) -> String {
     places.iter().flatten().fold(String::new(), |mut data, [x, y]| {
         // Writing to a text cannot fail.
         let _ = write!(data, "M{x} {y}h0");
@@ -161,17 +161,17 @@ fn dots(places: &[Option<[f64; 2]>]) -> String {
     })
 }
 
-fn line(from: [f64; 2], to: [f64; 2]) -> String {
+fn line_data(from: [f64; 2], to: [f64; 2]) -> String {
     format!("M{} {}L{} {}", from[0], from[1], to[0], to[1])
 }
 
-fn hops(trail: &Trail<'_>, at: &[[f64; 2]]) -> Vec<Hop> {
+fn map_hops(trail: &MapTrail<'_>, at: &[[f64; 2]]) -> Vec<MapHop> {
     let hop = |from: usize| {
         let is_back = trail.backs.get(from).is_some_and(|is_back| *is_back);
-        Hop {
-            data: if is_back { bow(at[from], at[from + 1]) } else { line(at[from], at[from + 1]) },
-            fill: colour(from, at.len()).fill,
-            climbs: Climb::from_rise(trail.stops[from + 1].z - trail.stops[from].z) != Climb::Level,
+        MapHop {
+            data: if is_back { bow_data(at[from], at[from + 1]) } else { line_data(at[from], at[from + 1]) },
+            fill: frame_colour(from, at.len()).fill,
+            climbs: ClimbDirection::from_rise(trail.stops[from + 1].z - trail.stops[from].z) != ClimbDirection::Level,
             is_back,
         }
     };
@@ -179,49 +179,51 @@ fn hops(trail: &Trail<'_>, at: &[[f64; 2]]) -> Vec<Hop> {
 }
 
 /// A bent line, so that a hop back does not hide the hop there.
-fn bow(from: [f64; 2], to: [f64; 2]) -> String {
+fn bow_data(from: [f64; 2], to: [f64; 2]) -> String {
     let [x, y] = [0, 1].map(|axis| to[axis] - from[axis]);
     let length = x.hypot(y).max(1.0);
-    let over = [(from[0] + to[0]) / 2.0 - y / length * BEND, (from[1] + to[1]) / 2.0 + x / length * BEND].map(tenth);
+    let over =
+        [(from[0] + to[0]) / 2.0 - y / length * HOP_BACK_BEND, (from[1] + to[1]) / 2.0 + x / length * HOP_BACK_BEND]
+            .map(round_to_tenth);
     format!("M{} {}Q{} {} {} {}", from[0], from[1], over[0], over[1], to[0], to[1])
 }
 
-fn annotated(path: &[DVec3], sheet: &Sheet) -> Option<Annotated> {
-    let at: Vec<[f64; 2]> = path.iter().map(|stop| sheet.place([stop.x, stop.y])).collect();
+fn annotated_path(path: &[DVec3], sheet: &MapSheet) -> Option<AnnotatedPathView> {
+    let at: Vec<[f64; 2]> = path.iter().map(|stop| sheet.place_point([stop.x, stop.y])).collect();
     let data = at.iter().zip("M".chars().chain(std::iter::repeat('L'))).map(|([x, y], verb)| format!("{verb}{x} {y}"));
-    Some(Annotated { data: data.collect(), goal: *at.last()? })
+    Some(AnnotatedPathView { data: data.collect(), goal: *at.last()? })
 }
 
 /// The eight directions in which a number may move aside, the most usual first.
-const WAYS: [[f64; 2]; 8] =
+const ASIDE_DIRECTIONS: [[f64; 2]; 8] =
     [[1.0, 0.0], [0.0, -1.0], [-1.0, 0.0], [0.0, 1.0], [0.7, -0.7], [-0.7, -0.7], [0.7, 0.7], [-0.7, 0.7]];
 
 /// Puts each number on its frame, or next to it where an earlier number is in the way (stairs, loops, close frames).
-pub(crate) fn spots(trail: &Trail<'_>, at: &[[f64; 2]], size: [f64; 2]) -> Vec<Spot> {
+pub(crate) fn place_spots(trail: &MapTrail<'_>, at: &[[f64; 2]], size: [f64; 2]) -> Vec<MapSpot> {
     let first_at = |stop: usize| {
         let earlier = trail.stops.iter().position(|other| *other == trail.stops[stop]);
         earlier.filter(|_| trail.is_numbered_once).unwrap_or(stop)
     };
     let last = at.len().checked_sub(1).map(first_at);
-    let mut spots: Vec<Spot> = Vec::new();
+    let mut spots: Vec<MapSpot> = Vec::new();
     for (stop, place) in at.iter().enumerate().filter(|(stop, _)| first_at(*stop) == *stop) {
         let is_free = |spot: &[f64; 2]| {
-            let is_inside = (0..2).all(|axis| spot[axis] >= RADIUS && spot[axis] <= size[axis] - RADIUS);
+            let is_inside = (0..2).all(|axis| spot[axis] >= BADGE_RADIUS && spot[axis] <= size[axis] - BADGE_RADIUS);
             is_inside
                 && spots.iter().all(|other| (spot[0] - other.badge[0]).hypot(spot[1] - other.badge[1]) >= LEAST_APART)
         };
-        let beside = [2.3, 3.6, 5.0]
-            .into_iter()
-            .flat_map(|far| WAYS.map(|way| [0, 1].map(|axis| tenth(place[axis] + way[axis] * far * RADIUS))));
+        let beside = [2.3, 3.6, 5.0].into_iter().flat_map(|far| {
+            ASIDE_DIRECTIONS.map(|way| [0, 1].map(|axis| round_to_tenth(place[axis] + way[axis] * far * BADGE_RADIUS)))
+        });
         let badge = std::iter::once(*place).chain(beside).find(is_free).unwrap_or(*place);
-        spots.push(Spot {
+        spots.push(MapSpot {
             stop,
             number: trail.first_number + stop,
             is_last: last == Some(stop),
             at: *place,
             badge,
             is_aside: *place != badge,
-            colour: colour(stop, at.len()),
+            colour: frame_colour(stop, at.len()),
         });
     }
     spots
@@ -230,11 +232,11 @@ pub(crate) fn spots(trail: &Trail<'_>, at: &[[f64; 2]], size: [f64; 2]) -> Vec<S
 #[cfg(test)]
 mod tests {
     use super::*;
-    use wayword_core::{Frame, Motion, Pose, SceneId};
+    use wayword_core::{Frame, PathMotion, Pose, SceneId};
 
     fn path(stops: &[[f64; 3]]) -> Path {
         let frame = |[x, y, z]: &[f64; 3]| Frame {
-            pose: Pose::level(DVec3::new(*x, *y, *z), Heading::NORTH),
+            pose: Pose::looking_level(DVec3::new(*x, *y, *z), Heading::NORTH),
             viewpoint: None,
             level: None,
         };
@@ -242,13 +244,13 @@ mod tests {
             id: "p".into(),
             scene: SceneId::new("s").unwrap(),
             frames: stops.iter().map(frame).collect(),
-            motion: Motion::Known,
+            motion: PathMotion::Known,
             target: None,
         }
     }
 
     fn map_of(stops: &[[f64; 3]]) -> Option<MapView> {
-        MapView::new(&path(stops), &Map::default(), stops.len())
+        MapView::new(&path(stops), &PathMap::default(), stops.len())
     }
 
     #[test]
@@ -272,7 +274,7 @@ mod tests {
             for place in map.spots.iter().flat_map(|spot| [spot.at, spot.badge]) {
                 assert!((0.0..=map.width).contains(&place[0]) && (0.0..=map.height).contains(&place[1]), "{place:?}");
             }
-            assert!(map.width <= PAPER.most[0] && map.height <= PAPER.most[1]);
+            assert!(map.width <= ITEM_MAP_LIMITS.most[0] && map.height <= ITEM_MAP_LIMITS.most[1]);
         }
     }
 
@@ -293,7 +295,7 @@ mod tests {
     fn a_way_back_is_bent_to_where_a_number_is_and_the_annotated_path_is_on_the_sheet() {
         let stops = [[0.0, 0.0], [0.0, 3.0], [0.0, 0.0]].map(|[x, y]| DVec3::new(x, y, 0.0));
         let annotated = [stops[0], DVec3::new(30.0, 0.0, 0.0)];
-        let trail = Trail {
+        let trail = MapTrail {
             stops: &stops,
             start: Heading::NORTH,
             backs: &[false, true],
@@ -301,7 +303,7 @@ mod tests {
             first_number: 1,
             is_numbered_once: true,
         };
-        let map = MapView::draw(&Map::default(), &trail).unwrap();
+        let map = MapView::draw_trail(&PathMap::default(), &trail).unwrap();
         assert_eq!(map.hops.iter().map(|hop| hop.is_back).collect::<Vec<_>>(), [false, true]);
         let numbers: Vec<(usize, bool)> = map.spots.iter().map(|spot| (spot.number, spot.is_last)).collect();
         assert_eq!(numbers, [(1, true), (2, false)]);
@@ -309,14 +311,15 @@ mod tests {
         let annotated = map.annotated.unwrap();
         assert!((0.0..=map.width).contains(&annotated.goal[0]) && annotated.goal[0] > map.spots[0].at[0] + 100.0);
         let far = [DVec3::new(1e300, 0.0, 0.0)];
-        assert_eq!(MapView::draw(&Map::default(), &Trail { annotated: &far, ..trail }), None);
+        assert_eq!(MapView::draw_trail(&PathMap::default(), &MapTrail { annotated: &far, ..trail }), None);
     }
 
     #[test]
     fn hostile_numbers_make_no_map_and_hostile_edges_are_left_out() {
         assert_eq!(map_of(&[[0.0; 3], [1e300, 0.0, 0.0]]), None);
         assert_eq!(map_of(&[]), None);
-        let map = Map { nodes: vec![[0.0, 0.0], [f64::MAX, 0.0], [1.0, 1.0]], edges: vec![[0, 1], [0, 99], [0, 2]] };
+        let map =
+            PathMap { nodes: vec![[0.0, 0.0], [f64::MAX, 0.0], [1.0, 1.0]], edges: vec![[0, 1], [0, 99], [0, 2]] };
         let view = MapView::new(&path(&[[0.0; 3]]), &map, 1).unwrap();
         assert_eq!((view.edges.matches('M').count(), view.nodes.matches('M').count()), (1, 2));
     }

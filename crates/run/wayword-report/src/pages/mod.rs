@@ -24,14 +24,14 @@ pub(crate) mod sheet;
 mod spans;
 mod texts;
 
-use book::{Book, WALKS_PER_PAGE};
+use book::{ReportFiles, WALKS_PER_PAGE};
 use minijinja::{AutoEscape, Environment, UndefinedBehavior, Value, context};
 use model::ItemView;
-use page::PageView;
-use pictures::Pictures;
-use places::anchor;
-use records::Records;
-use rows::Rows;
+use page::ReportPageView;
+use pictures::PagePictures;
+use places::item_anchor;
+use records::ReportRecords;
+use rows::TextList;
 use serde::Serialize;
 use std::{
     fmt,
@@ -40,11 +40,11 @@ use std::{
     ops::Range,
     path::{Path, PathBuf},
 };
-use wayword_run::{count::count, error::Error};
+use wayword_run::{count::count_phrase, error::CommandError};
 
 /// Result of a report: its files, and how much of the run they show.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct Written {
+pub struct WrittenReport {
     /// The page, or the overview where there are several.
     pub page: String,
     /// Pages of paths, in their order.
@@ -59,18 +59,18 @@ pub struct Written {
     pub pictures_left_out: usize,
 }
 
-impl fmt::Display for Written {
+impl fmt::Display for WrittenReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", self.page)?;
         if let (Some(first), Some(last)) = (self.pages.first(), self.pages.last()) {
-            write!(f, " and {} beside it, {first} to {last}", count(self.pages.len(), "page"))?;
+            write!(f, " and {} beside it, {first} to {last}", count_phrase(self.pages.len(), "page"))?;
         }
-        write!(f, ": {}, {}", count(self.items, "item"), count(self.pictures, "picture"))?;
+        write!(f, ": {}, {}", count_phrase(self.items, "item"), count_phrase(self.pictures, "picture"))?;
         if self.left_out > 0 {
-            write!(f, "; {} left out (--items N shows more)", count(self.left_out, "item"))?;
+            write!(f, "; {} left out (--items N shows more)", count_phrase(self.left_out, "item"))?;
         }
         if self.pictures_left_out > 0 {
-            write!(f, "; {} left out", count(self.pictures_left_out, "picture"))?;
+            write!(f, "; {} left out", count_phrase(self.pictures_left_out, "picture"))?;
         }
         Ok(())
     }
@@ -82,71 +82,77 @@ impl fmt::Display for Written {
 /// # Errors
 /// When `run` is not a run folder, a line of it is not of its kind, another report's file is where a page of paths
 /// belongs, or a page cannot be written.
-pub fn write(run: &Path, out: &Path, most_items: usize) -> Result<Written, Error> {
+pub fn write_report(run: &Path, out: &Path, most_items: usize) -> Result<WrittenReport, CommandError> {
     write_paged(run, out, most_items, WALKS_PER_PAGE)
 }
 
-fn write_paged(run: &Path, out: &Path, most_items: usize, per_page: usize) -> Result<Written, Error> {
-    let records = Records::read(run, most_items)?;
-    let book = Book::new(out, run, records.items.len(), per_page);
+fn write_paged(run: &Path, out: &Path, most_items: usize, per_page: usize) -> Result<WrittenReport, CommandError> {
+    let records = ReportRecords::read_run(run, most_items)?;
+    let book = ReportFiles::new(out, run, records.items.len(), per_page);
     book.refuse_to_replace_others()?;
-    let mut written = Written {
+    let mut written = WrittenReport {
         page: out.display().to_string(),
-        pages: (1..=book.pages()).map(|page| book.file(page).display().to_string()).collect(),
+        pages: (1..=book.page_count()).map(|page| book.page_file(page).display().to_string()).collect(),
         items: records.items.len(),
         left_out: records.left_out,
         pictures: 0,
         pictures_left_out: 0,
     };
-    let templates = templates().map_err(broken)?;
-    let sheet = Sheet { records: &records, book: &book, templates: &templates, run };
+    let templates = load_templates().map_err(template_error)?;
+    let sheet = ReportPageSource { records: &records, book: &book, templates: &templates, run };
     let mut unfinished = Vec::new();
-    for page in (1..=book.pages()).map(Some).chain([None]) {
-        let file = page.map_or_else(|| out.to_owned(), |page| book.file(page));
-        let (made, pictures) = Unfinished::write(&file, |take| sheet.draw(page, take))?;
+    for page in (1..=book.page_count()).map(Some).chain([None]) {
+        let file = page.map_or_else(|| out.to_owned(), |page| book.page_file(page));
+        let (made, pictures) = UnfinishedPage::write_aside(&file, |take| sheet.draw_page(page, take))?;
         unfinished.push(made);
         written.pictures += pictures.shown;
         written.pictures_left_out += pictures.left_out;
     }
-    unfinished.into_iter().try_for_each(Unfinished::finish)?;
+    unfinished.into_iter().try_for_each(UnfinishedPage::finish)?;
     book.remove_older_pages()?;
     Ok(written)
 }
 
 /// Receives a page part by part, and writes or stores it.
-type Take<'a> = dyn FnMut(&str) -> Result<(), Error> + 'a;
+type PageSink<'a> = dyn FnMut(&str) -> Result<(), CommandError> + 'a;
 
 /// Writes a page; it replaces an old one only when it is complete.
-fn replace<T>(out: &Path, render: impl FnOnce(&mut Take<'_>) -> Result<T, Error>) -> Result<T, Error> {
-    let (page, told) = Unfinished::write(out, render)?;
+fn replace_page<T>(
+    out: &Path,
+    render: impl FnOnce(&mut PageSink<'_>) -> Result<T, CommandError>,
+) -> Result<T, CommandError> {
+    let (page, told) = UnfinishedPage::write_aside(out, render)?;
     page.finish()?;
     Ok(told)
 }
 
 /// A page under a temporary name. If it is dropped before it is finished, it is removed.
-struct Unfinished {
+struct UnfinishedPage {
     file: PathBuf,
     out: PathBuf,
 }
 
-impl Unfinished {
-    fn write<T>(out: &Path, render: impl FnOnce(&mut Take<'_>) -> Result<T, Error>) -> Result<(Self, T), Error> {
+impl UnfinishedPage {
+    fn write_aside<T>(
+        out: &Path,
+        render: impl FnOnce(&mut PageSink<'_>) -> Result<T, CommandError>,
+    ) -> Result<(Self, T), CommandError> {
         let mut name = out.file_name().unwrap_or_default().to_owned();
         name.push(".new");
         let unfinished = Self { file: out.with_file_name(name), out: out.to_owned() };
         let file = &unfinished.file;
-        let mut page = BufWriter::new(File::create(file).map_err(Error::io(file, "write"))?);
-        let told = render(&mut |part| page.write_all(part.as_bytes()).map_err(Error::io(file, "write")))?;
-        page.into_inner().map_err(io::IntoInnerError::into_error).map_err(Error::io(file, "write"))?;
+        let mut page = BufWriter::new(File::create(file).map_err(CommandError::io(file, "write"))?);
+        let told = render(&mut |part| page.write_all(part.as_bytes()).map_err(CommandError::io(file, "write")))?;
+        page.into_inner().map_err(io::IntoInnerError::into_error).map_err(CommandError::io(file, "write"))?;
         Ok((unfinished, told))
     }
 
-    fn finish(self) -> Result<(), Error> {
-        fs::rename(&self.file, &self.out).map_err(Error::io(&self.out, "write"))
+    fn finish(self) -> Result<(), CommandError> {
+        fs::rename(&self.file, &self.out).map_err(CommandError::io(&self.out, "write"))
     }
 }
 
-impl Drop for Unfinished {
+impl Drop for UnfinishedPage {
     fn drop(&mut self) {
         // After `finish` the file has another name, and this call fails without harm.
         let _ = fs::remove_file(&self.file);
@@ -154,20 +160,20 @@ impl Drop for Unfinished {
 }
 
 /// Everything from which the pages of a report are drawn.
-struct Sheet<'a> {
-    records: &'a Records,
-    book: &'a Book<'a>,
+struct ReportPageSource<'a> {
+    records: &'a ReportRecords,
+    book: &'a ReportFiles<'a>,
     templates: &'a Environment<'static>,
     run: &'a Path,
 }
 
-impl Sheet<'_> {
+impl ReportPageSource<'_> {
     /// Draws a page of paths (from 1), or the overview for `None`, and hands it to `take` part by part.
-    fn draw(&self, page: Option<usize>, take: &mut Take<'_>) -> Result<Pictures, Error> {
+    fn draw_page(&self, page: Option<usize>, take: &mut PageSink<'_>) -> Result<PagePictures, CommandError> {
         let Self { records, book, .. } = self;
-        let pager = book.pager(page);
+        let pager = book.pager_for_page(page);
         let walks: Range<usize> = match page {
-            Some(page) => book.walks(page),
+            Some(page) => book.walks_on_page(page),
             None if pager.is_none() => 0..records.items.len(),
             None => 0..0,
         };
@@ -180,12 +186,12 @@ impl Sheet<'_> {
                 self.draw_part("leaf.html", view, take)?;
             }
             None => {
-                let rows = Rows::of(records, |walk| book.address(walk, &anchor(walk + 1)));
-                let view = context! { ..Value::from_serialize(PageView::new(records)), ..Value::from_serialize(rows), ..around.clone() };
+                let rows = TextList::from_records(records, |walk| book.walk_address(walk, &item_anchor(walk + 1)));
+                let view = context! { ..Value::from_serialize(ReportPageView::new(records)), ..Value::from_serialize(rows), ..around.clone() };
                 self.draw_part("head.html", view, take)?;
             }
         }
-        let mut pictures = Pictures::of(self.run);
+        let mut pictures = PagePictures::from_run(self.run);
         for (at, record) in walks.clone().zip(&records.items[walks]) {
             let view = Value::from_serialize(ItemView::new(at + 1, record, &mut pictures));
             self.draw_part("item.html", view, take)?;
@@ -195,20 +201,20 @@ impl Sheet<'_> {
         Ok(pictures)
     }
 
-    fn draw_part(&self, name: &str, view: Value, take: &mut Take<'_>) -> Result<(), Error> {
+    fn draw_part(&self, name: &str, view: Value, take: &mut PageSink<'_>) -> Result<(), CommandError> {
         let part = self.templates.get_template(name).and_then(|template| template.render(view));
-        take(&part.map_err(broken)?)
+        take(&part.map_err(template_error)?)
     }
 }
 
-fn templates() -> Result<Environment<'static>, minijinja::Error> {
+fn load_templates() -> Result<Environment<'static>, minijinja::Error> {
     let mut templates = Environment::new();
     templates.set_undefined_behavior(UndefinedBehavior::Strict);
     templates.set_auto_escape_callback(|name| if name.ends_with(".css") { AutoEscape::None } else { AutoEscape::Html });
     templates.set_trim_blocks(true);
     templates.set_lstrip_blocks(true);
     templates.set_keep_trailing_newline(true);
-    templates.add_function("count", |number: u64, of: &str| count(number, of));
+    templates.add_function("count", |number: u64, of: &str| count_phrase(number, of));
     templates.add_template("style.css", include_str!("style.css"))?;
     templates.add_template("signs.html", include_str!("signs.html"))?;
     templates.add_template("open.html", include_str!("open.html"))?;
@@ -236,8 +242,8 @@ fn templates() -> Result<Environment<'static>, minijinja::Error> {
 
 // A closure's argument cannot be a reference where `map_err` gives the value away.
 #[allow(clippy::needless_pass_by_value)]
-fn broken(error: minijinja::Error) -> Error {
-    Error::usage(format!("the page cannot be drawn: {error:#}"), "report this as a bug")
+fn template_error(error: minijinja::Error) -> CommandError {
+    CommandError::usage(format!("the page cannot be drawn: {error:#}"), "report this as a bug")
 }
 
 #[cfg(test)]

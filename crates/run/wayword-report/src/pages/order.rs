@@ -2,48 +2,53 @@
 //! ones, then the others.
 
 use super::{
-    records::{PathOf, take},
+    records::{PathLine, take_bytes},
     texts::TextState,
 };
 use std::{collections::BTreeMap, path::Path};
-use wayword_run::{error::Error, run_folder::lines};
+use wayword_run::{error::CommandError, run_folder::lines};
 
 /// The worst state of each item's texts; items that are missing here passed.
 #[derive(Default)]
-pub(super) struct Worst(BTreeMap<String, TextState>);
+pub(super) struct WorstStates(BTreeMap<String, TextState>);
 
 /// The places of the shown items in the report, by the number of their line in the file of paths.
-pub(super) struct Order {
+pub(super) struct ItemOrder {
     places: BTreeMap<usize, usize>,
     left_bytes: usize,
 }
 
-impl Worst {
+impl WorstStates {
     /// Notes the state of a text.
-    pub(super) fn take(&mut self, item: String, state: TextState) {
+    pub(super) fn note_state(&mut self, item: String, state: TextState) {
         if state != TextState::Passed {
             let worst = self.0.entry(item).or_insert(state);
             *worst = (*worst).min(state);
         }
     }
 
-    fn of(&self, item: &str) -> TextState {
+    fn state_of_item(&self, item: &str) -> TextState {
         self.0.get(item).copied().unwrap_or(TextState::Passed)
     }
 }
 
-impl Order {
+impl ItemOrder {
     /// The first `most` items of a file of paths, the worst before the others, as long as their lines fit into
     /// `most_bytes`.
     ///
     /// # Errors
     /// When the file cannot be read, or a line names no path.
-    pub(super) fn of(walks: &Path, most: usize, most_bytes: usize, worst: &Worst) -> Result<Self, Error> {
+    pub(super) fn from_walks(
+        walks: &Path,
+        most: usize,
+        most_bytes: usize,
+        worst: &WorstStates,
+    ) -> Result<Self, CommandError> {
         let mut found: BTreeMap<TextState, Vec<(usize, usize)>> = BTreeMap::new();
         let mut number = 0;
-        lines::each(walks, |line| {
-            let named: PathOf = line.parse()?;
-            let same = found.entry(worst.of(&named.path.id)).or_default();
+        lines::each_line(walks, |line| {
+            let named: PathLine = line.parse()?;
+            let same = found.entry(worst.state_of_item(&named.path.id)).or_default();
             if same.len() < most {
                 same.push((number, line.len()));
             }
@@ -53,13 +58,13 @@ impl Order {
         let mut left_bytes = most_bytes;
         let in_order = found.into_values().flatten().take(most);
         // Once one is left out, all after it are too, so that the report shows the first items and not the small ones.
-        let fitting = in_order.map_while(|(number, bytes)| take(&mut left_bytes, bytes).then_some(number));
+        let fitting = in_order.map_while(|(number, bytes)| take_bytes(&mut left_bytes, bytes).then_some(number));
         let places = fitting.enumerate().map(|(place, number)| (number, place)).collect();
         Ok(Self { places, left_bytes })
     }
 
     /// The place of a line's item in the report; `None` if it is not shown.
-    pub(super) fn place(&self, line: usize) -> Option<usize> {
+    pub(super) fn place_of_line(&self, line: usize) -> Option<usize> {
         self.places.get(&line).copied()
     }
 
@@ -78,17 +83,21 @@ mod tests {
         let file = folder.path().join("walks.jsonl");
         let line = |id: &str| format!("{{\"path\":{{\"id\":\"{id}\"}}}}\n");
         std::fs::write(&file, ["a", "b", "c", "d"].map(line).concat()).unwrap();
-        let mut worst = Worst::default();
+        let mut worst = WorstStates::default();
         for (item, state) in [
             ("b", TextState::Unverified),
             ("d", TextState::Passed),
             ("d", TextState::Rejected),
             ("d", TextState::Unverified),
         ] {
-            worst.take(item.to_owned(), state);
+            worst.note_state(item.to_owned(), state);
         }
-        let order = Order::of(&file, most, most_bytes, &worst).unwrap();
-        (0..4).filter_map(|line| Some((order.place(line)?, line))).collect::<BTreeMap<_, _>>().into_iter().collect()
+        let order = ItemOrder::from_walks(&file, most, most_bytes, &worst).unwrap();
+        (0..4)
+            .filter_map(|line| Some((order.place_of_line(line)?, line)))
+            .collect::<BTreeMap<_, _>>()
+            .into_iter()
+            .collect()
     }
 
     #[test]

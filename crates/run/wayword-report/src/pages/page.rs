@@ -1,20 +1,20 @@
 //! The top of a report: settings, roles and results of the run.
 
-use super::records::{Counts, Records, RolesPlayed};
+use super::records::{ReportRecords, RolesPlayed, StyleCounts};
 use serde::Serialize;
 use std::path::Path;
 use wayword_run::{
     platforms::has_hops,
-    settings::{Perception, Settings, Sources, TargetMode},
+    settings::{EvidenceSources, Perception, RunSettings, TargetMode},
 };
 use wayword_synthesis::walk::FrameSelection;
 
 /// The template's values for the top of the report.
 #[derive(Debug, Serialize)]
-pub(super) struct PageView {
+pub(super) struct ReportPageView {
     settings: Vec<(&'static str, String)>,
     roles: Vec<RolesView>,
-    outcome: Vec<StyleView>,
+    outcome: Vec<StyleOutcomeView>,
     left_out: usize,
     /// Items that failed, shown or not.
     failed: usize,
@@ -30,7 +30,7 @@ struct RolesView {
 }
 
 #[derive(Debug, Serialize)]
-struct StyleView {
+struct StyleOutcomeView {
     name: String,
     passed: usize,
     unverified: usize,
@@ -38,9 +38,9 @@ struct StyleView {
     ambiguous: usize,
 }
 
-impl PageView {
-    pub(super) fn new(records: &Records) -> Self {
-        let style = |(name, counts): (&String, &Counts)| StyleView {
+impl ReportPageView {
+    pub(super) fn new(records: &ReportRecords) -> Self {
+        let style = |(name, counts): (&String, &StyleCounts)| StyleOutcomeView {
             name: name.clone(),
             passed: counts.passed,
             unverified: counts.unverified,
@@ -48,8 +48,8 @@ impl PageView {
             ambiguous: counts.ambiguous,
         };
         Self {
-            settings: settings(&records.settings),
-            roles: records.roles.iter().map(roles).collect(),
+            settings: settings_in_words(&records.settings),
+            roles: records.roles.iter().map(role_lines).collect(),
             outcome: records.counts.iter().map(style).collect(),
             left_out: records.left_out,
             failed: records.failed.len() + records.failed_left_out,
@@ -60,7 +60,7 @@ impl PageView {
 }
 
 /// Each role's part in the work, in words that distinguish ground truth from perception.
-fn roles(roles: &RolesPlayed) -> RolesView {
+fn role_lines(roles: &RolesPlayed) -> RolesView {
     let answered = match roles.answerer.as_str() {
         "labels" => "answered: ground truth of the platform, not perception",
         _ => "answered: perception by a model",
@@ -89,7 +89,7 @@ fn roles(roles: &RolesPlayed) -> RolesView {
 }
 
 /// The settings in words, without folders: a page that is passed on should not reveal its maker's machine.
-fn settings(settings: &Settings) -> Vec<(&'static str, String)> {
+fn settings_in_words(settings: &RunSettings) -> Vec<(&'static str, String)> {
     let file = |path: &Path| path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     let (hops, length_m) = (&settings.request.hops, &settings.request.length_m);
     let hops = match has_hops(settings) {
@@ -121,7 +121,7 @@ fn settings(settings: &Settings) -> Vec<(&'static str, String)> {
         TargetMode::Given => "given to the writer",
         TargetMode::Free => "the writer's choice",
     };
-    let Sources { labels, captions, detector } = settings.evidence;
+    let EvidenceSources { labels, captions, detector } = settings.evidence;
     let heard = match (captions, detector) {
         (true, true) => "captions and the detector",
         (false, true) => "the detector only",

@@ -5,14 +5,14 @@ use serde::Serialize;
 
 /// A colour and the colour of a number on it, in CSS.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub(crate) struct Colour {
+pub(crate) struct FrameColour {
     pub(crate) fill: String,
     pub(crate) ink: &'static str,
 }
 
 /// Viridis (CC0, Smith and van der Walt) at eighths, without the last, because that yellow is hard to see on white
 /// paper.
-const STEPS: [[u8; 3]; 8] = [
+const VIRIDIS_STEPS: [[u8; 3]; 8] = [
     [68, 1, 84],
     [71, 44, 122],
     [59, 81, 139],
@@ -26,18 +26,18 @@ const STEPS: [[u8; 3]; 8] = [
 const WHITE_UNTIL: usize = 498;
 
 /// The colour of frame `at` (from 0) of `frames`.
-pub(crate) fn colour(at: usize, frames: usize) -> Colour {
+pub(crate) fn frame_colour(at: usize, frames: usize) -> FrameColour {
     let last = frames.saturating_sub(1).max(1);
     let thousandths = at.min(last) * 1000 / last;
-    let along = thousandths * (STEPS.len() - 1);
-    let (step, rest) = ((along / 1000).min(STEPS.len() - 2), along);
+    let along = thousandths * (VIRIDIS_STEPS.len() - 1);
+    let (step, rest) = ((along / 1000).min(VIRIDIS_STEPS.len() - 2), along);
     let rest = rest - step * 1000;
     let mix = |channel: usize| {
-        let (from, to) = (usize::from(STEPS[step][channel]), usize::from(STEPS[step + 1][channel]));
+        let (from, to) = (usize::from(VIRIDIS_STEPS[step][channel]), usize::from(VIRIDIS_STEPS[step + 1][channel]));
         (from * (1000 - rest) + to * rest + 500) / 1000
     };
     let fill = format!("#{:02x}{:02x}{:02x}", mix(0), mix(1), mix(2));
-    Colour { fill, ink: if thousandths <= WHITE_UNTIL { "#fff" } else { "#000" } }
+    FrameColour { fill, ink: if thousandths <= WHITE_UNTIL { "#fff" } else { "#000" } }
 }
 
 #[cfg(test)]
@@ -60,14 +60,14 @@ mod tests {
 
     #[test]
     fn later_frames_are_lighter() {
-        let lights: Vec<f64> = (0..8).map(|at| luminance(&colour(at, 8).fill)).collect();
+        let lights: Vec<f64> = (0..8).map(|at| luminance(&frame_colour(at, 8).fill)).collect();
         assert!(lights.windows(2).all(|pair| pair[0] + 0.01 < pair[1]), "{lights:?}");
     }
 
     #[test]
     fn numbers_can_be_read_on_every_colour() {
         for at in 0..=1000 {
-            let colour = colour(at, 1001);
+            let colour = frame_colour(at, 1001);
             let (fill, ink) = (luminance(&colour.fill), luminance(colour.ink));
             let contrast = (fill.max(ink) + 0.05) / (fill.min(ink) + 0.05);
             assert!(contrast >= 4.5, "{colour:?}: {contrast}");
@@ -76,6 +76,6 @@ mod tests {
 
     #[test]
     fn a_path_of_one_frame_has_a_colour() {
-        assert_eq!(colour(0, 1).fill, "#440154");
+        assert_eq!(frame_colour(0, 1).fill, "#440154");
     }
 }

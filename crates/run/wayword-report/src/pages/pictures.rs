@@ -4,7 +4,7 @@ use super::data_uri;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use wayword_run::{
-    pictures::{Kept, kept},
+    pictures::{StoredPicture, read_picture},
     run_folder::file,
 };
 
@@ -13,7 +13,7 @@ const MOST_BYTES_TOGETHER: u64 = 64 << 20;
 
 /// A picture inside a page.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub(super) struct Picture {
+pub(super) struct PagePicture {
     /// `data:` address.
     pub(super) address: String,
     pub(super) width_px: u32,
@@ -21,7 +21,7 @@ pub(super) struct Picture {
 }
 
 /// The pictures of a run.
-pub(super) struct Pictures {
+pub(super) struct PagePictures {
     folder: PathBuf,
     left_bytes: u64,
     /// How many the page shows.
@@ -30,22 +30,22 @@ pub(super) struct Pictures {
     pub(super) left_out: usize,
 }
 
-impl Pictures {
-    pub(super) fn of(run: &Path) -> Self {
+impl PagePictures {
+    pub(super) fn from_run(run: &Path) -> Self {
         Self { folder: run.join(file::FRAMES), left_bytes: MOST_BYTES_TOGETHER, shown: 0, left_out: 0 }
     }
 
     /// The picture of a frame (from 0) of an item.
-    pub(super) fn take(&mut self, item: &str, frame: usize) -> Option<Picture> {
-        let picture = self.load(item, frame);
+    pub(super) fn take_picture(&mut self, item: &str, frame: usize) -> Option<PagePicture> {
+        let picture = self.load_picture(item, frame);
         *if picture.is_some() { &mut self.shown } else { &mut self.left_out } += 1;
         picture
     }
 
-    fn load(&mut self, item: &str, frame: usize) -> Option<Picture> {
-        let Kept { jpeg, width_px, height_px } = kept(&self.folder, item, frame, self.left_bytes)?;
+    fn load_picture(&mut self, item: &str, frame: usize) -> Option<PagePicture> {
+        let StoredPicture { jpeg, width_px, height_px } = read_picture(&self.folder, item, frame, self.left_bytes)?;
         self.left_bytes = self.left_bytes.saturating_sub(jpeg.len() as u64);
-        Some(Picture { address: data_uri::jpeg(&jpeg), width_px, height_px })
+        Some(PagePicture { address: data_uri::jpeg_uri(&jpeg), width_px, height_px })
     }
 }
 
@@ -73,11 +73,11 @@ mod tests {
     fn a_picture_is_given_with_its_size() {
         let run = run();
         fs::write(run.path().join("frames/a_0.jpg"), jpeg(6, 4)).unwrap();
-        let mut pictures = Pictures::of(run.path());
-        let picture = pictures.take("a", 0).unwrap();
+        let mut pictures = PagePictures::from_run(run.path());
+        let picture = pictures.take_picture("a", 0).unwrap();
         assert_eq!((picture.width_px, picture.height_px), (6, 4));
         assert!(picture.address.starts_with("data:image/jpeg;base64,/9j/"));
-        assert_eq!(pictures.take("a", 1), None);
+        assert_eq!(pictures.take_picture("a", 1), None);
         assert_eq!((pictures.shown, pictures.left_out), (1, 1));
     }
 
@@ -89,7 +89,7 @@ mod tests {
         fs::write(run.path().join("frames/deep/a_0.jpg"), jpeg(6, 4)).unwrap();
         let absolute = run.path().join("secret").display().to_string();
         for bad in ["../secret", "deep/a", "./../secret", absolute.as_str(), "a\0"] {
-            assert_eq!(Pictures::of(run.path()).take(bad, 0), None, "{bad:?}");
+            assert_eq!(PagePictures::from_run(run.path()).take_picture(bad, 0), None, "{bad:?}");
         }
     }
 
@@ -99,7 +99,7 @@ mod tests {
         let run = run();
         fs::write(run.path().join("secret.jpg"), jpeg(6, 4)).unwrap();
         std::os::unix::fs::symlink("../secret.jpg", run.path().join("frames/a_0.jpg")).unwrap();
-        assert_eq!(Pictures::of(run.path()).take("a", 0), None);
+        assert_eq!(PagePictures::from_run(run.path()).take_picture("a", 0), None);
     }
 
     #[test]
@@ -108,15 +108,15 @@ mod tests {
         fs::write(run.path().join("frames/a_0.jpg"), "<svg onload='alert(1)'/>").unwrap();
         fs::write(run.path().join("frames/a_1.jpg"), vec![0xff; MOST_BYTES as usize + 1]).unwrap();
         fs::write(run.path().join("frames/a_2.jpg"), jpeg(MOST_SIDE_PX + 1, 1)).unwrap();
-        let mut pictures = Pictures::of(run.path());
-        assert!((0..3).all(|frame| pictures.take("a", frame).is_none()));
+        let mut pictures = PagePictures::from_run(run.path());
+        assert!((0..3).all(|frame| pictures.take_picture("a", frame).is_none()));
     }
 
     #[test]
     fn a_full_page_takes_no_more() {
         let run = run();
         fs::write(run.path().join("frames/a_0.jpg"), jpeg(6, 4)).unwrap();
-        let mut pictures = Pictures { left_bytes: 10, ..Pictures::of(run.path()) };
-        assert_eq!(pictures.take("a", 0), None);
+        let mut pictures = PagePictures { left_bytes: 10, ..PagePictures::from_run(run.path()) };
+        assert_eq!(pictures.take_picture("a", 0), None);
     }
 }

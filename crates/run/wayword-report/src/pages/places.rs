@@ -4,7 +4,7 @@ use wayword_core::Side;
 
 /// The frames of an item to which links can lead.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Places<'a> {
+pub(super) struct LinkTargets<'a> {
     /// The item's anchor.
     pub(super) item: &'a str,
     /// How many frames its path has.
@@ -14,7 +14,7 @@ pub(super) struct Places<'a> {
 }
 
 /// The anchor of an item's heading: a number, because a name from a file may contain any character.
-pub(super) fn anchor(number: usize) -> String {
+pub(super) fn item_anchor(number: usize) -> String {
     format!("w{number}")
 }
 

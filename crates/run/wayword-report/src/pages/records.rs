@@ -4,23 +4,23 @@
 //! and unverified texts come first, because readers open a report to see those.
 
 use super::{
-    order::{Order, Worst},
-    texts::{TextState, state},
+    order::{ItemOrder, WorstStates},
+    texts::{TextState, state_from_verdict},
 };
 use serde::Deserialize;
 use std::{
     collections::{BTreeMap, BTreeSet},
     path::Path,
 };
-use wayword_core::{Ambiguity, Failure, Instruction, Provenance, Verdict};
+use wayword_core::{FailureKind, Instruction, TextAmbiguity, TextProvenance, Verdict};
 use wayword_run::{
-    error::Error,
+    error::CommandError,
     run_folder::{
-        FailedItem, Rejected, WalkRecord, file,
-        lines::{self, Line},
+        FailedItem, RejectedText, WalkRecord, file,
+        lines::{self, RecordLine},
         settings_of,
     },
-    settings::Settings,
+    settings::RunSettings,
 };
 
 /// Most bytes of lines in memory, however many items the user wants to see.
@@ -31,8 +31,8 @@ const MOST_ROLES: usize = 16;
 const MOST_STYLES: usize = 64;
 
 /// A run as far as the page shows it.
-pub(super) struct Records {
-    pub(super) settings: Settings,
+pub(super) struct ReportRecords {
+    pub(super) settings: RunSettings,
     /// The items that are shown: those with a rejected text, those with an unverified one, then the others; each of
     /// these in the order of the run.
     pub(super) items: Vec<ItemRecord>,
@@ -43,7 +43,7 @@ pub(super) struct Records {
     /// Failed items that are not shown.
     pub(super) failed_left_out: usize,
     /// Counts of all items, by style.
-    pub(super) counts: BTreeMap<String, Counts>,
+    pub(super) counts: BTreeMap<String, StyleCounts>,
     /// The different sets of roles of all accepted instructions.
     pub(super) roles: BTreeSet<RolesPlayed>,
 }
@@ -52,12 +52,12 @@ pub(super) struct Records {
 pub(super) struct ItemRecord {
     pub(super) walk: WalkRecord,
     pub(super) accepted: Vec<Instruction>,
-    pub(super) rejected: Vec<Rejected>,
+    pub(super) rejected: Vec<RejectedText>,
 }
 
 /// Number of a style's instructions by verdict.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub(super) struct Counts {
+pub(super) struct StyleCounts {
     pub(super) passed: usize,
     pub(super) unverified: usize,
     pub(super) rejected: usize,
@@ -79,26 +79,26 @@ pub(super) struct RolesPlayed {
 
 /// The fields of an instruction's line that name and count it.
 #[derive(Deserialize)]
-struct Named {
-    path: Id,
+struct InstructionHeader {
+    path: PathIdField,
     style: String,
     verdict: Verdict,
-    provenance: Provenance,
+    provenance: TextProvenance,
     #[serde(default)]
-    ambiguity: Option<Ambiguity>,
+    ambiguity: Option<TextAmbiguity>,
 }
 
 #[derive(Deserialize)]
-pub(super) struct Id {
+pub(super) struct PathIdField {
     pub(super) id: String,
 }
 
-impl Records {
+impl ReportRecords {
     /// Reads a run folder, at most `most_items` of its items whole.
     ///
     /// # Errors
     /// When it is not a run folder, a file cannot be read, or a line is not of its kind.
-    pub(super) fn read(run: &Path, most_items: usize) -> Result<Self, Error> {
+    pub(super) fn read_run(run: &Path, most_items: usize) -> Result<Self, CommandError> {
         let mut records = Self {
             settings: settings_of(run)?,
             items: Vec::new(),
@@ -108,20 +108,20 @@ impl Records {
             counts: BTreeMap::new(),
             roles: BTreeSet::new(),
         };
-        let mut worst = Worst::default();
-        lines::each(&run.join(file::INSTRUCTIONS), |line| records.count_accepted(&line, &mut worst))?;
-        lines::each(&run.join(file::REJECTED), |line| records.count_rejected(&line, most_items, &mut worst))?;
-        lines::each(&run.join(file::ERRORS), |line| {
-            records.fail(line.parse()?, most_items);
+        let mut worst = WorstStates::default();
+        lines::each_line(&run.join(file::INSTRUCTIONS), |line| records.count_accepted(&line, &mut worst))?;
+        lines::each_line(&run.join(file::REJECTED), |line| records.count_rejected(&line, most_items, &mut worst))?;
+        lines::each_line(&run.join(file::ERRORS), |line| {
+            records.note_failed(line.parse()?, most_items);
             Ok(())
         })?;
-        let order = Order::of(&run.join(file::WALKS), most_items, MOST_BYTES, &worst)?;
-        records.take(run, &order)?;
+        let order = ItemOrder::from_walks(&run.join(file::WALKS), most_items, MOST_BYTES, &worst)?;
+        records.take_items(run, &order)?;
         Ok(records)
     }
 
-    fn count_accepted(&mut self, line: &Line<'_>, worst: &mut Worst) -> Result<(), Error> {
-        let named: Named = line.parse()?;
+    fn count_accepted(&mut self, line: &RecordLine<'_>, worst: &mut WorstStates) -> Result<(), CommandError> {
+        let named: InstructionHeader = line.parse()?;
         if let Some(counts) = self.counts_of(&named.style) {
             *match named.verdict {
                 Verdict::Pass => &mut counts.passed,
@@ -133,26 +133,31 @@ impl Records {
         if self.roles.len() < MOST_ROLES {
             self.roles.insert(named.provenance.into());
         }
-        worst.take(named.path.id, state(named.verdict));
+        worst.note_state(named.path.id, state_from_verdict(named.verdict));
         Ok(())
     }
 
-    fn count_rejected(&mut self, line: &Line<'_>, most_items: usize, worst: &mut Worst) -> Result<(), Error> {
-        let rejected: Rejected = line.parse()?;
+    fn count_rejected(
+        &mut self,
+        line: &RecordLine<'_>,
+        most_items: usize,
+        worst: &mut WorstStates,
+    ) -> Result<(), CommandError> {
+        let rejected: RejectedText = line.parse()?;
         if rejected.style.is_empty() {
             // A whole item, as older versions wrote it.
-            let Rejected { item, reason, .. } = rejected;
-            self.fail(FailedItem { item, failure: Failure::Broken, reason }, most_items);
+            let RejectedText { item, reason, .. } = rejected;
+            self.note_failed(FailedItem { item, failure: FailureKind::Broken, reason }, most_items);
             return Ok(());
         }
         if let Some(counts) = self.counts_of(&rejected.style) {
             counts.rejected += 1;
         }
-        worst.take(rejected.item, TextState::Rejected);
+        worst.note_state(rejected.item, TextState::Rejected);
         Ok(())
     }
 
-    fn fail(&mut self, failed: FailedItem, most_items: usize) {
+    fn note_failed(&mut self, failed: FailedItem, most_items: usize) {
         if self.failed.len() < most_items {
             self.failed.push(failed);
         } else {
@@ -160,7 +165,7 @@ impl Records {
         }
     }
 
-    fn counts_of(&mut self, style: &str) -> Option<&mut Counts> {
+    fn counts_of(&mut self, style: &str) -> Option<&mut StyleCounts> {
         if !self.counts.contains_key(style) && self.counts.len() >= MOST_STYLES {
             return None;
         }
@@ -168,11 +173,11 @@ impl Records {
     }
 
     /// Loads the items that are shown.
-    fn take(&mut self, run: &Path, order: &Order) -> Result<(), Error> {
+    fn take_items(&mut self, run: &Path, order: &ItemOrder) -> Result<(), CommandError> {
         let mut walks: BTreeMap<usize, WalkRecord> = BTreeMap::new();
         let mut number = 0;
-        lines::each(&run.join(file::WALKS), |line| {
-            if let Some(place) = order.place(number) {
+        lines::each_line(&run.join(file::WALKS), |line| {
+            if let Some(place) = order.place_of_line(number) {
                 walks.insert(place, line.parse()?);
             }
             number += 1;
@@ -186,17 +191,20 @@ impl Records {
             places.entry(item.walk.path.id.clone()).or_insert(place);
         }
         let mut left_bytes = order.left_bytes();
-        lines::each(&run.join(file::INSTRUCTIONS), |line| {
-            let named: PathOf = line.parse()?;
-            if let Some(item) = self.at(&places, &named.path.id).filter(|_| take(&mut left_bytes, line.len())) {
+        lines::each_line(&run.join(file::INSTRUCTIONS), |line| {
+            let named: PathLine = line.parse()?;
+            if let Some(item) =
+                self.item_by_id(&places, &named.path.id).filter(|_| take_bytes(&mut left_bytes, line.len()))
+            {
                 item.accepted.push(line.parse()?);
             }
             Ok(())
         })?;
-        lines::each(&run.join(file::REJECTED), |line| {
-            let rejected: Rejected = line.parse()?;
+        lines::each_line(&run.join(file::REJECTED), |line| {
+            let rejected: RejectedText = line.parse()?;
             let is_text = !rejected.style.is_empty();
-            let item = self.at(&places, &rejected.item).filter(|_| is_text && take(&mut left_bytes, line.len()));
+            let item =
+                self.item_by_id(&places, &rejected.item).filter(|_| is_text && take_bytes(&mut left_bytes, line.len()));
             if let Some(item) = item {
                 item.rejected.push(rejected);
             }
@@ -204,27 +212,28 @@ impl Records {
         })
     }
 
-    fn at(&mut self, places: &BTreeMap<String, usize>, id: &str) -> Option<&mut ItemRecord> {
+    fn item_by_id(&mut self, places: &BTreeMap<String, usize>, id: &str) -> Option<&mut ItemRecord> {
         self.items.get_mut(*places.get(id)?)
     }
 }
 
 /// The field of a line that names its path.
 #[derive(Deserialize)]
-pub(super) struct PathOf {
-    pub(super) path: Id,
+pub(super) struct PathLine {
+    pub(super) path: PathIdField,
 }
 
 /// Subtracts `bytes` from `left_bytes` if so many are left. Returns whether it did.
-pub(super) fn take(left_bytes: &mut usize, bytes: usize) -> bool {
+pub(super) fn take_bytes(left_bytes: &mut usize, bytes: usize) -> bool {
     let left = left_bytes.checked_sub(bytes);
     *left_bytes = left.unwrap_or(*left_bytes);
     left.is_some()
 }
 
-impl From<Provenance> for RolesPlayed {
-    fn from(provenance: Provenance) -> Self {
-        let Provenance { asker, answerer, summariser, writer, finished_for, checked_against, wayword, .. } = provenance;
+impl From<TextProvenance> for RolesPlayed {
+    fn from(provenance: TextProvenance) -> Self {
+        let TextProvenance { asker, answerer, summariser, writer, finished_for, checked_against, wayword, .. } =
+            provenance;
         Self { asker, answerer, summariser, writer, finished_for, checked_against, wayword }
     }
 }

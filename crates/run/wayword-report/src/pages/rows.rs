@@ -1,8 +1,8 @@
 //! The list of all texts at the top of a report: item, scene, style, text and state, with choices to filter it.
 
 use super::{
-    records::{ItemRecord, Records},
-    texts::{TextState, state},
+    records::{ItemRecord, ReportRecords},
+    texts::{TextState, state_from_verdict},
 };
 use serde::Serialize;
 use std::collections::BTreeSet;
@@ -13,14 +13,14 @@ const MOST_CHARS: usize = 700;
 /// Most styles, and most scenes, that can be chosen from.
 const MOST_CHOICES: usize = 200;
 /// Rows that are printed.
-const PRINTED: usize = 100;
+const MAX_PRINTED_ROWS: usize = 100;
 
 /// The list.
 #[derive(Debug, Serialize)]
-pub(super) struct Rows {
-    rows: Vec<Row>,
+pub(super) struct TextList {
+    rows: Vec<TextRow>,
     /// The reader's choices: states with their counts, and styles and scenes if there are several.
-    states: Vec<(State, usize)>,
+    states: Vec<(TextRowState, usize)>,
     styles: Vec<String>,
     scenes: Vec<String>,
     printed: usize,
@@ -28,8 +28,8 @@ pub(super) struct Rows {
 
 /// A row of the list: one text, or an item without one.
 #[derive(Debug, Serialize)]
-struct Row {
-    state: State,
+struct TextRow {
+    state: TextRowState,
     /// The link to the path; `None` if there is no path.
     href: Option<String>,
     id: String,
@@ -46,7 +46,7 @@ struct Row {
 /// The state of a text, the worst first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
-enum State {
+enum TextRowState {
     /// The item failed before it had a text.
     Failed,
     Rejected,
@@ -56,7 +56,7 @@ enum State {
     Passed,
 }
 
-impl From<TextState> for State {
+impl From<TextState> for TextRowState {
     fn from(state: TextState) -> Self {
         match state {
             TextState::Rejected => Self::Rejected,
@@ -66,40 +66,40 @@ impl From<TextState> for State {
     }
 }
 
-impl Rows {
+impl TextList {
     /// The list of a run; `href` gives the link to the item at a place (from 0).
-    pub(super) fn of(records: &Records, href: impl Fn(usize) -> String) -> Self {
-        let mut rows: Vec<Row> = records.failed.iter().map(failed).collect();
+    pub(super) fn from_records(records: &ReportRecords, href: impl Fn(usize) -> String) -> Self {
+        let mut rows: Vec<TextRow> = records.failed.iter().map(failed_row).collect();
         for (at, item) in records.items.iter().enumerate() {
             rows.extend(of_item(item, &href(at)));
         }
         rows.sort_by_key(|row| row.state);
-        let styles = several(rows.iter().map(|row| row.style.as_str()));
-        let scenes = several(rows.iter().filter_map(|row| row.scene.as_deref()));
+        let styles = choices_among(rows.iter().map(|row| row.style.as_str()));
+        let scenes = choices_among(rows.iter().filter_map(|row| row.scene.as_deref()));
         for row in &mut rows {
             row.style_at = styles.binary_search(&row.style).ok();
             row.scene_at = row.scene.as_ref().and_then(|scene| scenes.binary_search(scene).ok());
         }
-        let mut states: Vec<(State, usize)> = Vec::new();
+        let mut states: Vec<(TextRowState, usize)> = Vec::new();
         for row in &rows {
             match states.last_mut() {
                 Some((state, number)) if *state == row.state => *number += 1,
                 _ => states.push((row.state, 1)),
             }
         }
-        Self { rows, states, styles, scenes, printed: PRINTED }
+        Self { rows, states, styles, scenes, printed: MAX_PRINTED_ROWS }
     }
 }
 
 /// Different names in their order; empty if there is only one, or too many to choose from.
-fn several<'n>(names: impl Iterator<Item = &'n str>) -> Vec<String> {
+fn choices_among<'n>(names: impl Iterator<Item = &'n str>) -> Vec<String> {
     let names: BTreeSet<&str> = names.filter(|name| !name.is_empty()).collect();
     if (2..=MOST_CHOICES).contains(&names.len()) { names.into_iter().map(str::to_owned).collect() } else { Vec::new() }
 }
 
-fn failed(failed: &FailedItem) -> Row {
-    Row {
-        state: State::Failed,
+fn failed_row(failed: &FailedItem) -> TextRow {
+    TextRow {
+        state: TextRowState::Failed,
         href: None,
         id: failed.item.clone(),
         scene: None,
@@ -107,12 +107,12 @@ fn failed(failed: &FailedItem) -> Row {
         scene_at: None,
         style_at: None,
         text: String::new(),
-        reason: Some(short(&format!("{}: {}", failed.failure.name(), failed.reason))),
+        reason: Some(cut_text(&format!("{}: {}", failed.failure.name(), failed.reason))),
     }
 }
 
-fn of_item(item: &ItemRecord, href: &str) -> Vec<Row> {
-    let row = |state, style: &str, text: &str, reason: Option<&str>| Row {
+fn of_item(item: &ItemRecord, href: &str) -> Vec<TextRow> {
+    let row = |state, style: &str, text: &str, reason: Option<&str>| TextRow {
         state,
         href: Some(href.to_owned()),
         id: item.walk.path.id.clone(),
@@ -120,26 +120,25 @@ fn of_item(item: &ItemRecord, href: &str) -> Vec<Row> {
         style: style.to_owned(),
         scene_at: None,
         style_at: None,
-        text: short(text),
-        reason: reason.map(short),
+        text: cut_text(text),
+        reason: reason.map(cut_text),
     };
-    let accepted = item
-        .accepted
-        .iter()
-        .map(|instruction| row(state(instruction.verdict).into(), &instruction.style, &instruction.text, None));
+    let accepted = item.accepted.iter().map(|instruction| {
+        row(state_from_verdict(instruction.verdict).into(), &instruction.style, &instruction.text, None)
+    });
     let rejected = item.rejected.iter().map(|rejected| {
         let text = rejected.last.as_ref().map_or("", |last| last.text.as_str());
-        row(State::Rejected, &rejected.style, text, Some(&rejected.reason))
+        row(TextRowState::Rejected, &rejected.style, text, Some(&rejected.reason))
     });
-    let mut rows: Vec<Row> = accepted.chain(rejected).collect();
+    let mut rows: Vec<TextRow> = accepted.chain(rejected).collect();
     if rows.is_empty() {
-        rows.push(row(State::Unwritten, "", "", None));
+        rows.push(row(TextRowState::Unwritten, "", "", None));
     }
     rows.sort_by(|a, b| a.style.cmp(&b.style));
     rows
 }
 
-fn short(text: &str) -> String {
+fn cut_text(text: &str) -> String {
     match text.char_indices().nth(MOST_CHARS) {
         Some((end, _)) => format!("{} …", &text[..end]),
         None => text.to_owned(),
@@ -154,7 +153,7 @@ mod tests {
     fn there_is_no_choice_among_one_name_or_among_too_many() {
         let choice = |number: usize| {
             let names: Vec<String> = (0..number).map(|name| format!("style-{name:03}")).collect();
-            several(names.iter().map(String::as_str)).len()
+            choices_among(names.iter().map(String::as_str)).len()
         };
         assert_eq!([1, 2, MOST_CHOICES, MOST_CHOICES + 1].map(choice), [0, 2, MOST_CHOICES, 0]);
     }

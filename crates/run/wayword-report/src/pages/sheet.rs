@@ -1,7 +1,7 @@
 //! Converts world coordinates to places on a map: metres to units of the drawing, north up.
 
 /// The limits of a sheet.
-pub(crate) struct Paper {
+pub(crate) struct SheetLimits {
     /// Largest sheet.
     pub(crate) most: [f64; 2],
     /// Smallest sheet, so that north arrow and scale bar fit.
@@ -15,7 +15,7 @@ pub(crate) struct Paper {
 }
 
 /// The conversion from world coordinates to a sheet.
-pub(crate) struct Sheet {
+pub(crate) struct MapSheet {
     /// Units per metre.
     pub(crate) scale: f64,
     /// The sheet's upper left corner in world coordinates, metres.
@@ -26,10 +26,10 @@ pub(crate) struct Sheet {
 /// Longest scale bar, units.
 const LONGEST_BAR: f64 = 90.0;
 
-impl Sheet {
+impl MapSheet {
     /// The sheet for places in world coordinates, metres; `None` if there are none, or they are too far apart for
     /// numbers.
-    pub(crate) fn around(points: impl Iterator<Item = [f64; 2]>, paper: &Paper) -> Option<Self> {
+    pub(crate) fn around_points(points: impl Iterator<Item = [f64; 2]>, paper: &SheetLimits) -> Option<Self> {
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         for point in points {
             for axis in 0..2 {
@@ -47,25 +47,25 @@ impl Sheet {
         }
         let fits = |axis: usize| (paper.most[axis] - 2.0 * paper.padding) / span[axis];
         let scale = fits(0).min(fits(1)).min(paper.most_scale);
-        let size = [0, 1].map(|axis| tenth((span[axis] * scale + 2.0 * paper.padding).max(paper.least[axis])));
+        let size = [0, 1].map(|axis| round_to_tenth((span[axis] * scale + 2.0 * paper.padding).max(paper.least[axis])));
         let margin_m = [0, 1].map(|axis| (size[axis] / scale - span[axis]) / 2.0);
         Some(Self { scale, corner: [low[0] - margin_m[0], high[1] + margin_m[1]], size })
     }
 
     /// The place of world coordinates on the sheet.
-    pub(crate) fn place(&self, [x, y]: [f64; 2]) -> [f64; 2] {
-        [tenth((x - self.corner[0]) * self.scale), tenth((self.corner[1] - y) * self.scale)]
+    pub(crate) fn place_point(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        [round_to_tenth((x - self.corner[0]) * self.scale), round_to_tenth((self.corner[1] - y) * self.scale)]
     }
 
     /// The scale bar: its length in units, and in metres.
-    pub(crate) fn bar(&self) -> (f64, u32) {
+    pub(crate) fn scale_bar(&self) -> (f64, u32) {
         let bars = [1, 2, 5, 10, 20, 50, 100, 200, 500];
         let bar_m = bars.into_iter().rfind(|m| f64::from(*m) * self.scale <= LONGEST_BAR).unwrap_or(1);
-        (tenth(f64::from(bar_m) * self.scale), bar_m)
+        (round_to_tenth(f64::from(bar_m) * self.scale), bar_m)
     }
 }
 
 /// Rounded to tenths of a unit.
-pub(crate) fn tenth(units: f64) -> f64 {
+pub(crate) fn round_to_tenth(units: f64) -> f64 {
     (units * 10.0).round() / 10.0
 }

@@ -3,20 +3,21 @@
 use super::*;
 use std::collections::{BTreeMap, BTreeSet};
 use wayword_core::{
-    Caption, Check, DVec3, Exchange, Finding, Gaze, Heading, Instruction, Look, Mention, MentionKind, Motion,
-    Observation, Path as WalkPath, Provenance, SceneId, Sighting, Target, Verdict, Where, Witness, path::Stop,
+    Caption, CaptionedView, CheckFinding, CheckKind, DVec3, DialogueExchange, FrameObservation, Heading, Instruction,
+    MentionKind, ObjectSighting, Path as WalkPath, PathMotion, PathTarget, SceneId, TextMention, TextProvenance,
+    Verdict, ViewGaze, ViewThird, WitnessAnswer, path::PathStop,
 };
-use wayword_formats::jsonl::Record;
+use wayword_formats::jsonl::InstructionRecord;
 use wayword_run::{
-    run_folder::{Map, Rejected, WalkRecord, file},
-    settings::Asked,
+    run_folder::{PathMap, RejectedText, WalkRecord, file},
+    settings::AskedSettings,
 };
 
 const SCRIPT: &str = "<script>alert('x')</script>";
 
 fn path(id: &str) -> WalkPath {
-    let stop = |x: f64, y: f64| Stop { position: DVec3::new(x, y, 1.5), viewpoint: None, level: Some(1) };
-    let target = Target {
+    let stop = |x: f64, y: f64| PathStop { position: DVec3::new(x, y, 1.5), viewpoint: None, level: Some(1) };
+    let target = PathTarget {
         object: wayword_core::ObjectId::new("7").unwrap(),
         name: "lamp".into(),
         told_by: vec![],
@@ -29,23 +30,29 @@ fn path(id: &str) -> WalkPath {
         id: id.into(),
         scene: SceneId::new("made-up").unwrap(),
         frames: WalkPath::frames_along(vec![stop(0.0, 0.0), stop(0.0, 3.0), stop(2.0, 3.0)], None),
-        motion: Motion::Known,
+        motion: PathMotion::Known,
         target: Some(target),
     }
 }
 
-fn observation(room: &str, thing: &str) -> Observation {
-    let sighting =
-        |name: &str, witness| Sighting { place: Some(Where::Left), ..Sighting::new(name, witness, "labels") };
+fn observation(room: &str, thing: &str) -> FrameObservation {
+    let sighting = |name: &str, witness| ObjectSighting {
+        place: Some(ViewThird::Left),
+        ..ObjectSighting::new(name, witness, "labels")
+    };
     let text = format!("A {room} with a {thing} on the left.");
     let caption = Caption {
         text: text.clone(),
         room: Some(room.into()),
-        sightings: vec![sighting(thing, Witness::Seen), sighting("piano", Witness::Denied)],
-        transcript: vec![Exchange::new("Is there a piano?", "No.")],
+        sightings: vec![sighting(thing, WitnessAnswer::Seen), sighting("piano", WitnessAnswer::Denied)],
+        transcript: vec![DialogueExchange::new("Is there a piano?", "No.")],
         ..Caption::default()
     };
-    Observation { looks: vec![Look { gaze: Gaze::quarter(Heading::NORTH), caption }], summary: text, by: None }
+    FrameObservation {
+        looks: vec![CaptionedView { gaze: ViewGaze::quarter_view(Heading::NORTH), caption }],
+        summary: text,
+        by: None,
+    }
 }
 
 fn walk(id: &str) -> WalkRecord {
@@ -58,24 +65,27 @@ fn walk(id: &str) -> WalkRecord {
             observation("study", "lamp"),
         ],
         originals: vec!["Go to the study.".into()],
-        map: Map { nodes: vec![[0.0, 0.0], [0.0, 3.0], [2.0, 3.0], [-2.0, 1.0]], edges: vec![[0, 1], [1, 2], [0, 3]] },
+        map: PathMap {
+            nodes: vec![[0.0, 0.0], [0.0, 3.0], [2.0, 3.0], [-2.0, 1.0]],
+            edges: vec![[0, 1], [1, 2], [0, 3]],
+        },
         has_pictures: false,
     }
 }
 
-fn instruction(text: &str, words: &[(&str, MentionKind, usize)], findings: Vec<Finding>) -> Instruction {
+fn instruction(text: &str, words: &[(&str, MentionKind, usize)], findings: Vec<CheckFinding>) -> Instruction {
     let mention = |(word, kind, frame): &(&str, MentionKind, usize)| {
         let start = text.find(word).unwrap();
-        Mention { span: [start, start + word.len()], kind: *kind, frame: *frame }
+        TextMention { span: [start, start + word.len()], kind: *kind, frame: *frame }
     };
     Instruction {
         text: text.into(),
         style: "r2r".into(),
         mentions: words.iter().map(mention).collect(),
-        verdict: Verdict::of(&findings),
+        verdict: Verdict::from_findings(&findings),
         findings,
         ambiguity: None,
-        provenance: Provenance {
+        provenance: TextProvenance {
             wayword: "0.0.0".into(),
             asker: "rules".into(),
             answerer: "labels".into(),
@@ -94,8 +104,8 @@ fn instruction(text: &str, words: &[(&str, MentionKind, usize)], findings: Vec<F
     }
 }
 
-fn finding(check: Check, verdict: Verdict, reason: &str) -> Finding {
-    Finding { check, verdict, reason: reason.into(), span: None }
+fn finding(check: CheckKind, verdict: Verdict, reason: &str) -> CheckFinding {
+    CheckFinding { check, verdict, reason: reason.into(), span: None }
 }
 
 fn good() -> Instruction {
@@ -104,7 +114,7 @@ fn good() -> Instruction {
     instruction(
         "Pass the mirror and turn right. Stop at the lamp.",
         &words,
-        vec![finding(Check::Turns, Verdict::Pass, "")],
+        vec![finding(CheckKind::Turns, Verdict::Pass, "")],
     )
 }
 
@@ -112,24 +122,31 @@ fn good() -> Instruction {
 fn run_of(first: &WalkRecord, instruction: &Instruction) -> tempfile::TempDir {
     let run = tempfile::tempdir().unwrap();
     let second = walk("b");
-    let wrong = Finding { span: Some([0, 9]), ..finding(Check::Turns, Verdict::Fail, "the path turns right there") };
+    let wrong =
+        CheckFinding { span: Some([0, 9]), ..finding(CheckKind::Turns, Verdict::Fail, "the path turns right there") };
     let last = self::instruction("Turn left. Stop at the lamp.", &[("left", MentionKind::Turn, 1)], vec![wrong]);
     let rejected = [
-        Rejected {
+        RejectedText {
             item: "b".into(),
             style: "r2r".into(),
             reason: "turns: the path turns right there".into(),
             last: Some(last),
             number: 0,
         },
-        Rejected { item: "c".into(), style: String::new(), reason: "no such viewpoint".into(), last: None, number: 0 },
+        RejectedText {
+            item: "c".into(),
+            style: String::new(),
+            reason: "no such viewpoint".into(),
+            last: None,
+            number: 0,
+        },
     ];
-    let config = toml::to_string(&Asked::default().resolve().unwrap()).unwrap();
+    let config = toml::to_string(&AskedSettings::default().resolve().unwrap()).unwrap();
     fs::write(run.path().join(file::CONFIG), config).unwrap();
     let mut walks = line(first);
     walks.push_str(&line(&second));
     fs::write(run.path().join(file::WALKS), walks).unwrap();
-    let record = Record::new("house", first.path.clone(), instruction.clone());
+    let record = InstructionRecord::new("house", first.path.clone(), instruction.clone());
     fs::write(run.path().join(file::INSTRUCTIONS), line(&record)).unwrap();
     fs::write(run.path().join(file::REJECTED), rejected.iter().map(line).collect::<String>()).unwrap();
     run
@@ -139,9 +156,9 @@ fn line(value: &impl Serialize) -> String {
     format!("{}\n", serde_json::to_string(value).unwrap())
 }
 
-fn page_of(run: &Path, most_items: usize) -> (String, Written) {
+fn page_of(run: &Path, most_items: usize) -> (String, WrittenReport) {
     let out = run.join(file::REPORT);
-    let written = write(run, &out, most_items).unwrap();
+    let written = write_report(run, &out, most_items).unwrap();
     (fs::read_to_string(out).unwrap(), written)
 }
 
@@ -169,7 +186,7 @@ fn the_page_of_a_small_run_is_as_before() {
 #[test]
 fn a_walk_without_poses_shows_no_map_no_length_and_no_moves() {
     let mut video = walk("a");
-    video.path.motion = Motion::Unknown;
+    video.path.motion = PathMotion::Unknown;
     let run = run_of(&video, &good());
     let (page, _) = page_of(run.path(), 100);
     let (_, page) = page.split_once("<article id=\"w2\"").unwrap();
@@ -188,15 +205,18 @@ fn page_escapes_texts_from_files_and_models() {
     walk.observations[0].looks[0].caption = Caption {
         text: SCRIPT.into(),
         room: Some(SCRIPT.into()),
-        sightings: vec![Sighting { name: SCRIPT.into(), ..walk.observations[0].looks[0].caption.sightings[0].clone() }],
-        transcript: vec![Exchange::new(SCRIPT, "\" onload=\"alert(1)")],
+        sightings: vec![ObjectSighting {
+            name: SCRIPT.into(),
+            ..walk.observations[0].looks[0].caption.sightings[0].clone()
+        }],
+        transcript: vec![DialogueExchange::new(SCRIPT, "\" onload=\"alert(1)")],
         ..Caption::default()
     };
     walk.path.target.as_mut().unwrap().name = SCRIPT.into();
     let mut hostile = instruction(
         SCRIPT,
         &[("alert", MentionKind::Room, 1)],
-        vec![finding(Check::Form, Verdict::Unverified, SCRIPT)],
+        vec![finding(CheckKind::Form, Verdict::Unverified, SCRIPT)],
     );
     hostile.style = SCRIPT.into();
     hostile.provenance.writer = SCRIPT.into();
@@ -274,8 +294,8 @@ fn hostile_frames_and_spans_do_no_harm() {
     wild.observations.truncate(1);
     let mut bad = good();
     bad.mentions = vec![
-        Mention { span: [usize::MAX, 0], kind: MentionKind::Room, frame: 0 },
-        Mention { span: [0, 4], kind: MentionKind::Room, frame: usize::MAX },
+        TextMention { span: [usize::MAX, 0], kind: MentionKind::Room, frame: 0 },
+        TextMention { span: [0, 4], kind: MentionKind::Room, frame: usize::MAX },
     ];
     let run = run_of(&wild, &bad);
     let (page, _) = page_of(run.path(), 100);
@@ -289,9 +309,9 @@ fn a_folder_that_is_no_run_is_refused_and_the_old_page_stays() {
     let before = page_of(run.path(), 100);
     fs::write(run.path().join(file::WALKS), "nonsense\n").unwrap();
     let out = run.path().join(file::REPORT);
-    assert!(write(run.path(), &out, 100).unwrap_err().to_string().contains("walks.jsonl: line 1"));
+    assert!(write_report(run.path(), &out, 100).unwrap_err().to_string().contains("walks.jsonl: line 1"));
     assert_eq!(fs::read_to_string(&out).unwrap(), before.0);
-    assert!(write(&run.path().join("nothing"), &out, 100).is_err());
+    assert!(write_report(&run.path().join("nothing"), &out, 100).is_err());
 }
 
 /// A run of `items` items that pass, but those with these numbers are rejected or unverified.
@@ -307,7 +327,7 @@ fn long_run(items: usize, rejected: &[usize], unverified: &[usize]) -> tempfile:
         text.text = format!("{} It is number {number}.", text.text);
         if rejected.contains(&number) {
             let reason = "turns: the path turns right there".to_owned();
-            refused.push_str(&line(&Rejected {
+            refused.push_str(&line(&RejectedText {
                 item: id.clone(),
                 style: "r2r".into(),
                 reason,
@@ -319,7 +339,7 @@ fn long_run(items: usize, rejected: &[usize], unverified: &[usize]) -> tempfile:
         if unverified.contains(&number) {
             text.verdict = Verdict::Unverified;
         }
-        accepted.push_str(&line(&Record::new("house", walk.path, text)));
+        accepted.push_str(&line(&InstructionRecord::new("house", walk.path, text)));
     }
     fs::write(run.path().join(file::WALKS), walks).unwrap();
     fs::write(run.path().join(file::INSTRUCTIONS), accepted).unwrap();
@@ -328,7 +348,7 @@ fn long_run(items: usize, rejected: &[usize], unverified: &[usize]) -> tempfile:
 }
 
 /// The pages of a report by their names, and the overview's name.
-fn pages_of(run: &Path, most_items: usize, per_page: usize) -> (BTreeMap<String, String>, Written) {
+fn pages_of(run: &Path, most_items: usize, per_page: usize) -> (BTreeMap<String, String>, WrittenReport) {
     let written = write_paged(run, &run.join(file::REPORT), most_items, per_page).unwrap();
     let name = |page: &String| Path::new(page).file_name().unwrap().to_str().unwrap().to_owned();
     let all = std::iter::once(&written.page).chain(&written.pages);

@@ -1,13 +1,15 @@
 //! The instructions of an item as the page shows them: text with its mentions, verdict, checks and provenance.
 
 use super::{
-    palette::{Colour, colour},
-    places::{Places, frame_anchor},
+    palette::{FrameColour, frame_colour},
+    places::{LinkTargets, frame_anchor},
     records::ItemRecord,
-    spans::segments,
+    spans::cut_segments,
 };
 use serde::Serialize;
-use wayword_core::{Chosen, ChosenBy, Finding, Instruction, Mention, MentionKind, Provenance, Verdict};
+use wayword_core::{
+    CheckFinding, ChosenBy, Instruction, MentionKind, TextMention, TextProvenance, TextSelection, Verdict,
+};
 
 /// Most findings of an instruction that are shown.
 const MOST_FINDINGS: usize = 100;
@@ -59,7 +61,7 @@ struct LinkView {
     number: usize,
     /// The frame's; `None` if the page does not show the frame.
     anchor: Option<String>,
-    colour: Colour,
+    colour: FrameColour,
     /// Name of the icon for a turn.
     turn: Option<&'static str>,
     hint: String,
@@ -75,7 +77,7 @@ struct FindingView {
 }
 
 /// The state of an accepted instruction.
-pub(super) fn state(verdict: Verdict) -> TextState {
+pub(super) fn state_from_verdict(verdict: Verdict) -> TextState {
     match verdict {
         Verdict::Pass => TextState::Passed,
         Verdict::Unverified => TextState::Unverified,
@@ -84,34 +86,34 @@ pub(super) fn state(verdict: Verdict) -> TextState {
 }
 
 /// An item's instructions, accepted and rejected.
-pub(super) fn texts(record: &ItemRecord, places: Places<'_>) -> Vec<TextView> {
+pub(super) fn text_views(record: &ItemRecord, places: LinkTargets<'_>) -> Vec<TextView> {
     let accepted = record.accepted.iter().map(|instruction| TextView {
         style: instruction.style.clone(),
-        state: state(instruction.verdict),
+        state: state_from_verdict(instruction.verdict),
         reason: None,
-        parts: parts(instruction, places),
-        findings: findings(instruction),
-        ambiguity: ambiguity(instruction),
-        provenance: Some(provenance(&instruction.provenance)),
+        parts: part_views(instruction, places),
+        findings: finding_views(instruction),
+        ambiguity: describe_ambiguity(instruction),
+        provenance: Some(describe_provenance(&instruction.provenance)),
     });
     let rejected = record.rejected.iter().map(|rejected| TextView {
         style: rejected.style.clone(),
         state: TextState::Rejected,
         reason: Some(rejected.reason.clone()),
-        parts: rejected.last.as_ref().map(|last| parts(last, places)).unwrap_or_default(),
-        findings: rejected.last.as_ref().map(findings).unwrap_or_default(),
-        ambiguity: rejected.last.as_ref().and_then(ambiguity),
-        provenance: rejected.last.as_ref().map(|last| provenance(&last.provenance)),
+        parts: rejected.last.as_ref().map(|last| part_views(last, places)).unwrap_or_default(),
+        findings: rejected.last.as_ref().map(finding_views).unwrap_or_default(),
+        ambiguity: rejected.last.as_ref().and_then(describe_ambiguity),
+        provenance: rejected.last.as_ref().map(|last| describe_provenance(&last.provenance)),
     });
     let mut texts: Vec<TextView> = accepted.chain(rejected).collect();
     texts.sort_by(|a, b| a.style.cmp(&b.style));
     texts
 }
 
-fn parts(instruction: &Instruction, places: Places<'_>) -> Vec<PartView> {
+fn part_views(instruction: &Instruction, places: LinkTargets<'_>) -> Vec<PartView> {
     let Instruction { text, mentions, findings, .. } = instruction;
-    let view = |mention: &Mention| link(mention, text, places);
-    let part = |segment: super::spans::Segment<'_>| PartView {
+    let view = |mention: &TextMention| link_view(mention, text, places);
+    let part = |segment: super::spans::TextSegment<'_>| PartView {
         text: segment.text.to_owned(),
         is_flawed: segment.is_flawed,
         link: segment.mention.map(view),
@@ -123,23 +125,23 @@ fn parts(instruction: &Instruction, places: Places<'_>) -> Vec<PartView> {
             .map(|mention| view(mention))
             .collect(),
     };
-    segments(text, mentions, findings, places.frames).into_iter().map(part).collect()
+    cut_segments(text, mentions, findings, places.frames).into_iter().map(part).collect()
 }
 
-fn link(mention: &Mention, text: &str, places: Places<'_>) -> LinkView {
-    let (kind, number) = (kind(mention.kind), mention.frame);
+fn link_view(mention: &TextMention, text: &str, places: LinkTargets<'_>) -> LinkView {
+    let (kind, number) = (kind_name(mention.kind), mention.frame);
     let words = text.get(mention.span[0]..mention.span[1]).unwrap_or_default();
     LinkView {
         kind,
         number,
         anchor: (mention.frame < places.shown).then(|| frame_anchor(places.item, mention.frame)),
-        colour: colour(mention.frame, places.shown),
-        turn: (mention.kind == MentionKind::Turn).then(|| told_turn(words)),
+        colour: frame_colour(mention.frame, places.shown),
+        turn: (mention.kind == MentionKind::Turn).then(|| turn_sign_from_words(words)),
         hint: format!("{kind}, frame {number}"),
     }
 }
 
-fn kind(kind: MentionKind) -> &'static str {
+fn kind_name(kind: MentionKind) -> &'static str {
     match kind {
         MentionKind::Landmark => "landmark",
         MentionKind::Room => "room",
@@ -150,7 +152,7 @@ fn kind(kind: MentionKind) -> &'static str {
 }
 
 /// The icon for the turn that the words describe. It may differ from the path's own turn, which the frame shows.
-fn told_turn(words: &str) -> &'static str {
+fn turn_sign_from_words(words: &str) -> &'static str {
     let words = words.to_lowercase();
     let tells = |word: &str| words.contains(word);
     match () {
@@ -161,8 +163,8 @@ fn told_turn(words: &str) -> &'static str {
     }
 }
 
-fn findings(instruction: &Instruction) -> Vec<FindingView> {
-    let view = |finding: &Finding| FindingView {
+fn finding_views(instruction: &Instruction) -> Vec<FindingView> {
+    let view = |finding: &CheckFinding| FindingView {
         check: finding.check.name(),
         verdict: finding.verdict,
         reason: finding.reason.clone(),
@@ -172,24 +174,25 @@ fn findings(instruction: &Instruction) -> Vec<FindingView> {
 }
 
 /// The possible meanings of an instruction, if there are several, and the thing by which its own end differs from the others.
-fn ambiguity(instruction: &Instruction) -> Option<String> {
+fn describe_ambiguity(instruction: &Instruction) -> Option<String> {
     let ambiguity = instruction.ambiguity.as_ref()?;
-    let told = ambiguity.told()?;
+    let told = ambiguity.to_sentence()?;
     Some(match &ambiguity.told_apart_by {
         Some(by) => format!("{told}; only at its own end there is: {by}"),
         None => told,
     })
 }
 
-fn provenance(provenance: &Provenance) -> String {
-    let Provenance { wayword, asker, answerer, summariser, writer, checked_against, seed, style_hash, .. } = provenance;
+fn describe_provenance(provenance: &TextProvenance) -> String {
+    let TextProvenance { wayword, asker, answerer, summariser, writer, checked_against, seed, style_hash, .. } =
+        provenance;
     let repairs = match provenance.repairs {
         0 => "at the first attempt".to_owned(),
         1 => "after 1 repair".to_owned(),
         more => format!("after {more} repairs"),
     };
     let after = provenance.finished_for.as_ref().map_or_else(String::new, |first| format!(" after {first} had failed"));
-    let chosen = provenance.chosen.as_ref().map_or_else(String::new, chosen);
+    let chosen = provenance.chosen.as_ref().map_or_else(String::new, describe_choice);
     let prompts = provenance.prompts_hash.as_ref().map_or_else(String::new, |hash| format!(", prompts {hash}"));
     format!(
         "Wayword {wayword}: {asker} asked, {answerer} answered, {summariser} summarised, {writer} wrote{after}, {repairs}{chosen}; \
@@ -197,7 +200,7 @@ fn provenance(provenance: &Provenance) -> String {
     )
 }
 
-fn chosen(chosen: &Chosen) -> String {
+fn describe_choice(chosen: &TextSelection) -> String {
     let by = match chosen.by {
         ChosenBy::Follower => "by the follower",
         ChosenBy::Checks => "by the checks alone",

@@ -6,7 +6,7 @@ use wayword_run::settings::AskedPlatform;
 
 /// `wayword view`.
 #[derive(Debug, Args)]
-pub struct View {
+pub struct ViewArgs {
     /// What to show.
     #[command(subcommand)]
     pub command: ViewCommand,
@@ -25,7 +25,7 @@ pub enum ViewCommand {
 
 /// Which path.
 #[derive(Debug, Args)]
-pub struct Walk {
+pub struct ShownPathArgs {
     /// Use this scene. [default: the platform's first; with --episodes, that of the item]
     #[arg(long, value_name = "SCENE")]
     pub scan: Option<String>,
@@ -98,7 +98,7 @@ pub struct ViewPath {
     pub platform: AskedPlatform,
     /// The path.
     #[command(flatten)]
-    pub walk: Walk,
+    pub walk: ShownPathArgs,
     /// Pictures per second. [default: 1, or 12 if --smooth is given]
     #[arg(long, value_name = "N")]
     pub fps: Option<f64>,
@@ -129,7 +129,7 @@ pub struct ViewMap {
     pub platform: AskedPlatform,
     /// The path; none is drawn without one of these flags.
     #[command(flatten)]
-    pub walk: Walk,
+    pub walk: ShownPathArgs,
     /// Number of the storey; the lowest is 1. [default: where the path starts, else the lowest]
     #[arg(long, value_name = "N")]
     pub level: Option<u32>,

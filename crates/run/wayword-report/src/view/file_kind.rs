@@ -5,7 +5,7 @@ use std::{
     io::Read,
     path::Path,
 };
-use wayword_run::error::Error;
+use wayword_run::error::CommandError;
 
 /// A kind of file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -34,7 +34,7 @@ impl FileKind {
     }
 
     /// The kind for a file's ending; `None` for other endings.
-    pub(super) fn of(file: &Path) -> Option<Self> {
+    pub(super) fn from_ending(file: &Path) -> Option<Self> {
         let ending = file.extension()?.to_str()?.to_ascii_lowercase();
         Self::ALL.into_iter().find(|kind| kind.endings().contains(&ending.as_str()))
     }
@@ -43,18 +43,18 @@ impl FileKind {
     ///
     /// # Errors
     /// When its ending belongs to none of `kinds`.
-    pub(super) fn among(kinds: &[Self], out: &Path) -> Result<Self, Error> {
-        let kind = Self::of(out).filter(|kind| kinds.contains(kind));
+    pub(super) fn one_among(kinds: &[Self], out: &Path) -> Result<Self, CommandError> {
+        let kind = Self::from_ending(out).filter(|kind| kinds.contains(kind));
         kind.ok_or_else(|| {
             let endings: Vec<String> =
                 kinds.iter().flat_map(|kind| kind.endings()).map(|end| format!(".{end}")).collect();
             let problem = format!("--out {}: this command does not write files with this ending", out.display());
-            Error::usage(problem, format!("end it in {}", endings.join(" or ")))
+            CommandError::usage(problem, format!("end it in {}", endings.join(" or ")))
         })
     }
 
     /// Whether these first bytes of a file are those of this kind.
-    fn begins(self, start: &[u8]) -> bool {
+    fn fits_start(self, start: &[u8]) -> bool {
         match self {
             Self::Png => start.starts_with(b"\x89PNG\r\n\x1a\n"),
             Self::Jpeg => start.starts_with(&[0xff, 0xd8, 0xff]),
@@ -68,7 +68,7 @@ impl FileKind {
     ///
     /// # Errors
     /// When `out` exists and is not a file of this kind, or is within `data`.
-    pub(super) fn check_free(self, out: &Path, data: Option<&Path>) -> Result<(), Error> {
+    pub(super) fn check_free(self, out: &Path, data: Option<&Path>) -> Result<(), CommandError> {
         let Ok(real) = fs::canonicalize(out) else {
             // The file does not exist, so there is no risk.
             return Ok(());
@@ -79,8 +79,8 @@ impl FileKind {
         }
         let mut start = Vec::new();
         let read = File::open(&real).and_then(|file| file.take(16).read_to_end(&mut start));
-        read.map_err(Error::io(out, "read"))?;
-        if start.is_empty() || self.begins(&start) {
+        read.map_err(CommandError::io(out, "read"))?;
+        if start.is_empty() || self.fits_start(&start) {
             return Ok(());
         }
         Err(in_the_way(out, &format!("the file there is not a .{} file", self.endings()[0])))
@@ -91,12 +91,12 @@ impl FileKind {
 ///
 /// # Errors
 /// When `out` exists and is within `data`.
-pub(super) fn check_foreign(out: &Path, data: Option<&Path>) -> Result<(), Error> {
+pub(super) fn check_foreign(out: &Path, data: Option<&Path>) -> Result<(), CommandError> {
     let (Ok(out_is), Some(Ok(data_is))) = (fs::canonicalize(out), data.map(fs::canonicalize)) else { return Ok(()) };
     if out_is.starts_with(data_is) { Err(in_the_way(out, "it belongs to --data")) } else { Ok(()) }
 }
 
-fn in_the_way(out: &Path, problem: &str) -> Error {
+fn in_the_way(out: &Path, problem: &str) -> CommandError {
     let problem = format!("--out {}: {problem}, and this command would overwrite it", out.display());
-    Error::usage(problem, "give --out another name")
+    CommandError::usage(problem, "give --out another name")
 }

@@ -10,21 +10,21 @@ pub mod picture;
 pub mod unfinished;
 mod walk;
 
-use crate::view::args::{View, ViewCommand};
+use crate::view::args::{ViewArgs, ViewCommand};
 use serde::Serialize;
 use std::{fmt, path::PathBuf};
-use wayword_core::{Island, Platform, SceneId};
+use wayword_core::{GroundIsland, Platform, SceneId};
 use wayword_run::{
-    count::count,
-    error::{Error, Exit},
-    output::Output,
+    count::count_phrase,
+    error::{CommandError, Exit},
+    output::CommandOutput,
     platforms,
     settings::AskedPlatform,
 };
 
 /// Result of a view: the written files and their size.
 #[derive(Debug, Serialize)]
-struct Written {
+struct WrittenView {
     scene: SceneId,
     /// The files; several are in the order of the path.
     files: Vec<PathBuf>,
@@ -35,15 +35,15 @@ struct Written {
     frames: usize,
     /// The islands of the scene, if a map is drawn and the platform knows them.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    islands: Vec<Island>,
+    islands: Vec<GroundIsland>,
 }
 
-impl fmt::Display for Written {
+impl fmt::Display for WrittenView {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for file in &self.files {
             writeln!(f, "{}", file.display())?;
         }
-        let frames = if self.frames == 1 { String::new() } else { format!(", {}", count(self.frames, "frame")) };
+        let frames = if self.frames == 1 { String::new() } else { format!(", {}", count_phrase(self.frames, "frame")) };
         write!(f, "{}: {} x {} pixels{frames}", self.scene, self.width, self.height)?;
         for island in &self.islands {
             write!(f, "\n{island}{}", if island.is_walked { ", used for random paths" } else { "" })?;
@@ -52,29 +52,29 @@ impl fmt::Display for Written {
     }
 }
 
-pub fn run(args: &View, output: &Output) -> Result<Exit, Error> {
+pub fn run_view(args: &ViewArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
     let written = match &args.command {
-        ViewCommand::Panorama(args) => panorama::write(args, output)?,
-        ViewCommand::Path(args) => path::write(args, output)?,
-        ViewCommand::Map(args) => map::write(args, output)?,
+        ViewCommand::Panorama(args) => panorama::write_panorama(args, output)?,
+        ViewCommand::Path(args) => path::write_path(args, output)?,
+        ViewCommand::Map(args) => map::write_map(args, output)?,
     };
-    output.data(&written, &written);
+    output.print_result(&written, &written);
     Ok(Exit::Done)
 }
 
-pub fn open(asked: &AskedPlatform) -> Result<Box<dyn Platform>, Error> {
+pub fn open_platform(asked: &AskedPlatform) -> Result<Box<dyn Platform>, CommandError> {
     platforms::open_at(asked.name(), asked.into())
 }
 
 /// The scene with this name, or the platform's first if there is no name.
-fn scene(platform: &dyn Platform, name: Option<&str>) -> Result<SceneId, Error> {
+fn choose_scene(platform: &dyn Platform, name: Option<&str>) -> Result<SceneId, CommandError> {
     match name {
         Some(name) => SceneId::new(name)
-            .map_err(|error| Error::usage(format!("--scan {name}: {error}"), "give the name of a scene")),
+            .map_err(|error| CommandError::usage(format!("--scan {name}: {error}"), "give the name of a scene")),
         None => platform
-            .scenes()?
+            .list_scenes()?
             .into_iter()
             .next()
-            .ok_or_else(|| Error::usage("the platform offers no scene", "check --data")),
+            .ok_or_else(|| CommandError::usage("the platform offers no scene", "check --data")),
     }
 }

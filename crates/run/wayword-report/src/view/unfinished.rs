@@ -5,26 +5,26 @@ use std::{
     io::{self, BufWriter, Write},
     path::{Path, PathBuf},
 };
-use wayword_run::error::Error;
+use wayword_run::error::CommandError;
 
 /// A file under a temporary name in the folder of its place. If dropped before it is finished, it is removed, and the old file stays.
-pub struct Unfinished {
+pub struct UnfinishedFile {
     file: BufWriter<File>,
     beside: PathBuf,
     out: PathBuf,
 }
 
-impl Unfinished {
+impl UnfinishedFile {
     /// Begins a file.
     ///
     /// # Errors
     /// When it cannot be made.
-    pub(super) fn new(out: &Path) -> Result<Self, Error> {
+    pub(super) fn new(out: &Path) -> Result<Self, CommandError> {
         let mut name = std::ffi::OsString::from(".");
         name.push(out.file_name().unwrap_or_default());
         name.push(format!(".{}.part", std::process::id()));
         let beside = out.with_file_name(name);
-        let file = File::create(&beside).map_err(Error::io(out, "write"))?;
+        let file = File::create(&beside).map_err(CommandError::io(out, "write"))?;
         Ok(Self { file: BufWriter::new(file), beside, out: out.to_owned() })
     }
 
@@ -32,22 +32,25 @@ impl Unfinished {
     ///
     /// # Errors
     /// When it cannot be written.
-    pub fn whole(out: &Path, bytes: &[u8]) -> Result<(), Error> {
+    pub fn write_whole(out: &Path, bytes: &[u8]) -> Result<(), CommandError> {
         let mut file = Self::new(out)?;
-        file.write_all(bytes).map_err(Error::io(out, "write"))?;
-        file.finish()
+        file.write_all(bytes).map_err(CommandError::io(out, "write"))?;
+        file.move_to_place()
     }
 
     /// Moves it to its place.
     ///
     /// # Errors
     /// When it cannot be written or moved.
-    pub(super) fn finish(mut self) -> Result<(), Error> {
-        self.file.flush().and_then(|()| fs::rename(&self.beside, &self.out)).map_err(Error::io(&self.out, "write"))
+    pub(super) fn move_to_place(mut self) -> Result<(), CommandError> {
+        self.file
+            .flush()
+            .and_then(|()| fs::rename(&self.beside, &self.out))
+            .map_err(CommandError::io(&self.out, "write"))
     }
 }
 
-impl Write for Unfinished {
+impl Write for UnfinishedFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         self.file.write(bytes)
     }
@@ -57,7 +60,7 @@ impl Write for Unfinished {
     }
 }
 
-impl Drop for Unfinished {
+impl Drop for UnfinishedFile {
     fn drop(&mut self) {
         // A finished file is no longer here. A file that cannot be removed stays.
         let _ = fs::remove_file(&self.beside);

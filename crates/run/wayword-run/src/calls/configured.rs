@@ -2,13 +2,13 @@
 //! ledger.
 
 use crate::{
-    error::Error,
-    settings::{Job, Service},
+    error::CommandError,
+    settings::{RunJob, Service},
     text_file,
 };
 use etcetera::BaseStrategy;
 use std::path::PathBuf;
-use wayword_remote::{Concurrency, Config, Prices, ProviderConfig};
+use wayword_remote::{PriceTable, ProviderConfig, RemoteConfig, RequestConcurrency};
 
 /// Most requests at a time for each provider, unless the user gives a number: the limit of the search for the right
 /// one.
@@ -19,12 +19,12 @@ const MOST_AT_A_TIME: usize = 64;
 ///
 /// # Errors
 /// When the user has no home folder.
-pub fn ledger_path(service: &Service) -> Result<PathBuf, Error> {
+pub fn ledger_path(service: &Service) -> Result<PathBuf, CommandError> {
     if let Some(path) = &service.ledger {
         return Ok(path.clone());
     }
     let strategy = etcetera::choose_base_strategy().map_err(|_| {
-        Error::usage("there is no home folder to keep the ledger in", "name a file, as in --ledger calls.db")
+        CommandError::usage("there is no home folder to keep the ledger in", "name a file, as in --ledger calls.db")
     })?;
     Ok(strategy.data_dir().join("wayword").join("ledger.db"))
 }
@@ -33,41 +33,43 @@ pub fn ledger_path(service: &Service) -> Result<PathBuf, Error> {
 ///
 /// # Errors
 /// When a provider's table or the list of prices cannot be read.
-pub(super) fn config(Job { settings, service, providers, .. }: &Job) -> Result<Config, Error> {
-    let provider = |(name, table): (&String, &toml::Table)| -> Result<(String, ProviderConfig), Error> {
+pub(super) fn service_config(
+    RunJob { settings, service, providers, .. }: &RunJob,
+) -> Result<RemoteConfig, CommandError> {
+    let provider = |(name, table): (&String, &toml::Table)| -> Result<(String, ProviderConfig), CommandError> {
         let config = table.clone().try_into().map_err(|error: toml::de::Error| {
-            Error::usage(format!("[providers.{name}]: {}", error.message()), "see docs/MODELS.md for the names")
+            CommandError::usage(format!("[providers.{name}]: {}", error.message()), "see docs/MODELS.md for the names")
         })?;
         Ok((name.clone(), config))
     };
-    let default = Config::default();
-    Ok(Config {
+    let default = RemoteConfig::default();
+    Ok(RemoteConfig {
         providers: providers.iter().map(provider).collect::<Result<_, _>>()?,
         base_url: settings.roles.base_url.clone(),
         key_env: service.key_env.clone(),
         picture_px: settings.roles.picture_px,
-        concurrency: concurrency(service),
+        concurrency: service_concurrency(service),
         timeout_s: service.timeout_s.unwrap_or(default.timeout_s),
         requests_per_minute: service.requests_per_minute,
         tokens_per_minute: service.tokens_per_minute,
-        prices: prices(service)?,
+        prices: read_prices(service)?,
         needs_prices: service.max_usd.is_some(),
         ..default
     })
 }
 
 /// Requests at a time for each provider.
-pub(super) fn concurrency(service: &Service) -> Concurrency {
-    service.concurrency.map_or(Concurrency::Adaptive { most: MOST_AT_A_TIME }, Concurrency::Fixed)
+pub(super) fn service_concurrency(service: &Service) -> RequestConcurrency {
+    service.concurrency.map_or(RequestConcurrency::Adaptive { most: MOST_AT_A_TIME }, RequestConcurrency::Fixed)
 }
 
-fn prices(service: &Service) -> Result<Prices, Error> {
+fn read_prices(service: &Service) -> Result<PriceTable, CommandError> {
     match &service.prices {
-        None => Ok(Prices::built_in()),
-        Some(file) => Prices::read(&text_file::read(file, "read the prices")?).map_err(|error| {
+        None => Ok(PriceTable::built_in()),
+        Some(file) => PriceTable::from_toml(&text_file::read_text_file(file, "read the prices")?).map_err(|error| {
             let error = error.to_string();
             let (problem, hint) = error.split_once("\nhint: ").unwrap_or((&error, "the format is in docs/MODELS.md"));
-            Error::usage(format!("{}: {}", file.display(), problem.trim_end()), hint)
+            CommandError::usage(format!("{}: {}", file.display(), problem.trim_end()), hint)
         }),
     }
 }

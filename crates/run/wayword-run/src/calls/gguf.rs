@@ -4,14 +4,14 @@
 //! Why not: candle reads the format, but the rest (positions, tokenizers, templates, sampling) took over a thousand lines, and
 //! was slower than llama.cpp with the same file.
 
-use crate::{error::Error, settings::is_in_process};
+use crate::{error::CommandError, settings::is_in_process};
 use std::{borrow::Cow, path::Path};
 
 /// Longest tag that Ollama takes.
 const LONGEST_TAG: usize = 80;
 
 /// The error for a model in process that is named by a GGUF file; `None` for any other name.
-pub(super) fn refused(name: &str) -> Option<Error> {
+pub(super) fn refuse_gguf(name: &str) -> Option<CommandError> {
     let rest = name.strip_prefix("hf/").filter(|_| is_in_process(name))?;
     Path::new(rest).extension().filter(|ending| ending.eq_ignore_ascii_case("gguf"))?;
     let is_path = rest.starts_with(['/', '.']);
@@ -20,7 +20,7 @@ pub(super) fn refused(name: &str) -> Option<Error> {
         None => on_disk(rest),
     };
     let problem = format!("{name:?} is a GGUF file, and this program runs no GGUF files in process");
-    Some(Error::usage(
+    Some(CommandError::usage(
         problem,
         format!("start it in one of these servers, and pass the model name given for it:{servers}"),
     ))
@@ -28,30 +28,32 @@ pub(super) fn refused(name: &str) -> Option<Error> {
 
 /// A file of a repository: both servers fetch it themselves.
 fn on_hub(repo: &str, file: &str) -> String {
-    let alias = alias(file);
+    let alias = model_alias(file);
     let mut servers = String::new();
     // Ollama takes no tag that has to be escaped, or that names a file in a folder.
     if file.len() <= LONGEST_TAG && file.chars().all(is_plain) {
-        servers = line("Ollama", &format!("ollama run hf.co/{repo}:{file}"), &format!("ollama/hf.co/{repo}:{file}"));
+        servers =
+            server_line("Ollama", &format!("ollama run hf.co/{repo}:{file}"), &format!("ollama/hf.co/{repo}:{file}"));
     }
-    let starts = format!("llama-server -hf {repo} -hff {} --alias {alias}", quoted(file));
-    servers + &line("llama.cpp", &starts, &format!("llamacpp/{alias}"))
+    let starts = format!("llama-server -hf {repo} -hff {} --alias {alias}", quote_for_shell(file));
+    servers + &server_line("llama.cpp", &starts, &format!("llamacpp/{alias}"))
 }
 
 /// A file on this machine.
 fn on_disk(path: &str) -> String {
-    let (alias, path) = (alias(path), quoted(path));
+    let (alias, path) = (model_alias(path), quote_for_shell(path));
     let creates = format!("echo FROM {path} > {alias}.Modelfile && ollama create {alias} -f {alias}.Modelfile");
     let starts = format!("llama-server -m {path} --alias {alias}");
-    line("Ollama", &creates, &format!("ollama/{alias}")) + &line("llama.cpp", &starts, &format!("llamacpp/{alias}"))
+    server_line("Ollama", &creates, &format!("ollama/{alias}"))
+        + &server_line("llama.cpp", &starts, &format!("llamacpp/{alias}"))
 }
 
-fn line(server: &str, command: &str, name: &str) -> String {
+fn server_line(server: &str, command: &str, name: &str) -> String {
     format!("\n  {server}: `{command}`, then name the model {name}")
 }
 
 /// The name of a model, made from its file's name.
-fn alias(file: &str) -> String {
+fn model_alias(file: &str) -> String {
     let stem = Path::new(file).file_stem().unwrap_or_default().to_string_lossy();
     stem.chars().map(|c| if is_plain(c) { c } else { '-' }).take(LONGEST_TAG).collect()
 }
@@ -61,7 +63,7 @@ fn is_plain(c: char) -> bool {
 }
 
 /// Quoted so that a shell takes it for one word.
-fn quoted(word: &str) -> Cow<'_, str> {
+fn quote_for_shell(word: &str) -> Cow<'_, str> {
     if word.chars().all(|c| is_plain(c) || c == '/') {
         return Cow::Borrowed(word);
     }
@@ -74,7 +76,7 @@ mod tests {
 
     /// The hint's lines for a name.
     fn told(name: &str) -> Vec<String> {
-        let error = refused(name).unwrap().to_string();
+        let error = refuse_gguf(name).unwrap().to_string();
         let (problem, hint) = error.split_once("\nhint: ").unwrap();
         assert!(problem.contains(name), "{problem}");
         hint.lines().skip(1).map(|line| line.trim().to_owned()).collect()

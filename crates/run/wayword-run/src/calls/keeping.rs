@@ -1,13 +1,13 @@
 //! The choice of the ledger that keeps the calls of a command.
 
 use super::ledger_path;
-use crate::{error::Error, settings::Service};
+use crate::{error::CommandError, settings::Service};
 use std::path::PathBuf;
 use wayword_ledger::Ledger;
 
 /// Where calls are kept.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub enum Keeping {
+pub enum CallKeeping {
     /// In the ledger of this machine, which all runs share.
     #[default]
     Machine,
@@ -16,12 +16,12 @@ pub enum Keeping {
     Chunks(Vec<PathBuf>),
     /// In a database that all workers share. The duration is how long a worker's sign of life counts.
     #[cfg(feature = "queue")]
-    Database(wayword_database::Database, std::time::Duration),
+    Database(wayword_database::PostgresDatabase, std::time::Duration),
 }
 
-impl Keeping {
+impl CallKeeping {
     /// Refuses a place where calls cannot be kept. Does not open or make a file.
-    pub(super) fn check(&self, service: &Service) -> Result<(), Error> {
+    pub(super) fn check_store(&self, service: &Service) -> Result<(), CommandError> {
         match self {
             Self::Machine => Ok(Ledger::check_place(&ledger_path(service)?)?),
             Self::Chunks(_) => Ok(()),
@@ -31,7 +31,7 @@ impl Keeping {
     }
 
     /// Opens the ledger.
-    pub(super) fn open(&self, service: &Service) -> Result<Ledger, Error> {
+    pub(super) fn open_ledger(&self, service: &Service) -> Result<Ledger, CommandError> {
         Ok(match self {
             Self::Machine => Ledger::open(&ledger_path(service)?)?,
             Self::Chunks(recordings) => Ledger::in_chunks(recordings)?,

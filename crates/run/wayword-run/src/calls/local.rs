@@ -2,95 +2,95 @@
 
 use crate::{
     download_bar::DownloadBar,
-    error::Error,
-    output::Output,
-    settings::{self, Job},
+    error::CommandError,
+    output::CommandOutput,
+    settings::{self, RunJob},
 };
 use std::sync::Arc;
-use wayword_core::{Detector, LanguageModel};
-use wayword_ledger::Run;
-use wayword_local::{Device, EyeKind, Hub, HubConfig, Loading, Models, Precision};
-use wayword_remote::Finding;
-use wayword_synthesis::prompts::Manner;
+use wayword_core::{LanguageModel, ObjectDetector};
+use wayword_ledger::LedgerRun;
+use wayword_local::{EyeKind, HubConfig, LoadingOptions, LocalModels, ModelDevice, ModelHub, WeightPrecision};
+use wayword_remote::ServiceFinding;
+use wayword_synthesis::prompts::PromptManner;
 
 /// The models in process of one command.
-pub(super) struct Local {
-    models: Models,
+pub(super) struct LocalCalls {
+    models: LocalModels,
 }
 
-impl Local {
+impl LocalCalls {
     /// Refuses a name that no model in process can have, and unusable settings of device or memory.
-    pub(super) fn rehearse(job: &Job, name: &str) -> Result<(), Error> {
-        loading(job)?;
-        Ok(Models::check_name(name)?)
+    pub(super) fn rehearse_model(job: &RunJob, name: &str) -> Result<(), CommandError> {
+        loading_options(job)?;
+        Ok(LocalModels::check_name(name)?)
     }
 
     /// Opens the hub's cache and the device that environment and settings name.
-    pub(super) fn open(job: &Job, run: Run, output: &Output) -> Result<Self, Error> {
+    pub(super) fn open(job: &RunJob, run: LedgerRun, output: &CommandOutput) -> Result<Self, CommandError> {
         let mut config = HubConfig::from_env()?;
         config.trust.clone_from(&job.service.trust);
-        let hub = Hub::new(config)?;
-        Ok(Self { models: Models::new(hub, loading(job)?, Box::new(DownloadBar::new(output)), run) })
+        let hub = ModelHub::new(config)?;
+        Ok(Self { models: LocalModels::new(hub, loading_options(job)?, Box::new(DownloadBar::new(output)), run) })
     }
 
     /// Makes sure that a model's files are on this machine.
-    pub(super) fn ready(&self, name: &str) -> Result<(), Error> {
+    pub(super) fn model_ready(&self, name: &str) -> Result<(), CommandError> {
         Ok(self.models.at_hand(name)?)
     }
 
     /// Loads a model, once.
-    pub(super) fn model(&self, name: &str) -> Result<Arc<dyn LanguageModel>, Error> {
-        Ok(self.models.model(name)?)
+    pub(super) fn open_model(&self, name: &str) -> Result<Arc<dyn LanguageModel>, CommandError> {
+        Ok(self.models.get_model(name)?)
     }
 
     /// Refuses a name that no detector in process can have, and unusable settings of device or memory.
-    pub(super) fn rehearse_detector(job: &Job, name: &str) -> Result<(), Error> {
-        loading(job)?;
-        Ok(Models::check_detector_name(name)?)
+    pub(super) fn rehearse_detector(job: &RunJob, name: &str) -> Result<(), CommandError> {
+        loading_options(job)?;
+        Ok(LocalModels::check_detector_name(name)?)
     }
 
     /// Makes sure that a detector's files are on this machine.
-    pub(super) fn detector_ready(&self, name: &str) -> Result<(), Error> {
+    pub(super) fn detector_ready(&self, name: &str) -> Result<(), CommandError> {
         Ok(self.models.detector_at_hand(name)?)
     }
 
     /// Loads a detector, once.
-    pub(super) fn detector(&self, name: &str) -> Result<Arc<dyn Detector>, Error> {
-        Ok(self.models.detector(name)?)
+    pub(super) fn open_detector(&self, name: &str) -> Result<Arc<dyn ObjectDetector>, CommandError> {
+        Ok(self.models.get_detector(name)?)
     }
 
     /// The manner in which a model is asked.
-    pub(super) fn manner(&self, name: &str) -> Result<Manner, Error> {
-        Ok(match self.models.model(name)?.kind() {
-            EyeKind::Questions => Manner::Question,
-            EyeKind::Texts => Manner::Completion,
+    pub(super) fn prompt_manner(&self, name: &str) -> Result<PromptManner, CommandError> {
+        Ok(match self.models.get_model(name)?.kind() {
+            EyeKind::Questions => PromptManner::Question,
+            EyeKind::Texts => PromptManner::Completion,
         })
     }
 
     /// Loads a model and tries it out.
-    pub(super) fn check(&self, name: &str, is_to_see: bool) -> Vec<Finding> {
-        let model = match self.models.model(name) {
+    pub(super) fn check_model(&self, name: &str, is_to_see: bool) -> Vec<ServiceFinding> {
+        let model = match self.models.get_model(name) {
             Ok(model) => model,
-            Err(error) => return vec![Finding::error(&error.to_string())],
+            Err(error) => return vec![ServiceFinding::from_error_text(&error.to_string())],
         };
-        let mut findings = vec![Finding::ok(format!("{name} is loaded, {}", model.origin()))];
+        let mut findings = vec![ServiceFinding::ok(format!("{name} is loaded, {}", model.origin()))];
         if !is_to_see {
-            findings.push(Finding::error(&format!(
+            findings.push(ServiceFinding::from_error_text(&format!(
                 "{name} answers about pictures and writes no texts\nhint: use it with --see"
             )));
         }
-        findings.extend(Finding::of_seeing(model.as_ref()));
+        findings.extend(ServiceFinding::of_seeing(model.as_ref()));
         findings
     }
 }
 
-fn loading(Job { settings, service, .. }: &Job) -> Result<Loading, Error> {
+fn loading_options(RunJob { settings, service, .. }: &RunJob) -> Result<LoadingOptions, CommandError> {
     let precision = settings.roles.precision.map(|precision| match precision {
-        settings::Precision::F32 => Precision::F32,
-        settings::Precision::Bf16 => Precision::Bf16,
-        settings::Precision::F16 => Precision::F16,
+        settings::AskedPrecision::F32 => WeightPrecision::F32,
+        settings::AskedPrecision::Bf16 => WeightPrecision::Bf16,
+        settings::AskedPrecision::F16 => WeightPrecision::F16,
     });
-    let device = Device::named(service.device.as_deref().unwrap_or("cpu"))?;
+    let device = ModelDevice::from_name(service.device.as_deref().unwrap_or("cpu"))?;
     let memory_bytes = service.memory_gib.map(|gib| (gib * f64::from(1 << 30)) as u64);
-    Ok(Loading { device, precision, memory_bytes })
+    Ok(LoadingOptions { device, precision, memory_bytes })
 }

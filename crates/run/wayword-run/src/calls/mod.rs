@@ -12,34 +12,34 @@ mod ready;
 mod spent;
 
 use crate::{
-    error::Error,
-    in_order::cores,
-    output::Output,
-    settings::{Job, is_in_process},
+    error::CommandError,
+    in_order::core_count,
+    output::CommandOutput,
+    settings::{RunJob, is_in_process},
 };
-use configured::{concurrency, config};
-use local::Local;
+use configured::{service_concurrency, service_config};
+use local::LocalCalls;
 use std::{
     collections::BTreeMap,
     fs::File,
     path::{Path, PathBuf},
     sync::Arc,
 };
-use wayword_core::{Detector, LanguageModel};
-use wayword_ledger::{Ledger, Limits, Run};
-use wayword_remote::{Finding, Price, Services};
-use wayword_synthesis::prompts::Manner;
+use wayword_core::{LanguageModel, ObjectDetector};
+use wayword_ledger::{Ledger, LedgerRun, RunLimits};
+use wayword_remote::{ModelPrice, ModelServices, ServiceFinding};
+use wayword_synthesis::prompts::PromptManner;
 
 pub use configured::ledger_path;
-pub use keeping::Keeping;
-pub use spent::Spent;
+pub use keeping::CallKeeping;
+pub use spent::CallSpending;
 
 /// The models that one command may call.
-pub struct Calls {
-    services: Services,
+pub struct ModelCalls {
+    services: ModelServices,
     /// `Some` if a model in process is named.
-    local: Option<Local>,
-    run: Run,
+    local: Option<LocalCalls>,
+    run: LedgerRun,
     /// The ledger, if it keeps the calls of each chunk in a recording of its own.
     in_chunks: Option<Ledger>,
     record: Option<PathBuf>,
@@ -48,42 +48,42 @@ pub struct Calls {
     waits: bool,
 }
 
-impl Calls {
-    /// Makes the checks of [`Calls::open`] on names, prices, providers and files, before a file is written. Gives each model's
+impl ModelCalls {
+    /// Makes the checks of [`ModelCalls::open_ledger`] on names, prices, providers and files, before a file is written. Gives each model's
     /// price, if it is known.
     ///
     /// # Errors
     /// When a provider is not known, a price is needed and not known, the ledger would be on a network file system, the
     /// recording to replay is missing, or the folder for a new recording is.
-    pub fn rehearse(job: &Job) -> Result<BTreeMap<String, Option<Price>>, Error> {
-        let Job { settings, service, .. } = job;
-        let nowhere = Ledger::in_memory()?.run("rehearsal", Limits::default())?;
-        let services = Services::new(config(job)?, nowhere)?;
-        let price = |name: &str| -> Result<Option<Price>, Error> {
-            if let Some(refused) = gguf::refused(name) {
+    pub fn rehearse_job(job: &RunJob) -> Result<BTreeMap<String, Option<ModelPrice>>, CommandError> {
+        let RunJob { settings, service, .. } = job;
+        let nowhere = Ledger::in_memory()?.start_run("rehearsal", RunLimits::default())?;
+        let services = ModelServices::new(service_config(job)?, nowhere)?;
+        let price = |name: &str| -> Result<Option<ModelPrice>, CommandError> {
+            if let Some(refused) = gguf::refuse_gguf(name) {
                 return Err(refused);
             }
             if settings.roles.detector.as_deref() == Some(name) {
-                Local::rehearse_detector(job, name)?;
-                return Ok(Some(Price::nothing()));
+                LocalCalls::rehearse_detector(job, name)?;
+                return Ok(Some(ModelPrice::free_of_charge()));
             }
             if is_in_process(name) {
-                Local::rehearse(job, name)?;
-                return Ok(Some(Price::nothing()));
+                LocalCalls::rehearse_model(job, name)?;
+                return Ok(Some(ModelPrice::free_of_charge()));
             }
             Ok(services.model(name)?.price().cloned())
         };
         let priced = |name: &str| Ok((name.to_owned(), price(name)?));
-        let prices = settings.roles.models().into_iter().map(priced).collect::<Result<_, Error>>()?;
+        let prices = settings.roles.model_names().into_iter().map(priced).collect::<Result<_, CommandError>>()?;
         settings.roles.shown_pictures().into_iter().try_for_each(|name| services.takes_pictures(name))?;
         if let Some(recording) = &service.replay {
-            File::open(recording).map_err(Error::io(recording, "read the recording"))?;
-        } else if !settings.roles.models().is_empty() {
-            job.keeping.check(service)?;
+            File::open(recording).map_err(CommandError::io(recording, "read the recording"))?;
+        } else if !settings.roles.model_names().is_empty() {
+            job.keeping.check_store(service)?;
         }
         let folder = service.record.as_deref().and_then(Path::parent).filter(|folder| !folder.as_os_str().is_empty());
         if let Some(missing) = folder.filter(|folder| !folder.is_dir()) {
-            return Err(Error::usage(
+            return Err(CommandError::usage(
                 format!("--record: the folder {} does not exist", missing.display()),
                 "make it, or give another file",
             ));
@@ -96,28 +96,28 @@ impl Calls {
     ///
     /// # Errors
     /// When the ledger cannot be opened, a provider is not known, or a price is needed and not known.
-    pub fn open(job: &Job, run: &str, output: &Output) -> Result<Option<Self>, Error> {
-        let Job { settings, service, .. } = job;
-        if settings.roles.models().is_empty() {
+    pub fn open(job: &RunJob, run: &str, output: &CommandOutput) -> Result<Option<Self>, CommandError> {
+        let RunJob { settings, service, .. } = job;
+        if settings.roles.model_names().is_empty() {
             return Ok(None);
         }
         let ledger = match &service.replay {
-            Some(recording) => Ledger::replay(recording)?,
-            None => job.keeping.open(service)?,
+            Some(recording) => Ledger::replay_recording(recording)?,
+            None => job.keeping.open_ledger(service)?,
         };
-        let is_in_chunks = service.replay.is_none() && matches!(job.keeping, Keeping::Chunks(_));
+        let is_in_chunks = service.replay.is_none() && matches!(job.keeping, CallKeeping::Chunks(_));
         let in_chunks = is_in_chunks.then(|| ledger.clone());
-        let run = ledger.run(run, Limits { max_usd: service.max_usd, max_calls: service.max_calls })?;
-        let services = Services::new(config(job)?, run.clone())?;
-        let models = settings.roles.models();
-        if let Some(refused) = models.iter().find_map(|name| gguf::refused(name)) {
+        let run = ledger.start_run(run, RunLimits { max_usd: service.max_usd, max_calls: service.max_calls })?;
+        let services = ModelServices::new(service_config(job)?, run.clone())?;
+        let models = settings.roles.model_names();
+        if let Some(refused) = models.iter().find_map(|name| gguf::refuse_gguf(name)) {
             return Err(refused);
         }
         let in_process = models.iter().any(|name| is_in_process(name));
-        let local = if in_process { Some(Local::open(job, run.clone(), output)?) } else { None };
+        let local = if in_process { Some(LocalCalls::open(job, run.clone(), output)?) } else { None };
         // A command that does not wait for a network has no use for more items than cores.
         let waits = models.iter().any(|name| !is_in_process(name));
-        let workers = if waits { concurrency(service).threads() } else { cores() };
+        let workers = if waits { service_concurrency(service).thread_count() } else { core_count() };
         Ok(Some(Self { services, local, run, in_chunks, record: service.record.clone(), workers, waits }))
     }
 
@@ -125,9 +125,9 @@ impl Calls {
     ///
     /// # Errors
     /// When its provider is not known, or it has no price and one is needed.
-    pub fn model(&self, name: &str) -> Result<Arc<dyn LanguageModel>, Error> {
+    pub fn open_model(&self, name: &str) -> Result<Arc<dyn LanguageModel>, CommandError> {
         match self.local.as_ref().filter(|_| is_in_process(name)) {
-            Some(local) => local.model(name),
+            Some(local) => local.open_model(name),
             None => Ok(self.services.model(name)?),
         }
     }
@@ -136,30 +136,32 @@ impl Calls {
     ///
     /// # Errors
     /// When it cannot be loaded, or does not detect.
-    pub fn detector(&self, name: &str) -> Result<Arc<dyn Detector>, Error> {
+    pub fn open_detector(&self, name: &str) -> Result<Arc<dyn ObjectDetector>, CommandError> {
         match &self.local {
-            Some(local) => local.detector(name),
-            None => Err(Error::not_built(format!("{name} cannot be asked: this build runs no models in process"))),
+            Some(local) => local.open_detector(name),
+            None => {
+                Err(CommandError::not_built(format!("{name} cannot be asked: this build runs no models in process")))
+            }
         }
     }
 
     /// The manner in which a model that sees is asked.
     ///
     /// # Errors
-    /// As for [`Calls::model`].
-    pub fn manner(&self, name: &str) -> Result<Manner, Error> {
+    /// As for [`ModelCalls::open_model`].
+    pub fn prompt_manner(&self, name: &str) -> Result<PromptManner, CommandError> {
         match self.local.as_ref().filter(|_| is_in_process(name)) {
-            Some(local) => local.manner(name),
-            None => Ok(Manner::Chat),
+            Some(local) => local.prompt_manner(name),
+            None => Ok(PromptManner::Chat),
         }
     }
 
     /// Tries a model out for `wayword doctor`. With `sees` it is shown a picture.
     #[must_use]
-    pub fn check(&self, name: &str, sees: bool) -> Vec<Finding> {
+    pub fn check_model(&self, name: &str, sees: bool) -> Vec<ServiceFinding> {
         match self.local.as_ref().filter(|_| is_in_process(name)) {
-            Some(local) => local.check(name, sees),
-            None => self.services.check(name, sees),
+            Some(local) => local.check_model(name, sees),
+            None => self.services.check_model(name, sees),
         }
     }
 
@@ -167,15 +169,15 @@ impl Calls {
     ///
     /// # Errors
     /// When the recording cannot be read or written.
-    pub fn turn_to(&self, recording: &Path) -> Result<(), Error> {
+    pub fn turn_to(&self, recording: &Path) -> Result<(), CommandError> {
         self.in_chunks.as_ref().map_or(Ok(()), |ledger| Ok(ledger.turn_to(recording)?))
     }
 
     /// The calls, tokens and money of this command so far.
     #[must_use]
-    pub fn spent(&self) -> Spent {
+    pub fn spent_so_far(&self) -> CallSpending {
         let totals = self.run.totals();
-        Spent {
+        CallSpending {
             requests: totals.calls,
             answered: totals.answered,
             from_ledger: totals.hits,
@@ -190,7 +192,7 @@ impl Calls {
 
     /// How many items to make at a time.
     #[must_use]
-    pub fn workers(&self) -> usize {
+    pub fn worker_count(&self) -> usize {
         self.workers
     }
 
@@ -202,7 +204,7 @@ impl Calls {
     }
 
     /// A function that stops the sending. Calls in flight are finished, and their answers kept.
-    pub fn ending(&self) -> impl Fn() + Send + 'static {
+    pub fn sending_stopper(&self) -> impl Fn() + Send + 'static {
         let run = self.run.stopper();
         move || run.stop()
     }
@@ -211,9 +213,9 @@ impl Calls {
     ///
     /// # Errors
     /// When it cannot be written.
-    pub fn record(&self) -> Result<(), Error> {
+    pub fn write_recording(&self) -> Result<(), CommandError> {
         if let Some(file) = &self.record {
-            self.run.record(file)?;
+            self.run.record_calls(file)?;
         }
         Ok(())
     }

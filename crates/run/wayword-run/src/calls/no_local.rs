@@ -1,53 +1,53 @@
 //! Replaces `local.rs` in a build that runs no models in process.
 
-use crate::{error::Error, output::Output, settings::Job};
+use crate::{error::CommandError, output::CommandOutput, settings::RunJob};
 use std::sync::Arc;
-use wayword_core::{Detector, LanguageModel};
-use wayword_ledger::Run;
-use wayword_remote::Finding;
-use wayword_synthesis::prompts::Manner;
+use wayword_core::{LanguageModel, ObjectDetector};
+use wayword_ledger::LedgerRun;
+use wayword_remote::ServiceFinding;
+use wayword_synthesis::prompts::PromptManner;
 
 /// Has no values: a build without the feature `local` has no models in process.
-pub(super) enum Local {}
+pub(super) enum LocalCalls {}
 
-impl Local {
-    pub(super) fn rehearse(_: &Job, name: &str) -> Result<(), Error> {
-        Err(refused(name))
+impl LocalCalls {
+    pub(super) fn rehearse_model(_: &RunJob, name: &str) -> Result<(), CommandError> {
+        Err(not_built_error(name))
     }
 
-    pub(super) fn open(_: &Job, _: Run, _: &Output) -> Result<Self, Error> {
-        Err(refused("a model in process"))
+    pub(super) fn open(_: &RunJob, _: LedgerRun, _: &CommandOutput) -> Result<Self, CommandError> {
+        Err(not_built_error("a model in process"))
     }
 
-    pub(super) fn ready(&self, _: &str) -> Result<(), Error> {
+    pub(super) fn model_ready(&self, _: &str) -> Result<(), CommandError> {
         match *self {}
     }
 
-    pub(super) fn model(&self, _: &str) -> Result<Arc<dyn LanguageModel>, Error> {
+    pub(super) fn open_model(&self, _: &str) -> Result<Arc<dyn LanguageModel>, CommandError> {
         match *self {}
     }
 
-    pub(super) fn rehearse_detector(_: &Job, name: &str) -> Result<(), Error> {
-        Err(refused(name))
+    pub(super) fn rehearse_detector(_: &RunJob, name: &str) -> Result<(), CommandError> {
+        Err(not_built_error(name))
     }
 
-    pub(super) fn detector_ready(&self, _: &str) -> Result<(), Error> {
+    pub(super) fn detector_ready(&self, _: &str) -> Result<(), CommandError> {
         match *self {}
     }
 
-    pub(super) fn detector(&self, _: &str) -> Result<Arc<dyn Detector>, Error> {
+    pub(super) fn open_detector(&self, _: &str) -> Result<Arc<dyn ObjectDetector>, CommandError> {
         match *self {}
     }
 
-    pub(super) fn manner(&self, _: &str) -> Result<Manner, Error> {
+    pub(super) fn prompt_manner(&self, _: &str) -> Result<PromptManner, CommandError> {
         match *self {}
     }
 
-    pub(super) fn check(&self, _: &str, _: bool) -> Vec<Finding> {
+    pub(super) fn check_model(&self, _: &str, _: bool) -> Vec<ServiceFinding> {
         match *self {}
     }
 }
 
-fn refused(name: &str) -> Error {
-    Error::not_built(format!("{name} cannot be asked: this build runs no models in process"))
+fn not_built_error(name: &str) -> CommandError {
+    CommandError::not_built(format!("{name} cannot be asked: this build runs no models in process"))
 }

@@ -2,7 +2,7 @@
 
 use crate::{
     looking_for::NO_PROPOSALS,
-    settings::{Asked, AskedPlatform, AskedRoles, Service, Sources, Writing},
+    settings::{AskedPlatform, AskedRoles, AskedSettings, EvidenceSources, Service, Writing},
     styles,
 };
 use clap::{Args, ValueEnum};
@@ -16,7 +16,7 @@ Examples:
   wayword check R2R_val_seen.json --platform matterport --data DATA --style r2r --json
   wayword check runs/houses/instructions.jsonl --platform house --style r2r
   wayword check edited.json --run runs/houses")]
-pub struct Check {
+pub struct CheckArgs {
     /// File of instructions: R2R, REVERIE, RxR or Wayword.
     pub file: PathBuf,
     /// The platform.
@@ -29,7 +29,7 @@ pub struct Check {
     pub run: Option<PathBuf>,
     /// Check that every text keeps to this style. Without it, a text written by Wayword is checked against the built-in style that
     /// it was written in, and any other text only against its path.
-    #[arg(long, value_name = "STYLE", value_parser = styles::typed)]
+    #[arg(long, value_name = "STYLE", value_parser = styles::check_style_name)]
     pub style: Option<String>,
     /// In a closed world, a claim that the evidence does not show is wrong. In an open one, it counts only if the evidence would
     /// have shown it.
@@ -53,7 +53,7 @@ pub struct Check {
     pub doubts: bool,
     /// A detector that looks for what the texts name.
     #[command(flatten)]
-    pub detecting: Detecting,
+    pub detecting: CheckDetectorArgs,
     /// Show at most this many of the instructions that did not pass.
     #[arg(long, value_name = "N", default_value_t = 10)]
     pub show: usize,
@@ -62,7 +62,7 @@ pub struct Check {
 /// The detector of `wayword check`.
 #[derive(Debug, Default, Args)]
 #[command(next_help_heading = "Detector")]
-pub struct Detecting {
+pub struct CheckDetectorArgs {
     /// Look for the things that the texts name in the pictures along their paths, where the platform has no labels: a model as
     /// hf/ORG/NAME, which runs inside this program.
     #[arg(long, value_name = "MODEL", conflicts_with = "run")]
@@ -73,7 +73,7 @@ pub struct Detecting {
     /// The evidence that counts: labels, detector, or both separated by a comma (the detector where there are no labels).
     /// [default: labels,detector]
     #[arg(long, value_name = "SOURCES", requires = "detector")]
-    pub evidence: Option<Sources>,
+    pub evidence: Option<EvidenceSources>,
     /// Device that it runs on: cpu, cuda, cuda:1 or metal. [default: cpu]
     #[arg(long, value_name = "DEVICE", requires = "detector")]
     pub device: Option<String>,
@@ -89,11 +89,11 @@ pub struct Detecting {
     pub ledger: Option<PathBuf>,
 }
 
-impl Detecting {
+impl CheckDetectorArgs {
     /// These flags as the settings of other commands, without proposals: the detector looks only for things that texts name.
     #[must_use]
-    pub fn asked(&self) -> Asked {
-        Asked {
+    pub fn to_asked(&self) -> AskedSettings {
+        AskedSettings {
             roles: AskedRoles { detector: self.detector.clone(), ..AskedRoles::default() },
             writing: Writing {
                 detector_figures: self.detector_figures.clone(),
@@ -107,7 +107,7 @@ impl Detecting {
                 ledger: self.ledger.clone(),
                 ..Service::default()
             },
-            ..Asked::default()
+            ..AskedSettings::default()
         }
     }
 }

@@ -11,33 +11,36 @@ mod worlds;
 
 use crate::{
     calibration,
-    check::args::{AskedWorld, Check as Args},
-    doubts::doubts,
-    error::{Error, Exit},
-    follow::{Followed, KnownScenes, Told, rejection},
+    check::args::{AskedWorld, CheckArgs as Args},
+    doubts::find_doubts,
+    error::{CommandError, Exit},
+    follow::{FollowedPath, FollowerFindings, KnownScenes, ambiguity_rejection},
     interrupt,
-    looking_for::Lookout,
-    output::Output,
-    pipeline::panoramas,
-    platforms::{self, Remembering},
-    settings::{Asked, Settings, Sources},
+    looking_for::DetectorLookout,
+    output::CommandOutput,
+    pipeline::path_panoramas,
+    platforms::{self, RememberingPlatform},
+    settings::{AskedSettings, EvidenceSources, RunSettings},
 };
-use held::Held;
+use held::CheckStyles;
 use rayon::prelude::*;
-use report::Shown;
+use report::CheckReportText;
 use std::{collections::BTreeMap, path::Path as FilePath};
-use walks::{Text, Walk, walks};
-use wayword_checks::{Evidence, Reach, Subject, Surroundings, Testimony, Turns, World, check, lift, open::Calibration};
+use walks::{FileText, PathTexts, read_path_texts};
+use wayword_checks::{
+    CheckSubject, CheckWorld, Evidence, PathSurroundings, Testimony, TurnJudge, WorldReach, check_text, lift_confirmed,
+    open::Calibration,
+};
+use wayword_core::{CheckFinding, Platform};
 #[cfg(feature = "study")]
-use wayword_core::{Doubt, Path};
-use wayword_core::{Finding, Platform};
+use wayword_core::{Path, TextDoubt};
 use worlds::world_of;
 
-pub use report::{AmbiguousText, CheckReport, CheckedText, Counts, DoubtedText};
+pub use report::{AmbiguousText, CheckReport, CheckedText, DoubtedText, VerdictCounts};
 
-pub fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
-    let report = checked(args, output)?;
-    output.data(&report, Shown { report: &report, most: args.show });
+pub fn run_check(args: &Args, output: &CommandOutput) -> Result<Exit, CommandError> {
+    let report = check_texts(args, output)?;
+    output.print_result(&report, CheckReportText { report: &report, most: args.show });
     Ok(if report.failed == 0 { Exit::Done } else { Exit::WithLoss })
 }
 
@@ -45,8 +48,8 @@ pub fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
 ///
 /// # Errors
 /// As [`check_file`]; also when the flags do not fit together.
-pub fn checked(args: &Args, output: &Output) -> Result<CheckReport, Error> {
-    let how = How {
+pub fn check_texts(args: &Args, output: &CommandOutput) -> Result<CheckReport, CommandError> {
+    let how = CheckOptions {
         style: args.style.as_deref(),
         world: args.world,
         without_witnesses: args.no_witnesses,
@@ -59,15 +62,15 @@ pub fn checked(args: &Args, output: &Output) -> Result<CheckReport, Error> {
     if let Some(run) = &args.run {
         return of_run::check_file(&args.file, run, how);
     }
-    let settings = Asked::from(args.platform.clone()).resolve()?;
-    let lookout = detecting::lookout(&args.detecting, output)?;
-    let sources = args.detecting.evidence.unwrap_or(Sources::usual(true));
+    let settings = AskedSettings::from(args.platform.clone()).resolve()?;
+    let lookout = detecting::open_lookout(&args.detecting, output)?;
+    let sources = args.detecting.evidence.unwrap_or(EvidenceSources::usual_sources(true));
     check_by(&args.file, &settings, how, (lookout.as_ref(), sources), output)
 }
 
 /// How the texts of a file are checked.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct How<'a> {
+pub struct CheckOptions<'a> {
     /// The style that every text has to keep to.
     pub style: Option<&'a str>,
     /// Whether texts are checked in an open or a closed world.
@@ -91,32 +94,37 @@ pub struct How<'a> {
 /// # Errors
 /// When the file, the platform's data, the style or the calibration cannot be read. A path that does not fit the data is an
 /// error too, because its texts could not be checked.
-pub fn check_file(file: &FilePath, settings: &Settings, how: How<'_>, output: &Output) -> Result<CheckReport, Error> {
-    check_by(file, settings, how, (None, Sources::default()), output)
+pub fn check_file(
+    file: &FilePath,
+    settings: &RunSettings,
+    how: CheckOptions<'_>,
+    output: &CommandOutput,
+) -> Result<CheckReport, CommandError> {
+    check_by(file, settings, how, (None, EvidenceSources::default()), output)
 }
 
 fn check_by(
     file: &FilePath,
-    settings: &Settings,
-    how: How<'_>,
-    (lookout, sources): (Option<&Lookout>, Sources),
-    output: &Output,
-) -> Result<CheckReport, Error> {
-    let platform = platforms::open(settings)?;
-    let calibration = how.calibration.map(|file| calibration::read(file, platform.name())).transpose()?;
-    let held = Held::to(how.style)?;
-    let walks = walks(file, platform.as_ref())?;
-    let checking = Checking {
+    settings: &RunSettings,
+    how: CheckOptions<'_>,
+    (lookout, sources): (Option<&DetectorLookout>, EvidenceSources),
+    output: &CommandOutput,
+) -> Result<CheckReport, CommandError> {
+    let platform = platforms::open_platform(settings)?;
+    let calibration = how.calibration.map(|file| calibration::read_calibration(file, platform.name())).transpose()?;
+    let held = CheckStyles::for_style(how.style)?;
+    let walks = read_path_texts(file, platform.as_ref())?;
+    let checking = TextChecker {
         platform: platform.as_ref(),
         held: &held,
         how,
         lookout,
         sources,
         calibration: calibration.as_ref(),
-        captions: how.captions.map(of_run::captions).transpose()?.unwrap_or_default(),
+        captions: how.captions.map(of_run::read_captions).transpose()?.unwrap_or_default(),
         scenes: KnownScenes::new(),
     };
-    checking.report(&walks, output)
+    checking.check_walks(&walks, output)
 }
 
 /// The words to doubt in texts about paths, in the order of the texts, which are checked in an open world.
@@ -127,50 +135,50 @@ fn check_by(
 pub fn doubts_of(
     texts: Vec<(Path, String)>,
     platform: &dyn Platform,
-    output: &Output,
-) -> Result<Vec<Vec<Doubt>>, Error> {
-    let how = How { doubts: true, ..How::default() };
-    let checking = Checking {
+    output: &CommandOutput,
+) -> Result<Vec<Vec<TextDoubt>>, CommandError> {
+    let how = CheckOptions { doubts: true, ..CheckOptions::default() };
+    let checking = TextChecker {
         platform,
-        held: &Held::to(None)?,
+        held: &CheckStyles::for_style(None)?,
         how,
         lookout: None,
-        sources: Sources::default(),
+        sources: EvidenceSources::default(),
         calibration: None,
         captions: BTreeMap::new(),
         scenes: KnownScenes::new(),
     };
-    let report = checking.report(&walks::gathered(texts), output)?;
+    let report = checking.check_walks(&walks::gather_by_path(texts), output)?;
     Ok(report.doubted.into_iter().map(|text| text.doubts).collect())
 }
 
 /// The source of evidence for the texts of a path, and each text with its place in the file and its findings.
-type CheckedWalk = (&'static str, Vec<(usize, CheckedText, Vec<Finding>)>);
+type CheckedWalk = (&'static str, Vec<(usize, CheckedText, Vec<CheckFinding>)>);
 
 /// Everything that the checks of all paths share.
-struct Checking<'a> {
+struct TextChecker<'a> {
     platform: &'a dyn Platform,
-    held: &'a Held,
-    how: How<'a>,
+    held: &'a CheckStyles,
+    how: CheckOptions<'a>,
     /// The detector that looks for things that texts name.
-    lookout: Option<&'a Lookout>,
+    lookout: Option<&'a DetectorLookout>,
     /// Whether labels count, and the detector.
-    sources: Sources,
+    sources: EvidenceSources,
     calibration: Option<&'a Calibration>,
     /// The captions of a run as evidence, by the ids of its paths.
     captions: BTreeMap<String, Evidence>,
     scenes: KnownScenes,
 }
 
-impl Checking<'_> {
+impl TextChecker<'_> {
     /// Checks the texts of all walks in parallel, and adds them to a report in the order of the file.
-    fn report(&self, walks: &[Walk], output: &Output) -> Result<CheckReport, Error> {
-        let bar = output.progress(walks.len(), "paths");
+    fn check_walks(&self, walks: &[PathTexts], output: &CommandOutput) -> Result<CheckReport, CommandError> {
+        let bar = output.progress_bar(walks.len(), "paths");
         let checked: Vec<_> = walks
             .par_iter()
             .map(|walk| {
-                interrupt::check()?;
-                let checked = self.check(walk);
+                interrupt::check_interrupt()?;
+                let checked = self.check_walk(walk);
                 bar.inc(1);
                 checked
             })
@@ -186,67 +194,68 @@ impl Checking<'_> {
             texts.extend(of_walk);
         }
         for text in walks.iter().flat_map(|walk| &walk.texts) {
-            self.held.count(text, &mut report);
+            self.held.count_text(text, &mut report);
         }
         // Back into the order of the file: the texts of one path were checked together.
         texts.sort_by_key(|(at, _, _)| *at);
         for (_, text, findings) in texts {
-            report.add(text, &findings);
+            report.add_text(text, &findings);
         }
         Ok(report)
     }
 
-    fn check(&self, walk: &Walk) -> Result<CheckedWalk, Error> {
+    fn check_walk(&self, walk: &PathTexts) -> Result<CheckedWalk, CommandError> {
         let Self { platform, how, lookout, sources, .. } = *self;
-        let world = Remembering::new(platform);
-        let views = panoramas(&world, &walk.path)?;
+        let world = RememberingPlatform::new(platform);
+        let views = path_panoramas(&world, &walk.path)?;
         let labels = if sources.labels { Evidence::from_labels(&walk.path, &views) } else { None };
         let detected = match lookout.filter(|_| labels.is_none() && sources.detector) {
-            Some(lookout) => detecting::evidence(lookout, &world, walk)?,
+            Some(lookout) => detecting::detector_evidence(lookout, &world, walk)?,
             None => None,
         };
         let captions = || self.captions.get(&walk.path.id).cloned();
         let known = labels.or(detected).or_else(captions);
         let mut evidence = known.unwrap_or_else(|| Evidence::of_path_alone(&walk.path));
         let source = evidence.source;
-        let world_of = |text: &Text| world_of(text, how.world, platform.name(), source);
-        let some_are_open = walk.texts.iter().any(|text| world_of(text) == World::Open);
-        let scene = Some(self.scenes.get(platform, &walk.path.scene)?);
-        evidence.beyond = scene.as_ref().map(|scene| scene.listed.beyond(&walk.path)).unwrap_or_default();
-        let around = scene.as_ref().and_then(|scene| Surroundings::of(&scene.listed, &walk.path));
-        let reach = Reach { surroundings: around.as_ref(), calibration: self.calibration };
-        let followed = (!how.without_route).then(|| Followed::new(scene.as_deref(), &walk.path, &evidence));
+        let world_of = |text: &FileText| world_of(text, how.world, platform.name(), source);
+        let some_are_open = walk.texts.iter().any(|text| world_of(text) == CheckWorld::Open);
+        let scene = Some(self.scenes.get_or_survey(platform, &walk.path.scene)?);
+        evidence.beyond = scene.as_ref().map(|scene| scene.listed.beyond_end(&walk.path)).unwrap_or_default();
+        let around = scene.as_ref().and_then(|scene| PathSurroundings::around_path(&scene.listed, &walk.path));
+        let reach = WorldReach { surroundings: around.as_ref(), calibration: self.calibration };
+        let followed = (!how.without_route).then(|| FollowedPath::new(scene.as_deref(), &walk.path, &evidence));
         let hears = some_are_open && !how.without_witnesses && walk.texts.len() > 1;
         // Records of this format have one writer, who makes the same mistakes in all texts.
-        let testimony = |text: &Text| (hears && text.made.is_none()).then(|| Testimony::of(&text.words, &evidence));
+        let testimony =
+            |text: &FileText| (hears && text.made.is_none()).then(|| Testimony::from_text(&text.words, &evidence));
         let testimonies: Vec<Option<Testimony>> = walk.texts.iter().map(testimony).collect();
         let checked = walk.texts.iter().zip(&testimonies).map(|(text, own)| {
             let known = self.held.style_of(text);
             let told = followed.as_ref().map(|followed| match followed {
-                Ok(followed) => followed.follow(&text.words, text.tag.as_deref()),
-                Err(why) => Told::unknown(why),
+                Ok(followed) => followed.follow_text(&text.words, text.tag.as_deref()),
+                Err(why) => FollowerFindings::not_followed(why),
             });
             // People name a target as they like, so any object of the final viewpoint is accepted.
             let subject = match world_of(text) {
-                World::Closed => Subject::closed(&evidence, &known.style, None),
-                World::Open => Subject::open(&evidence, &known.style, reach),
+                CheckWorld::Closed => CheckSubject::closed_world(&evidence, &known.style, None),
+                CheckWorld::Open => CheckSubject::open_world(&evidence, &known.style, reach),
             };
-            let turns = told.as_ref().map_or(Turns::NotJudged("the text is not followed"), |told| told.turns);
-            let subject = Subject { tag: text.tag.as_deref(), turns, ..subject.with_copies(&known.copies) };
-            let mut checked = check(&text.words, subject);
+            let turns = told.as_ref().map_or(TurnJudge::NotJudged("the text is not followed"), |told| told.turns);
+            let subject = CheckSubject { tag: text.tag.as_deref(), turns, ..subject.with_copies(&known.copies) };
+            let mut checked = check_text(&text.words, subject);
             if let Some(told) = &told {
                 told.add_to(&mut checked);
             }
-            if let Some(own) = own.as_ref().filter(|_| checked.world == World::Open) {
+            if let Some(own) = own.as_ref().filter(|_| checked.world == CheckWorld::Open) {
                 let others: Vec<&Testimony> = testimonies.iter().flatten().collect();
-                lift(&mut checked, own, &others);
+                lift_confirmed(&mut checked, own, &others);
             }
-            let ambiguity = told.as_ref().map(|told| told.ambiguity(&text.words, &evidence));
-            checked.add(ambiguity.as_ref().filter(|_| how.reject_ambiguous).and_then(rejection));
-            let mut shown = CheckedText::of(text, &checked);
+            let ambiguity = told.as_ref().map(|told| told.text_ambiguity(&text.words, &evidence));
+            checked.add_findings(ambiguity.as_ref().filter(|_| how.reject_ambiguous).and_then(ambiguity_rejection));
+            let mut shown = CheckedText::from_text(text, &checked);
             if how.doubts {
                 let words = (text.words.as_str(), text.tag.as_deref());
-                shown.doubted = Some(doubts(followed.as_ref(), words, &checked, ambiguity.as_ref()));
+                shown.doubted = Some(find_doubts(followed.as_ref(), words, &checked, ambiguity.as_ref()));
             }
             shown.ambiguity = ambiguity;
             if let Some(told) = told {

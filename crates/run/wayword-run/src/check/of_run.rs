@@ -1,31 +1,31 @@
 //! Checks texts that were edited after `wayword export` against the captions of their own run, which needs no platform.
 
 use super::{
-    How,
-    held::Held,
+    CheckOptions,
+    held::CheckStyles,
     report::{CheckReport, CheckedText},
-    walks::{Named, Text},
+    walks::{FileText, StyleReference},
 };
 use crate::{
     check::args::AskedWorld,
-    error::Error,
+    error::CommandError,
     run_folder::{WalkRecord, file, lines, settings_of},
 };
 use serde::Deserialize;
 use std::{collections::BTreeMap, path::Path as FilePath};
-use wayword_checks::{Evidence, Reach, Subject, Turns, check_own};
-use wayword_core::{Finding, ObjectId, Path, SceneId, ViewpointId};
-use wayword_formats::{Format, jsonl};
-use wayword_synthesis::walk::Walk;
+use wayword_checks::{CheckSubject, Evidence, TurnJudge, WorldReach, check_own};
+use wayword_core::{CheckFinding, ObjectId, Path, SceneId, ViewpointId};
+use wayword_formats::{DatasetFormat, jsonl};
+use wayword_synthesis::walk::ObservedWalk;
 
 /// A text, and how its path is found in the run.
-struct Wanted {
-    text: Text,
-    path: Wants,
+struct RunText {
+    text: FileText,
+    path: RunPathKey,
 }
 
 /// How a text in a file refers to a path of the run.
-enum Wants {
+enum RunPathKey {
     /// Its name.
     Id(String),
     /// The fields of a dataset. The names count only if the dataset has no viewpoints.
@@ -36,30 +36,30 @@ enum Wants {
 ///
 /// # Errors
 /// When the file or the run cannot be read, or a text is about a path that the run does not have.
-pub(super) fn check_file(texts: &FilePath, run: &FilePath, how: How<'_>) -> Result<CheckReport, Error> {
-    let held = Held::of_run(how.style, &settings_of(run)?)?;
+pub(super) fn check_file(texts: &FilePath, run: &FilePath, how: CheckOptions<'_>) -> Result<CheckReport, CommandError> {
+    let held = CheckStyles::of_run(how.style, &settings_of(run)?)?;
     // The finds of a detector are part of the captions.
     let captions_were_evidence = matches!(checked_against(run)?.as_deref(), Some("captions" | "detector"));
-    let mut wanted: Vec<Option<Wanted>> = wanted(texts)?.into_iter().map(Some).collect();
-    let mut found: Vec<(usize, CheckedText, Vec<Finding>)> = Vec::new();
+    let mut wanted: Vec<Option<RunText>> = read_texts(texts)?.into_iter().map(Some).collect();
+    let mut found: Vec<(usize, CheckedText, Vec<CheckFinding>)> = Vec::new();
     let mut report = CheckReport::default();
-    lines::each(&run.join(file::WALKS), |line| {
+    lines::each_line(&run.join(file::WALKS), |line| {
         let record: WalkRecord = line.parse()?;
         let mut mine = Vec::new();
         for slot in &mut wanted {
-            mine.extend(slot.take_if(|wanted| wanted.path.is(&record.path)));
+            mine.extend(slot.take_if(|wanted| wanted.path.matches_path(&record.path)));
         }
         if mine.is_empty() {
             return Ok(());
         }
-        let walk = Walk::new(record.path, record.observations);
+        let walk = ObservedWalk::new(record.path, record.observations);
         let evidence = walk.evidence().unwrap_or_else(|| Evidence::of_path_alone(&walk.path));
         let source = evidence.source.name();
         if !report.checked_against.iter().any(|other| other == source) {
             report.checked_against.push(source.to_owned());
         }
-        for Wanted { text, .. } in mine {
-            held.count(&text, &mut report);
+        for RunText { text, .. } in mine {
+            held.count_text(&text, &mut report);
             let known = held.style_of(&text);
             let target = walk.path.target.as_ref();
             // If labels were the evidence, the captions show less than the texts were written from, so the world is open.
@@ -69,23 +69,23 @@ pub(super) fn check_file(texts: &FilePath, run: &FilePath, how: How<'_>) -> Resu
                 AskedWorld::Auto => captions_were_evidence,
             };
             let subject = if is_closed {
-                Subject::closed(&evidence, &known.style, target)
+                CheckSubject::closed_world(&evidence, &known.style, target)
             } else {
-                Subject::open(&evidence, &known.style, Reach::default())
+                CheckSubject::open_world(&evidence, &known.style, WorldReach::default())
             };
-            let turns = Turns::NotJudged("without the platform the text is not followed");
-            let subject = Subject { tag: text.tag.as_deref(), turns, ..subject.with_copies(&known.copies) };
+            let turns = TurnJudge::NotJudged("without the platform the text is not followed");
+            let subject = CheckSubject { tag: text.tag.as_deref(), turns, ..subject.with_copies(&known.copies) };
             let checked = check_own(&text.words, subject);
-            found.push((text.at, CheckedText::of(&text, &checked), checked.findings));
+            found.push((text.at, CheckedText::from_text(&text, &checked), checked.findings));
         }
         Ok(())
     })?;
     if let Some(lost) = wanted.iter().flatten().next() {
         let problem = format!("{}: the run {} has no path {}", texts.display(), run.display(), lost.text.path);
-        return Err(Error::usage(problem, "give the run that the texts were exported from"));
+        return Err(CommandError::usage(problem, "give the run that the texts were exported from"));
     }
     found.sort_by_key(|(at, _, _)| *at);
-    found.into_iter().for_each(|(_, text, findings)| report.add(text, &findings));
+    found.into_iter().for_each(|(_, text, findings)| report.add_text(text, &findings));
     Ok(report)
 }
 
@@ -93,19 +93,19 @@ pub(super) fn check_file(texts: &FilePath, run: &FilePath, how: How<'_>) -> Resu
 ///
 /// # Errors
 /// When the run cannot be read.
-pub(super) fn captions(run: &FilePath) -> Result<BTreeMap<String, Evidence>, Error> {
+pub(super) fn read_captions(run: &FilePath) -> Result<BTreeMap<String, Evidence>, CommandError> {
     let mut captions = BTreeMap::new();
-    lines::each(&run.join(file::WALKS), |line| {
+    lines::each_line(&run.join(file::WALKS), |line| {
         let record: WalkRecord = line.parse()?;
-        let walk = Walk::new(record.path, record.observations);
+        let walk = ObservedWalk::new(record.path, record.observations);
         captions.extend(walk.evidence().map(|evidence| (walk.path.id.clone(), evidence)));
         Ok(())
     })?;
     Ok(captions)
 }
 
-impl Wants {
-    fn is(&self, path: &Path) -> bool {
+impl RunPathKey {
+    fn matches_path(&self, path: &Path) -> bool {
         match self {
             Self::Id(id) => path.id == *id,
             Self::Way { scene, viewpoints, object, names } => {
@@ -125,48 +125,56 @@ impl Wants {
 }
 
 /// The texts of a file.
-fn wanted(file: &FilePath) -> Result<Vec<Wanted>, Error> {
+fn read_texts(file: &FilePath) -> Result<Vec<RunText>, CommandError> {
     let mut all = Vec::new();
-    if wayword_formats::detect(file)? == Format::Wayword {
-        for (at, jsonl::Record { path, instruction, platform, .. }) in jsonl::read(file)?.into_iter().enumerate() {
-            let style = Named { name: instruction.style, hash: instruction.provenance.style_hash.clone() };
+    if wayword_formats::detect_format(file)? == DatasetFormat::Wayword {
+        for (at, jsonl::InstructionRecord { path, instruction, platform, .. }) in
+            jsonl::read_records(file)?.into_iter().enumerate()
+        {
+            let style = StyleReference { name: instruction.style, hash: instruction.provenance.style_hash.clone() };
             let (words, made) = (instruction.text, Some((platform, instruction.provenance)));
-            let text = Text { at, path: path.id.clone(), words, tag: None, style: Some(style), made };
-            all.push(Wanted { text, path: Wants::Id(path.id) });
+            let text = FileText { at, path: path.id.clone(), words, tag: None, style: Some(style), made };
+            all.push(RunText { text, path: RunPathKey::Id(path.id) });
         }
         return Ok(all);
     }
-    for episode in wayword_formats::read(file)? {
+    for episode in wayword_formats::read_any_format(file)? {
         for (at, words) in episode.instructions.iter().enumerate() {
-            let tag = episode.language(at).map(str::to_owned);
-            let text =
-                Text { at: all.len(), path: episode.id.clone(), words: words.clone(), tag, style: None, made: None };
-            let path = Wants::Way {
+            let tag = episode.language_of(at).map(str::to_owned);
+            let text = FileText {
+                at: all.len(),
+                path: episode.id.clone(),
+                words: words.clone(),
+                tag,
+                style: None,
+                made: None,
+            };
+            let path = RunPathKey::Way {
                 scene: episode.scene.clone(),
                 viewpoints: episode.viewpoints.clone(),
                 object: episode.target_object.clone(),
                 names: [episode.id.clone(), episode.path_id.clone()],
             };
-            all.push(Wanted { text, path });
+            all.push(RunText { text, path });
         }
     }
     Ok(all)
 }
 
 /// The evidence that the first text of a run was checked against.
-fn checked_against(run: &FilePath) -> Result<Option<String>, Error> {
+fn checked_against(run: &FilePath) -> Result<Option<String>, CommandError> {
     #[derive(Deserialize)]
-    struct Line {
-        provenance: Checked,
+    struct FirstInstructionLine {
+        provenance: FirstInstructionProvenance,
     }
     #[derive(Deserialize)]
-    struct Checked {
+    struct FirstInstructionProvenance {
         checked_against: String,
     }
     let mut first = None;
-    lines::each(&run.join(file::INSTRUCTIONS), |line| {
+    lines::each_line(&run.join(file::INSTRUCTIONS), |line| {
         if first.is_none() {
-            let Line { provenance } = line.parse()?;
+            let FirstInstructionLine { provenance } = line.parse()?;
             first = Some(provenance.checked_against);
         }
         Ok(())

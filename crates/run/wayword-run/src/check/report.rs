@@ -1,11 +1,11 @@
 //! The report of `wayword check`: counts by verdict and check, and the texts that did not pass.
 
-use super::walks::Text;
-use crate::{count::count, doubts::Doubted, follow::Shares};
+use super::walks::FileText;
+use crate::{count::count_phrase, doubts::TextDoubts, follow::RouteShares};
 use serde::Serialize;
 use std::{collections::BTreeMap, fmt};
-use wayword_checks::Checked;
-use wayword_core::{Ambiguity, Check, Doubt, Finding, Grade, Verdict};
+use wayword_checks::TextFindings;
+use wayword_core::{CheckFinding, CheckKind, DoubtGrade, TextAmbiguity, TextDoubt, Verdict};
 
 /// The result of checking a file.
 #[derive(Debug, Default, Serialize)]
@@ -29,7 +29,7 @@ pub struct CheckReport {
     /// style.
     pub unknown_styles: BTreeMap<String, usize>,
     /// Per check, the texts that passed, were unverified, or failed it.
-    pub by_check: BTreeMap<&'static str, Counts>,
+    pub by_check: BTreeMap<&'static str, VerdictCounts>,
     /// Texts that may mean several places, or several objects at the end of the path. They fail for that only where
     /// `--reject-ambiguous` asks for it.
     pub ambiguous: usize,
@@ -44,7 +44,7 @@ pub struct CheckReport {
 
 /// Texts by verdict.
 #[derive(Debug, Default, Clone, Copy, Serialize)]
-pub struct Counts {
+pub struct VerdictCounts {
     /// Passed.
     pub passed: usize,
     /// There was no evidence to check against.
@@ -61,7 +61,7 @@ pub struct AmbiguousText {
     /// Its words.
     pub text: String,
     /// The places and objects that it may mean.
-    pub ambiguity: Ambiguity,
+    pub ambiguity: TextAmbiguity,
 }
 
 /// A text with its findings.
@@ -76,19 +76,19 @@ pub struct CheckedText {
     /// The world in which it was checked: open or closed.
     pub world: &'static str,
     /// The findings that are not passes.
-    pub findings: Vec<Finding>,
+    pub findings: Vec<CheckFinding>,
     /// How likely it is that the text means its path.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub route: Option<Shares>,
+    pub route: Option<RouteShares>,
     /// How much the text would fit better with its most doubtful turn reversed: a difference of natural logs of likelihood.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub turn_gain: Option<f64>,
     /// The places and objects that the text may mean. Ambiguity makes a text fail only where `--reject-ambiguous` asks for it.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub ambiguity: Option<Ambiguity>,
+    pub ambiguity: Option<TextAmbiguity>,
     /// The words that a reader should doubt, where that was asked for. A report lists them in [`CheckReport::doubted`].
     #[serde(skip)]
-    pub doubted: Option<Doubted>,
+    pub doubted: Option<TextDoubts>,
     /// The style that it was written in, if the file names it.
     #[serde(skip)]
     pub style: Option<String>,
@@ -112,24 +112,24 @@ pub struct DoubtedText {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unfollowed: Option<&'static str>,
     /// The doubts, in the order of the text and apart from each other.
-    pub doubts: Vec<Doubt>,
+    pub doubts: Vec<TextDoubt>,
 }
 
 impl DoubtedText {
-    fn of(text: &CheckedText, Doubted { doubts, unfollowed }: Doubted) -> Self {
+    fn from_checked(text: &CheckedText, TextDoubts { doubts, unfollowed }: TextDoubts) -> Self {
         let (path, style, words) = (text.path.clone(), text.style.clone(), text.text.clone());
         Self { path, style, text: words, verdict: text.verdict, world: text.world, unfollowed, doubts }
     }
 
     /// Whether it has a doubt of this grade.
     #[must_use]
-    pub fn has(&self, grade: Grade) -> bool {
+    pub fn has_grade(&self, grade: DoubtGrade) -> bool {
         self.doubts.iter().any(|doubt| doubt.grade == grade)
     }
 }
 
 impl CheckedText {
-    pub(super) fn of(text: &Text, checked: &Checked) -> Self {
+    pub(super) fn from_text(text: &FileText, checked: &TextFindings) -> Self {
         let findings = checked.findings.iter().filter(|finding| finding.verdict != Verdict::Pass).cloned().collect();
         let (path, words) = (text.path.clone(), text.words.clone());
         let (verdict, world) = (checked.verdict(), checked.world.name());
@@ -140,14 +140,15 @@ impl CheckedText {
 }
 
 impl CheckReport {
-    pub(super) fn add(&mut self, mut text: CheckedText, findings: &[Finding]) {
+    pub(super) fn add_text(&mut self, mut text: CheckedText, findings: &[CheckFinding]) {
         if let Some(doubted) = text.doubted.take() {
-            self.doubted.push(DoubtedText::of(&text, doubted));
+            self.doubted.push(DoubtedText::from_checked(&text, doubted));
         }
-        for check in Check::ALL {
-            let of_check: Vec<Finding> = findings.iter().filter(|finding| finding.check == check).cloned().collect();
+        for check in CheckKind::ALL {
+            let of_check: Vec<CheckFinding> =
+                findings.iter().filter(|finding| finding.check == check).cloned().collect();
             if !of_check.is_empty() {
-                self.by_check.entry(check.name()).or_default().count(Verdict::of(&of_check));
+                self.by_check.entry(check.name()).or_default().count_verdict(Verdict::from_findings(&of_check));
             }
         }
         *self.worlds.entry(text.world).or_default() += 1;
@@ -167,8 +168,8 @@ impl CheckReport {
     }
 }
 
-impl Counts {
-    fn count(&mut self, verdict: Verdict) {
+impl VerdictCounts {
+    fn count_verdict(&mut self, verdict: Verdict) {
         match verdict {
             Verdict::Pass => self.passed += 1,
             Verdict::Unverified => self.unverified += 1,
@@ -178,13 +179,13 @@ impl Counts {
 }
 
 /// The report as people read it.
-pub(super) struct Shown<'a> {
+pub(super) struct CheckReportText<'a> {
     pub(super) report: &'a CheckReport,
     /// The most texts to show of those that did not pass.
     pub(super) most: usize,
 }
 
-impl fmt::Display for Shown<'_> {
+impl fmt::Display for CheckReportText<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { report, most } = self;
         for text in report.not_passed.iter().take(*most) {
@@ -196,7 +197,7 @@ impl fmt::Display for Shown<'_> {
             }
         }
         writeln!(f, "{:<10} {:>7} {:>11} {:>7}", "check", "passed", "unverified", "failed")?;
-        let all = Counts { passed: report.passed, unverified: report.unverified, failed: report.failed };
+        let all = VerdictCounts { passed: report.passed, unverified: report.unverified, failed: report.failed };
         for (name, counts) in report.by_check.iter().chain(std::iter::once((&"all", &all))) {
             writeln!(f, "{name:<10} {:>7} {:>11} {:>7}", counts.passed, counts.unverified, counts.failed)?;
         }
@@ -204,14 +205,14 @@ impl fmt::Display for Shown<'_> {
         let worlds = worlds.collect::<Vec<_>>().join(", ");
         write!(f, "checked against: {}\nworld: {worlds}", report.checked_against.join(", "))?;
         if report.ambiguous > 0 {
-            write!(f, "\nambiguous: {} may mean several places or objects", count(report.ambiguous, "text"))?;
+            write!(f, "\nambiguous: {} may mean several places or objects", count_phrase(report.ambiguous, "text"))?;
         }
         if !report.doubted.is_empty() {
-            let with = |grade: Grade| {
-                let texts = report.doubted.iter().filter(|text| text.has(grade)).count();
-                format!("{} with words that are {}", count(texts, "text"), grade.told())
+            let with = |grade: DoubtGrade| {
+                let texts = report.doubted.iter().filter(|text| text.has_grade(grade)).count();
+                format!("{} with words that are {}", count_phrase(texts, "text"), grade.reader_label())
             };
-            write!(f, "\ndoubts: {}", Grade::ALL.map(with).join(", "))?;
+            write!(f, "\ndoubts: {}", DoubtGrade::ALL.map(with).join(", "))?;
         }
         if let Some(file) = &report.calibration {
             write!(f, "\ncalibration: {file}")?;
@@ -225,7 +226,7 @@ impl fmt::Display for Shown<'_> {
                 f,
                 "\nstyle {name} in this file differs from the built-in one (it is your own, or of another version), so \
                  the form of {} was not checked: name the style with --style",
-                count(*texts, "text")
+                count_phrase(*texts, "text")
             )?;
         }
         Ok(())

@@ -1,36 +1,36 @@
 //! The texts of a file, gathered by the path that they are about.
 
-use crate::error::Error;
+use crate::error::CommandError;
 use std::{collections::BTreeMap, path::Path as FilePath};
-use wayword_core::{Path, Platform, Provenance, SceneId, ViewpointId};
+use wayword_core::{Path, Platform, SceneId, TextProvenance, ViewpointId};
 use wayword_formats::{
-    Format,
-    jsonl::{self, Record},
+    DatasetFormat,
+    jsonl::{self, InstructionRecord},
 };
 use wayword_world::path_of;
 
 /// A path with every text about it, so that the views along the path are looked up once for all of them.
-pub(super) struct Walk {
+pub(super) struct PathTexts {
     pub(super) path: Path,
-    pub(super) texts: Vec<Text>,
+    pub(super) texts: Vec<FileText>,
 }
 
 /// A text of the file.
-pub(super) struct Text {
+pub(super) struct FileText {
     /// Its place in the file.
     pub(super) at: usize,
     /// The name of its path.
     pub(super) path: String,
     pub words: String,
     /// The style that it was written in, if the file names it.
-    pub(super) style: Option<Named>,
+    pub(super) style: Option<StyleReference>,
     /// The tag of its language, where the file gives one.
     pub(super) tag: Option<String>,
     /// Its platform and provenance, if the file has them.
-    pub(super) made: Option<(String, Provenance)>,
+    pub(super) made: Option<(String, TextProvenance)>,
 }
 
-impl Text {
+impl FileText {
     /// A text of a dataset, which has no provenance.
     fn of_dataset(path: &Path, words: String, tag: Option<String>) -> Self {
         Self { at: 0, path: path.id.clone(), words, style: None, tag, made: None }
@@ -38,30 +38,33 @@ impl Text {
 }
 
 /// A style, as a record names it.
-pub(super) struct Named {
+pub(super) struct StyleReference {
     pub(super) name: String,
     pub(super) hash: String,
 }
 
 /// The paths of a file with their texts, in the order of the file.
-pub(super) fn walks(file: &FilePath, platform: &dyn Platform) -> Result<Vec<Walk>, Error> {
-    let mut walks = Walks::default();
-    if wayword_formats::detect(file)? == Format::Wayword {
-        for Record { path, instruction, platform: made_on, .. } in jsonl::read(file)? {
+pub(super) fn read_path_texts(file: &FilePath, platform: &dyn Platform) -> Result<Vec<PathTexts>, CommandError> {
+    let mut walks = PathTextIndex::default();
+    if wayword_formats::detect_format(file)? == DatasetFormat::Wayword {
+        for InstructionRecord { path, instruction, platform: made_on, .. } in jsonl::read_records(file)? {
             let path = on_graph(platform, path)?;
-            let text = Text {
+            let text = FileText {
                 at: 0,
                 path: path.id.clone(),
                 words: instruction.text,
                 tag: None,
-                style: Some(Named { name: instruction.style, hash: instruction.provenance.style_hash.clone() }),
+                style: Some(StyleReference {
+                    name: instruction.style,
+                    hash: instruction.provenance.style_hash.clone(),
+                }),
                 made: Some((made_on, instruction.provenance)),
             };
-            walks.add(path, text);
+            walks.add_text(path, text);
         }
         return Ok(walks.all);
     }
-    for episode in wayword_formats::read(file)? {
+    for episode in wayword_formats::read_any_format(file)? {
         // The check ends with an error at the first missing scene.
         let path = path_of(
             platform,
@@ -72,8 +75,8 @@ pub(super) fn walks(file: &FilePath, platform: &dyn Platform) -> Result<Vec<Walk
             episode.target_object.as_ref(),
         )?;
         for (at, words) in episode.instructions.iter().enumerate() {
-            let tag = episode.language(at).map(str::to_owned);
-            walks.add(path.clone(), Text::of_dataset(&path, words.clone(), tag));
+            let tag = episode.language_of(at).map(str::to_owned);
+            walks.add_text(path.clone(), FileText::of_dataset(&path, words.clone(), tag));
         }
     }
     Ok(walks.all)
@@ -81,46 +84,47 @@ pub(super) fn walks(file: &FilePath, platform: &dyn Platform) -> Result<Vec<Walk
 
 /// Texts about paths, gathered by their paths.
 #[cfg(feature = "study")]
-pub(super) fn gathered(texts: Vec<(Path, String)>) -> Vec<Walk> {
-    let mut walks = Walks::default();
+pub(super) fn gather_by_path(texts: Vec<(Path, String)>) -> Vec<PathTexts> {
+    let mut walks = PathTextIndex::default();
     for (path, words) in texts {
-        let text = Text::of_dataset(&path, words, None);
-        walks.add(path, text);
+        let text = FileText::of_dataset(&path, words, None);
+        walks.add_text(path, text);
     }
     walks.all
 }
 
 /// Paths, gathered from texts.
 #[derive(Default)]
-struct Walks {
-    all: Vec<Walk>,
-    places: BTreeMap<Key, usize>,
+struct PathTextIndex {
+    all: Vec<PathTexts>,
+    places: BTreeMap<PathEvidenceKey, usize>,
     texts: usize,
 }
 
 /// Everything that evidence depends on: the scene, whether the motion is known, and each frame's place, heading and storey.
-type Key = (SceneId, bool, Vec<(([u64; 3], Option<ViewpointId>), u64, Option<u32>)>);
+type PathEvidenceKey = (SceneId, bool, Vec<(([u64; 3], Option<ViewpointId>), u64, Option<u32>)>);
 
-impl Walks {
-    fn add(&mut self, path: Path, text: Text) {
-        let frames = path.frames.iter().map(|frame| (frame.place(), frame.pose.heading.rad().to_bits(), frame.level));
+impl PathTextIndex {
+    fn add_text(&mut self, path: Path, text: FileText) {
+        let frames =
+            path.frames.iter().map(|frame| (frame.place_key(), frame.pose.heading.rad().to_bits(), frame.level));
         let key = (path.scene.clone(), path.motion.is_known(), frames.collect());
-        let text = Text { at: self.texts, ..text };
+        let text = FileText { at: self.texts, ..text };
         self.texts += 1;
         let place = *self.places.entry(key).or_insert(self.all.len());
         match self.all.get_mut(place) {
             Some(walk) => walk.texts.push(text),
-            None => self.all.push(Walk { path, texts: vec![text] }),
+            None => self.all.push(PathTexts { path, texts: vec![text] }),
         }
     }
 }
 
 /// A record's path, with the platform's own poses and storeys if its frames are viewpoints. Those in the file are not trusted.
-fn on_graph(platform: &dyn Platform, path: Path) -> Result<Path, Error> {
+fn on_graph(platform: &dyn Platform, path: Path) -> Result<Path, CommandError> {
     let viewpoints: Option<Vec<_>> = path.frames.iter().map(|frame| frame.viewpoint.clone()).collect();
     let Some(viewpoints) = viewpoints else { return Ok(path) };
     // Names of pictures are not viewpoints. Whether the scene has viewpoints is decided by the platform, and not by the file.
-    if !path.motion.is_known() && platform.graph(&path.scene)?.is_empty() {
+    if !path.motion.is_known() && platform.graph_for_scene(&path.scene)?.is_empty() {
         return Ok(path);
     }
     let heading = path.frames.first().map(|frame| frame.pose.heading);
@@ -131,20 +135,20 @@ fn on_graph(platform: &dyn Platform, path: Path) -> Result<Path, Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use wayword_core::{DVec3, Motion, path::Stop};
+    use wayword_core::{DVec3, PathMotion, path::PathStop};
 
     fn path(id: &str, end_m: f64) -> Path {
-        let stop = |y: f64| Stop { position: DVec3::new(0.0, y, 1.5), viewpoint: None, level: None };
+        let stop = |y: f64| PathStop { position: DVec3::new(0.0, y, 1.5), viewpoint: None, level: None };
         let frames = Path::frames_along(vec![stop(0.0), stop(end_m)], None);
-        Path { id: id.into(), scene: SceneId::new("s").unwrap(), frames, motion: Motion::Known, target: None }
+        Path { id: id.into(), scene: SceneId::new("s").unwrap(), frames, motion: PathMotion::Known, target: None }
     }
 
     #[test]
     fn texts_about_one_way_are_one_walk_whatever_their_items_are_called() {
-        let mut walks = Walks::default();
+        let mut walks = PathTextIndex::default();
         for (id, end_m) in [("1_7", 2.0), ("2", 4.0), ("1_7", 2.0), ("1_9", 2.0)] {
             let path = path(id, end_m);
-            walks.add(path.clone(), Text::of_dataset(&path, "Stop.".into(), None));
+            walks.add_text(path.clone(), FileText::of_dataset(&path, "Stop.".into(), None));
         }
         let texts: Vec<Vec<(usize, &str)>> = walks
             .all
@@ -153,8 +157,8 @@ mod tests {
             .collect();
         assert_eq!(texts, [vec![(0, "1_7"), (2, "1_7"), (3, "1_9")], vec![(1, "2")]]);
         let mut other = path("1_7", 2.0);
-        other.motion = Motion::Unknown;
-        walks.add(other.clone(), Text::of_dataset(&other, "Stop.".into(), None));
+        other.motion = PathMotion::Unknown;
+        walks.add_text(other.clone(), FileText::of_dataset(&other, "Stop.".into(), None));
         assert_eq!(walks.all.len(), 3, "texts are checked against the motion too");
     }
 }

@@ -1,15 +1,15 @@
 //! Decides in which world each text is checked.
 
-use super::walks::Text;
+use super::walks::FileText;
 use crate::check::args::AskedWorld;
-use wayword_checks::{Source, World};
+use wayword_checks::{CheckWorld, EvidenceSource};
 
 /// The world of a text: the one that was asked for. Otherwise it is closed for a record with the same platform and source of
 /// evidence as in this check, and open for everything else.
-pub(super) fn world_of(text: &Text, asked: AskedWorld, platform: &str, source: Source) -> World {
+pub(super) fn world_of(text: &FileText, asked: AskedWorld, platform: &str, source: EvidenceSource) -> CheckWorld {
     match (asked, &text.made) {
-        (AskedWorld::Open, _) | (AskedWorld::Auto, None) => World::Open,
-        (AskedWorld::Closed, _) => World::Closed,
-        (AskedWorld::Auto, Some((made_on, provenance))) => World::of_record(provenance, made_on, platform, source),
+        (AskedWorld::Open, _) | (AskedWorld::Auto, None) => CheckWorld::Open,
+        (AskedWorld::Closed, _) => CheckWorld::Closed,
+        (AskedWorld::Auto, Some((made_on, provenance))) => CheckWorld::of_record(provenance, made_on, platform, source),
     }
 }

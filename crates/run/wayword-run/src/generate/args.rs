@@ -1,7 +1,7 @@
 //! The flags of `wayword generate`.
 
 use super::workers::args::AskedWorkers;
-use crate::settings::Asked;
+use crate::settings::AskedSettings;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -20,7 +20,7 @@ Examples:
   wayword generate --paths 100000 --out runs/big --plan             (then, on many machines, the same with:)
   wayword generate --paths 100000 --out runs/big --shard 3/64       (or: --queue wayword_db)
   wayword generate --paths 20 --out runs/houses --spans runs/houses-spans")]
-pub struct Generate {
+pub struct GenerateArgs {
     /// Settings as TOML, with the names of these flags. A flag wins over the file.
     #[arg(long, value_name = "FILE")]
     pub config: Option<PathBuf>,
@@ -41,5 +41,5 @@ pub struct Generate {
     pub workers: AskedWorkers,
     /// The run.
     #[command(flatten)]
-    pub asked: Asked,
+    pub asked: AskedSettings,
 }

@@ -1,11 +1,11 @@
 //! Traces the making of an item as a span.
 
-use super::keep::Fate;
-use crate::{error::Error, item::Item, pipeline::Made};
+use super::keep::ItemFate;
+use crate::{error::CommandError, item::RunItem, pipeline::MadeItem};
 use std::time::Instant;
 use tracing::{Span, field::Empty, info_span};
-use wayword_ledger::TARGET;
-use wayword_synthesis::repair::Outcome;
+use wayword_ledger::SPAN_TARGET;
+use wayword_synthesis::repair::WritingOutcome;
 
 /// The span of an item: from its beginning until the run folder holds it.
 pub(super) struct ItemSpan {
@@ -20,9 +20,9 @@ pub(super) struct ItemSpan {
 
 impl ItemSpan {
     /// Begins as a part of the span that this thread is in.
-    pub(super) fn begin(item: &Item) -> Self {
+    pub(super) fn begin(item: &RunItem) -> Self {
         let span = info_span!(
-            target: TARGET,
+            target: SPAN_TARGET,
             "item",
             item = item.id(),
             outcome = Empty,
@@ -37,7 +37,10 @@ impl ItemSpan {
 
     /// Makes the item within the span. Finished items wait for their turn to be kept, so the time of the making is recorded in a
     /// field of its own.
-    pub(super) fn make(&mut self, make: impl FnOnce() -> Result<Made, Error>) -> Result<Made, Error> {
+    pub(super) fn make_within(
+        &mut self,
+        make: impl FnOnce() -> Result<MadeItem, CommandError>,
+    ) -> Result<MadeItem, CommandError> {
         if self.span.is_disabled() {
             return make();
         }
@@ -45,35 +48,35 @@ impl ItemSpan {
         let made = self.span.in_scope(make);
         self.span.record("making_s", since.elapsed().as_secs_f64());
         match &made {
-            Ok(made) => self.counts(&made.outcomes),
-            Err(error) => self.failed = error.of(),
+            Ok(made) => self.record_counts(&made.outcomes),
+            Err(error) => self.failed = error.failed_part(),
         }
         made
     }
 
-    fn counts(&mut self, texts: &[Outcome]) {
-        self.written = texts.iter().filter(|text| matches!(text, Outcome::Accepted(_))).count();
+    fn record_counts(&mut self, texts: &[WritingOutcome]) {
+        self.written = texts.iter().filter(|text| matches!(text, WritingOutcome::Accepted(_))).count();
         self.span.record("written", self.written as u64);
         self.span.record("rejected", (texts.len() - self.written) as u64);
     }
 
     /// Ends the span with the outcome of the item. Its reason is from a fixed list of words; the message of a service is only in
     /// `errors.jsonl`.
-    pub(super) fn end(mut self, fate: &Fate) {
+    pub(super) fn end_with(mut self, fate: &ItemFate) {
         let (outcome, failure) = match fate {
-            Fate::Made if self.written > 0 => ("written", None),
-            Fate::Made => ("rejected", None),
-            Fate::Failed(failure, _) => ("failed", Some(*failure)),
-            Fate::Stopped(_) => ("stopped", None),
+            ItemFate::Made if self.written > 0 => ("written", None),
+            ItemFate::Made => ("rejected", None),
+            ItemFate::Failed(failure, _) => ("failed", Some(*failure)),
+            ItemFate::Stopped(_) => ("stopped", None),
         };
-        self.tell(outcome);
+        self.record_outcome(outcome);
         if let Some(failure) = failure {
             self.span.record("reason", format!("{} {}", self.failed, failure.name()));
             self.span.record("otel.status_code", "ERROR");
         }
     }
 
-    fn tell(&mut self, outcome: &str) {
+    fn record_outcome(&mut self, outcome: &str) {
         self.is_told = true;
         self.span.record("outcome", outcome);
     }
@@ -82,7 +85,7 @@ impl ItemSpan {
 impl Drop for ItemSpan {
     fn drop(&mut self) {
         if !self.is_told {
-            self.tell("dropped");
+            self.record_outcome("dropped");
         }
     }
 }

@@ -1,45 +1,45 @@
 //! Writes the outcome of an item into the run folder.
 
 use crate::{
-    error::Error,
-    item::Item,
+    error::CommandError,
+    item::RunItem,
     pictures,
-    pipeline::{Made, RunPlatform},
-    run_folder::{FailedItem, Map, Rejected, RunFolder, WalkRecord, extra},
-    styles::Measured,
+    pipeline::{MadeItem, RunPlatform},
+    run_folder::{FailedItem, PathMap, RejectedText, RunFolder, WalkRecord, extra_fields},
+    styles::MeasuredStyle,
 };
-use wayword_core::Failure;
-use wayword_formats::jsonl::Record;
-use wayword_synthesis::repair::Outcome;
+use wayword_core::FailureKind;
+use wayword_formats::jsonl::InstructionRecord;
+use wayword_synthesis::repair::WritingOutcome;
 
 /// The outcome of an item.
-pub(super) enum Fate {
+pub(super) enum ItemFate {
     /// The run folder holds it, as instructions and rejected texts.
     Made,
     /// The run folder holds it as an item that failed. The same command tries it again.
-    Failed(Failure, String),
+    Failed(FailureKind, String),
     /// It was given up because no more calls are possible, with the reason. The same command tries it again.
-    Stopped(Error),
+    Stopped(CommandError),
 }
 
 /// Writes the outcome of an item into the run folder: pictures and path first, so that no instruction is there without its
 /// evidence.
-pub(super) fn keep(
+pub(super) fn keep_item(
     run: &mut RunFolder,
     world: RunPlatform<'_>,
-    item: &Item,
-    made: Result<Made, Error>,
-    styles: &[Measured],
-) -> Result<Fate, Error> {
+    item: &RunItem,
+    made: Result<MadeItem, CommandError>,
+    styles: &[MeasuredStyle],
+) -> Result<ItemFate, CommandError> {
     match made.and_then(|made| made_item(run, world, item, made, styles)) {
-        Ok(()) => Ok(Fate::Made),
-        Err(error) => match error.failure() {
+        Ok(()) => Ok(ItemFate::Made),
+        Err(error) => match error.item_failure() {
             Some(failure) => {
                 let reason = error.to_string();
                 run.errors.append(&FailedItem { item: item.id(), failure, reason: reason.clone() })?;
-                Ok(Fate::Failed(failure, reason))
+                Ok(ItemFate::Failed(failure, reason))
             }
-            None if error.ends_sending() || matches!(error, Error::Interrupted) => Ok(Fate::Stopped(error)),
+            None if error.ends_sending() || matches!(error, CommandError::Interrupted) => Ok(ItemFate::Stopped(error)),
             None => Err(error),
         },
     }
@@ -48,34 +48,40 @@ pub(super) fn keep(
 fn made_item(
     run: &mut RunFolder,
     world: RunPlatform<'_>,
-    item: &Item,
-    made: Made,
-    styles: &[Measured],
-) -> Result<(), Error> {
-    let map = Map::around(&made.walk.path, world.platform)?;
+    item: &RunItem,
+    made: MadeItem,
+    styles: &[MeasuredStyle],
+) -> Result<(), CommandError> {
+    let map = PathMap::around_path(&made.walk.path, world.platform)?;
     if let Some(data) = world.data {
-        data.keep(&made.walk.path.scene)?;
+        data.keep_scene(&made.walk.path.scene)?;
     }
-    let has_pictures = pictures::keep(&run.frames(), &item.id(), &made.pictures)?;
+    let has_pictures = pictures::write_pictures(&run.frames_folder(), &item.id(), &made.pictures)?;
     run.walks.append(&WalkRecord {
         platform: world.platform.name().to_owned(),
         map,
         path: made.walk.path.clone(),
         observations: made.walk.observations,
-        originals: item.originals().to_vec(),
+        originals: item.original_texts().to_vec(),
         has_pictures,
     })?;
     let per_style = made.outcomes.len().div_ceil(styles.len().max(1));
-    let names = styles.iter().flat_map(|Measured { style, .. }| (0..per_style).map(move |number| (style, number)));
+    let names = styles.iter().flat_map(|MeasuredStyle { style, .. }| (0..per_style).map(move |number| (style, number)));
     for (outcome, (style, number)) in made.outcomes.into_iter().zip(names) {
         match outcome {
-            Outcome::Accepted(instruction) => {
-                let mut record = Record::new(world.platform.name(), made.walk.path.clone(), instruction);
-                record.extra = extra(&item.path_id(), number);
+            WritingOutcome::Accepted(instruction) => {
+                let mut record = InstructionRecord::new(world.platform.name(), made.walk.path.clone(), instruction);
+                record.extra = extra_fields(&item.path_id(), number);
                 run.instructions.append(&record)?;
             }
-            Outcome::Rejected { last, reason } => {
-                run.rejected.append(&Rejected { item: item.id(), style: style.name.clone(), reason, last, number })?;
+            WritingOutcome::Rejected { last, reason } => {
+                run.rejected.append(&RejectedText {
+                    item: item.id(),
+                    style: style.name.clone(),
+                    reason,
+                    last,
+                    number,
+                })?;
             }
         }
     }

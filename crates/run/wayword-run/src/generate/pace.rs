@@ -1,7 +1,7 @@
 //! Measures how fast a run makes calls to models, and estimates the time that is left. Early on, the expected number of calls
 //! per item counts; later, the number that finished items really took.
 
-use crate::calls::Spent;
+use crate::calls::CallSpending;
 use indicatif::HumanDuration;
 use std::{
     collections::VecDeque,
@@ -13,17 +13,17 @@ use std::{
 };
 
 /// The pace is measured over the last minute, because the first answers may come from the ledger, which is fast.
-const WINDOW: Duration = Duration::from_secs(60);
+const PACE_WINDOW: Duration = Duration::from_secs(60);
 /// After this many items their real number of calls counts as much as the expected one.
 const HALF_TRUSTED: f64 = 3.0;
 /// Time between two looks at the calls. Without a terminal, lines are printed instead of a bar: the first after `FIRST_LINE`,
-/// the next ones at growing intervals up to `LONGEST`.
-const LOOK: Duration = Duration::from_secs(1);
+/// the next ones at growing intervals up to `MAX_LINE_INTERVAL`.
+const LOOK_INTERVAL: Duration = Duration::from_secs(1);
 const FIRST_LINE: Duration = Duration::from_secs(3);
-const LONGEST: Duration = Duration::from_secs(60);
+const MAX_LINE_INTERVAL: Duration = Duration::from_secs(60);
 
 /// The progress of a run's calls.
-pub(super) struct Pace {
+pub(super) struct CallPace {
     /// Items to make.
     items: usize,
     /// Items that are made at the same time.
@@ -36,7 +36,7 @@ pub(super) struct Pace {
     ends: Condvar,
 }
 
-impl Pace {
+impl CallPace {
     pub(super) fn new(items: usize, workers: usize, expected: f64) -> Self {
         let (done, seen, ended, ends) = Default::default();
         Self { items, workers, expected, done, seen, ended, ends }
@@ -47,33 +47,33 @@ impl Pace {
         self.done.fetch_add(1, Ordering::Relaxed);
     }
 
-    /// Ends [`Self::watch`].
-    pub(super) fn end(&self) {
-        *lock(&self.ended) = true;
+    /// Ends [`Self::watch_calls`].
+    pub(super) fn end_watch(&self) {
+        *lock_mutex(&self.ended) = true;
         self.ends.notify_all();
     }
 
     /// Looks at the calls until the end, and reports their progress: to `shown` every second (for the bar), to `said` at growing
     /// intervals (for lines).
-    pub(super) fn watch(&self, spent: impl Fn() -> Spent, shown: impl Fn(&str), said: impl Fn(&str)) {
+    pub(super) fn watch_calls(&self, spent: impl Fn() -> CallSpending, shown: impl Fn(&str), said: impl Fn(&str)) {
         let (mut wait, mut line) = (FIRST_LINE, Instant::now() + FIRST_LINE);
-        let mut ended = lock(&self.ended);
+        let mut ended = lock_mutex(&self.ended);
         while !*ended {
-            ended = self.ends.wait_timeout(ended, LOOK).unwrap_or_else(PoisonError::into_inner).0;
+            ended = self.ends.wait_timeout(ended, LOOK_INTERVAL).unwrap_or_else(PoisonError::into_inner).0;
             let (now, spent) = (Instant::now(), spent());
-            let told = self.told(now, spent.answered + spent.from_ledger);
+            let told = self.describe_progress(now, spent.answered + spent.from_ledger);
             shown(&told);
             if now >= line && !*ended {
                 said(&told);
-                wait = (2 * wait).min(LONGEST);
+                wait = (2 * wait).min(MAX_LINE_INTERVAL);
                 line = now + wait;
             }
         }
     }
 
     /// The progress as text: "31 of about 120 calls, 2 minutes left".
-    fn told(&self, now: Instant, made: u64) -> String {
-        let all = self.all(made as f64).round().max(made as f64);
+    fn describe_progress(&self, now: Instant, made: u64) -> String {
+        let all = self.expected_calls(made as f64).round().max(made as f64);
         let left = match self.per_second(now, made) {
             Some(pace) if all > made as f64 => {
                 let left = Duration::from_secs_f64(((all - made as f64) / pace).clamp(1.0, 1e8));
@@ -85,7 +85,7 @@ impl Pace {
     }
 
     /// The expected number of calls of the whole run, given `made` so far.
-    fn all(&self, made: f64) -> f64 {
+    fn expected_calls(&self, made: f64) -> f64 {
         let (items, done) = (self.items as f64, self.done.load(Ordering::Relaxed) as f64);
         // Items in work are half done on average.
         let begun = done + (items - done).min(self.workers as f64) / 2.0;
@@ -96,9 +96,9 @@ impl Pace {
 
     /// Calls per second within the last minute; `None` if there was no call.
     fn per_second(&self, now: Instant, made: u64) -> Option<f64> {
-        let mut seen = lock(&self.seen);
+        let mut seen = lock_mutex(&self.seen);
         seen.push_back((now, made));
-        while seen.len() > 2 && seen.front().is_some_and(|(at, _)| now.duration_since(*at) > WINDOW) {
+        while seen.len() > 2 && seen.front().is_some_and(|(at, _)| now.duration_since(*at) > PACE_WINDOW) {
             seen.pop_front();
         }
         let (at, before) = *seen.front()?;
@@ -107,7 +107,7 @@ impl Pace {
     }
 }
 
-fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+fn lock_mutex<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
@@ -117,30 +117,30 @@ mod tests {
 
     #[test]
     fn the_time_that_is_left_follows_from_the_calls() {
-        let pace = Pace::new(1, 8, 13.0);
+        let pace = CallPace::new(1, 8, 13.0);
         let start = Instant::now();
-        assert_eq!(pace.told(start, 0), "0 of about 13 calls");
-        assert_eq!(pace.told(start + Duration::from_secs(10), 8), "8 of about 13 calls, 6s left");
+        assert_eq!(pace.describe_progress(start, 0), "0 of about 13 calls");
+        assert_eq!(pace.describe_progress(start + Duration::from_secs(10), 8), "8 of about 13 calls, 6s left");
         // More calls than expected: the number left is unknown.
-        assert_eq!(pace.told(start + Duration::from_secs(20), 20), "20 of about 20 calls");
+        assert_eq!(pace.describe_progress(start + Duration::from_secs(20), 20), "20 of about 20 calls");
     }
 
     #[test]
     fn expected_calls_weigh_the_plan_against_finished_items() {
-        let pace = Pace::new(100, 1, 10.0);
+        let pace = CallPace::new(100, 1, 10.0);
         (0..30).for_each(|_| pace.item_is_done());
-        let all = pace.all(610.0);
+        let all = pace.expected_calls(610.0);
         assert!((1800.0..2000.0).contains(&all), "{all}");
         (30..100).for_each(|_| pace.item_is_done());
-        assert!((pace.all(2000.0) - 2000.0).abs() < 1e-9);
+        assert!((pace.expected_calls(2000.0) - 2000.0).abs() < 1e-9);
     }
 
     #[test]
     fn watch_calls_ends_when_the_run_ends() {
-        let pace = Pace::new(1, 1, 1.0);
+        let pace = CallPace::new(1, 1, 1.0);
         std::thread::scope(|scope| {
-            scope.spawn(|| pace.watch(Spent::default, |_| {}, |_| {}));
-            pace.end();
+            scope.spawn(|| pace.watch_calls(CallSpending::default, |_| {}, |_| {}));
+            pace.end_watch();
         });
     }
 }

@@ -1,21 +1,21 @@
 //! The summary of a run.
 
-use super::progress::Stop;
+use super::progress::RunStop;
 use crate::{
-    calls::Spent,
-    count::count,
-    error::{Error, Exit},
-    looking_for::Lookout,
-    output::tame,
-    run_folder::{FailedItem, Rejected, RunFolder, file, lines},
+    calls::CallSpending,
+    count::count_phrase,
+    error::{CommandError, Exit},
+    looking_for::DetectorLookout,
+    output::tame_text,
+    run_folder::{FailedItem, RejectedText, RunFolder, file, lines},
 };
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use std::{collections::BTreeMap, fmt, path::Path};
-use wayword_core::{Ambiguity, Form, Lack, Observation, Provenance, Verdict};
+use wayword_core::{FormOutcome, FrameObservation, SceneLack, TextAmbiguity, TextProvenance, Verdict};
 
 /// The summary of a run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Summary {
+pub struct RunSummary {
     /// The run folder.
     pub run: String,
     /// Items of the run.
@@ -51,16 +51,16 @@ pub struct Summary {
     pub roles: String,
     /// The work of the detector in this command, if there is one.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub detector: Option<Searched>,
+    pub detector: Option<DetectorSummary>,
     /// The scenes that the run leaves out, with the reason.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
-    pub left_out: BTreeMap<String, Lack>,
+    pub left_out: BTreeMap<String, SceneLack>,
     /// The file of `--calibration`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub calibration: Option<String>,
     /// Calls, tokens and money of this command, if models took part.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub spent: Option<Spent>,
+    pub spent: Option<CallSpending>,
     /// The reason, if the run stopped before its end.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stopped: Option<String>,
@@ -71,17 +71,17 @@ pub struct Summary {
 
 /// The work of a detector.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct Searched {
+pub struct DetectorSummary {
     /// The detector.
     pub model: String,
     /// The views that it looked at, including those with finds from the ledger.
     pub views: usize,
 }
 
-impl Searched {
+impl DetectorSummary {
     /// The work of a detector so far.
-    pub(super) fn by(lookout: &Lookout) -> Self {
-        Self { model: lookout.name().to_owned(), views: lookout.views() }
+    pub(super) fn from_lookout(lookout: &DetectorLookout) -> Self {
+        Self { model: lookout.name().to_owned(), views: lookout.view_count() }
     }
 }
 
@@ -90,21 +90,21 @@ fn is_zero(count: &usize) -> bool {
     *count == 0
 }
 
-pub(super) fn summary(
+pub(super) fn summarise_run(
     folder: &Path,
     run: &RunFolder,
     items: usize,
-    spent: Option<Spent>,
-    stopped: Option<Stop>,
-) -> Result<Summary, Error> {
+    spent: Option<CallSpending>,
+    stopped: Option<RunStop>,
+) -> Result<RunSummary, CommandError> {
     let (mut passed, mut unverified, mut finished, mut roles) = (0, 0, 0, None);
     let (mut ambiguous, mut unfollowed, mut why_unfollowed) = (0, 0, None);
-    lines::each(&folder.join(file::INSTRUCTIONS), |line| {
-        let Told { verdict, provenance, ambiguity } = line.parse()?;
+    lines::each_line(&folder.join(file::INSTRUCTIONS), |line| {
+        let InstructionLine { verdict, provenance, ambiguity } = line.parse()?;
         passed += usize::from(verdict == Verdict::Pass);
         unverified += usize::from(verdict == Verdict::Unverified);
         finished += usize::from(provenance.finished_for.is_some());
-        roles.get_or_insert_with(|| told(&provenance));
+        roles.get_or_insert_with(|| describe_roles(&provenance));
         if let Some(ambiguity) = ambiguity {
             ambiguous += usize::from(ambiguity.is_ambiguous());
             unfollowed += usize::from(ambiguity.ends.is_none());
@@ -112,13 +112,13 @@ pub(super) fn summary(
         }
         Ok(())
     })?;
-    let (asked_again, read_as_words) = misshapen(&folder.join(file::WALKS))?;
+    let (asked_again, read_as_words) = count_misshapen(&folder.join(file::WALKS))?;
     let exit = match (&stopped, run.rejected.len() + run.errors.len()) {
         (Some(stop), _) => stop.exit,
         (None, 0) => Exit::Done,
         (None, _) => Exit::WithLoss,
     };
-    Ok(Summary {
+    Ok(RunSummary {
         run: folder.display().to_string(),
         items,
         passed,
@@ -146,14 +146,14 @@ pub(super) fn summary(
 }
 
 /// Counts the views with an answer that lacked the requested form: those with a later answer that had it, and those without one.
-fn misshapen(walks: &Path) -> Result<(usize, usize), Error> {
+fn count_misshapen(walks: &Path) -> Result<(usize, usize), CommandError> {
     let (mut mended, mut broken) = (0, 0);
     if walks.exists() {
-        lines::each(walks, |line| {
-            let Seen { observations } = line.parse()?;
+        lines::each_line(walks, |line| {
+            let WalkLine { observations } = line.parse()?;
             for look in observations.iter().flat_map(|seen| &seen.looks) {
-                mended += usize::from(look.caption.form == Some(Form::Mended));
-                broken += usize::from(look.caption.form == Some(Form::Broken));
+                mended += usize::from(look.caption.form == Some(FormOutcome::Mended));
+                broken += usize::from(look.caption.form == Some(FormOutcome::Broken));
             }
             Ok(())
         })?;
@@ -161,19 +161,19 @@ fn misshapen(walks: &Path) -> Result<(usize, usize), Error> {
     Ok((mended, broken))
 }
 
-fn first_failure(errors: &Path) -> Result<Option<String>, Error> {
+fn first_failure(errors: &Path) -> Result<Option<String>, CommandError> {
     let first: Option<FailedItem> = first_line(errors)?;
     Ok(first.map(|FailedItem { item, failure, reason }| format!("{item} ({}): {reason}", failure.name())))
 }
 
-fn first_rejection(rejected: &Path) -> Result<Option<String>, Error> {
-    let first: Option<Rejected> = first_line(rejected)?;
-    Ok(first.map(|Rejected { item, style, reason, .. }| format!("{item} ({style}): {reason}")))
+fn first_rejection(rejected: &Path) -> Result<Option<String>, CommandError> {
+    let first: Option<RejectedText> = first_line(rejected)?;
+    Ok(first.map(|RejectedText { item, style, reason, .. }| format!("{item} ({style}): {reason}")))
 }
 
-fn first_line<T: DeserializeOwned>(file: &Path) -> Result<Option<T>, Error> {
+fn first_line<T: DeserializeOwned>(file: &Path) -> Result<Option<T>, CommandError> {
     let mut first = None;
-    lines::each(file, |line| {
+    lines::each_line(file, |line| {
         if first.is_none() {
             first = Some(line.parse()?);
         }
@@ -184,21 +184,21 @@ fn first_line<T: DeserializeOwned>(file: &Path) -> Result<Option<T>, Error> {
 
 /// The fields of an instruction's line that the summary counts and shows.
 #[derive(Deserialize)]
-struct Told {
+struct InstructionLine {
     verdict: Verdict,
-    provenance: Provenance,
+    provenance: TextProvenance,
     #[serde(default)]
-    ambiguity: Option<Ambiguity>,
+    ambiguity: Option<TextAmbiguity>,
 }
 
 /// The fields of a walk's line that the summary counts.
 #[derive(Deserialize)]
-struct Seen {
+struct WalkLine {
     #[serde(default)]
-    observations: Vec<Observation>,
+    observations: Vec<FrameObservation>,
 }
 
-fn told(provenance: &Provenance) -> String {
+fn describe_roles(provenance: &TextProvenance) -> String {
     // The provenance has the detector's name, followed by the meaning of its scores in brackets.
     let detector = provenance.detector.as_deref().and_then(|told| told.split(" (").next());
     let finds = detector.map_or(String::new(), |name| format!(", finds by {name}"));
@@ -212,14 +212,14 @@ fn told(provenance: &Provenance) -> String {
     )
 }
 
-impl fmt::Display for Summary {
+impl fmt::Display for RunSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let so_far = if self.stopped.is_some() { " in the run, so far" } else { "" };
         writeln!(
             f,
             "{}{so_far}: {} passed every check, {} unverified, {} rejected",
-            count(self.items, "item"),
-            count(self.passed, "instruction"),
+            count_phrase(self.items, "item"),
+            count_phrase(self.passed, "instruction"),
             self.unverified,
             self.rejected
         )?;
@@ -227,20 +227,25 @@ impl fmt::Display for Summary {
             writeln!(
                 f,
                 "{} failed (see errors.jsonl); remove the cause, and the same command tries again",
-                count(self.errors, "item")
+                count_phrase(self.errors, "item")
             )?;
         }
         if let Some(loss) = &self.first_loss {
-            writeln!(f, "first {}: {}", if self.errors > 0 { "failed item" } else { "rejected text" }, tame(loss))?;
+            writeln!(
+                f,
+                "first {}: {}",
+                if self.errors > 0 { "failed item" } else { "rejected text" },
+                tame_text(loss)
+            )?;
         }
         if !self.roles.is_empty() {
             writeln!(f, "roles: {}", self.roles)?;
         }
-        if let Some(Searched { model, views }) = &self.detector {
-            writeln!(f, "detector: {model} looked at {}", count(*views, "view"))?;
+        if let Some(DetectorSummary { model, views }) = &self.detector {
+            writeln!(f, "detector: {model} looked at {}", count_phrase(*views, "view"))?;
         }
         if self.finished_by_rules > 0 {
-            let finished = count(self.finished_by_rules, "instruction");
+            let finished = count_phrase(self.finished_by_rules, "instruction");
             writeln!(f, "{finished} written by rules, because every text of the model failed a check")?;
         }
         if self.asked_again + self.read_as_words > 0 {
@@ -251,14 +256,18 @@ impl fmt::Display for Summary {
             )?;
         }
         if self.ambiguous > 0 {
-            writeln!(f, "ambiguous: {} may mean several places or objects", count(self.ambiguous, "instruction"))?;
+            writeln!(
+                f,
+                "ambiguous: {} may mean several places or objects",
+                count_phrase(self.ambiguous, "instruction")
+            )?;
         }
         if let (Some(why), 1..) = (&self.why_unfollowed, self.unfollowed) {
-            writeln!(f, "not followed: {}; {}", count(self.unfollowed, "instruction"), tame(why))?;
+            writeln!(f, "not followed: {}; {}", count_phrase(self.unfollowed, "instruction"), tame_text(why))?;
         }
         if !self.left_out.is_empty() {
             let names: Vec<&str> = self.left_out.keys().map(String::as_str).collect();
-            writeln!(f, "left out: {} ({})", count(names.len(), "scene"), names.join(", "))?;
+            writeln!(f, "left out: {} ({})", count_phrase(names.len(), "scene"), names.join(", "))?;
         }
         if let Some(file) = &self.calibration {
             writeln!(f, "calibration: {file}")?;

@@ -4,5 +4,5 @@
 mod samples;
 mod walks;
 
-pub use samples::{Held, Labels, belongs, held, is_known};
-pub use walks::{Surveys, Text, Walk, episodes, left_out, walks};
+pub use samples::{ClaimSample, LabelNames, belongs_to_case, is_known, sample_claims};
+pub use walks::{PeopleText, PeopleWalk, SceneSurveys, left_out, read_episodes, read_people_walks};

@@ -1,18 +1,18 @@
 //! Adds up the calls, tokens and money that a command would need from each model.
 
-use super::Models;
-use crate::count::count;
+use super::JobModels;
+use crate::count::count_phrase;
 use serde::Serialize;
 use std::fmt;
 
 /// The expected load of each model, one entry per model.
 #[derive(Debug, Default, Serialize)]
 #[serde(transparent)]
-pub struct Bill(Vec<Asked>);
+pub struct ModelBill(Vec<ModelBillEntry>);
 
 /// The expected load of one model in all its roles.
 #[derive(Debug, Default, Serialize)]
-struct Asked {
+struct ModelBillEntry {
     model: String,
     roles: Vec<&'static str>,
     calls: u64,
@@ -28,7 +28,7 @@ struct Asked {
 
 /// Calls and tokens of one role.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Load {
+pub struct CallLoad {
     pub calls: u64,
     pub tokens_in: u64,
     pub tokens_out: u64,
@@ -42,11 +42,11 @@ pub fn picture_tokens(picture_px: u32) -> u64 {
     u64::from(picture_px).pow(2) * 3 / 4 / PIXELS_PER_TOKEN
 }
 
-impl Bill {
+impl ModelBill {
     /// Adds the load of a model in one role.
-    pub fn add(&mut self, model: &str, role: &'static str, load: Load) {
+    pub fn add_load(&mut self, model: &str, role: &'static str, load: CallLoad) {
         let at = self.0.iter().position(|asked| asked.model == model).unwrap_or_else(|| {
-            self.0.push(Asked { model: model.to_owned(), ..Asked::default() });
+            self.0.push(ModelBillEntry { model: model.to_owned(), ..ModelBillEntry::default() });
             self.0.len() - 1
         });
         if let Some(asked) = self.0.get_mut(at) {
@@ -58,21 +58,21 @@ impl Bill {
     }
 
     /// Fills in what each model costs, where that is known.
-    pub fn price(&mut self, models: &Models<'_>) {
+    pub fn fill_prices(&mut self, models: &JobModels<'_>) {
         for asked in &mut self.0 {
-            let price = models.price(&asked.model);
-            asked.usd = price.map(|price| price.usd(asked.tokens_in, asked.tokens_out));
+            let price = models.model_price(&asked.model);
+            asked.usd = price.map(|price| price.cost_usd(asked.tokens_in, asked.tokens_out));
             asked.price_as_of = price.map(|price| price.as_of.clone());
         }
     }
 
     /// Calls of all models.
-    pub(crate) fn calls(&self) -> u64 {
+    pub(crate) fn call_count(&self) -> u64 {
         self.0.iter().map(|asked| asked.calls).sum()
     }
 
     /// US dollars of all models; `None` if a price is not known.
-    pub(crate) fn usd(&self) -> Option<f64> {
+    pub(crate) fn total_usd(&self) -> Option<f64> {
         self.0.iter().map(|asked| asked.usd).sum()
     }
 
@@ -82,9 +82,9 @@ impl Bill {
     }
 }
 
-impl Load {
+impl CallLoad {
     /// Adds a call.
-    pub fn call(&mut self, prompt: &str, tokens_out: u64) {
+    pub fn add_call(&mut self, prompt: &str, tokens_out: u64) {
         // English text has about four characters per token.
         self.add(Self { calls: 1, tokens_in: prompt.len().div_ceil(4) as u64, tokens_out });
     }
@@ -110,7 +110,7 @@ impl Load {
 }
 
 /// A line for each model, and one for all.
-impl fmt::Display for Bill {
+impl fmt::Display for ModelBill {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for asked in &self.0 {
             write!(
@@ -118,8 +118,8 @@ impl fmt::Display for Bill {
                 "  {} ({}): {}, about {} in, {} out",
                 asked.model,
                 asked.roles.join(", "),
-                count(asked.calls, "call"),
-                count(asked.tokens_in, "token"),
+                count_phrase(asked.calls, "call"),
+                count_phrase(asked.tokens_in, "token"),
                 asked.tokens_out
             )?;
             match (asked.usd, &asked.price_as_of) {
@@ -128,7 +128,7 @@ impl fmt::Display for Bill {
                 _ => writeln!(f, ", price not known (see --prices)")?,
             }
         }
-        match self.usd() {
+        match self.total_usd() {
             Some(usd) => write!(f, "in all: about ${usd:.2}"),
             None => write!(f, "in all: not known, because a price is missing"),
         }

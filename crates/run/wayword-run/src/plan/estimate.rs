@@ -2,34 +2,34 @@
 //! texts of typical length in place of answers that do not exist yet.
 
 use super::{
-    Plan,
-    bill::{Bill, Load, picture_tokens},
-    views::{Different, Views},
+    RunPlan,
+    bill::{CallLoad, ModelBill, picture_tokens},
+    views::{DistinctCounts, DistinctViews},
 };
 use crate::{
-    count::count,
-    error::Error,
-    item::Item,
-    looking_for::nouns,
+    count::count_phrase,
+    error::CommandError,
+    item::RunItem,
+    looking_for::proposed_names,
     pipeline,
-    platforms::Remembering,
-    settings::{Perception, Settings, is_model},
-    styles::Measured,
-    team::prompts,
+    platforms::RememberingPlatform,
+    settings::{Perception, RunSettings, is_model},
+    styles::MeasuredStyle,
+    team::settings_prompts,
 };
 use serde::Serialize;
 use std::fmt;
-use wayword_core::{Exchange, Observation, Path};
+use wayword_core::{DialogueExchange, FrameObservation, Path};
 use wayword_synthesis::{
-    prompts::{Manner, PromptError, Prompts},
-    walk::Walk,
-    writer::Brief,
+    prompts::{PromptError, PromptManner, Prompts},
+    walk::ObservedWalk,
+    writer::WritingBrief,
 };
 
 /// The estimated calls of a run. It assumes that dialogues have their usual length, that no question or text is repeated, and
 /// that the ledger is empty.
 #[derive(Debug, Default, Serialize)]
-pub struct Estimate {
+pub struct RunEstimate {
     /// Items of the run that have a path.
     items: usize,
     /// Frames of their paths.
@@ -40,17 +40,17 @@ pub struct Estimate {
     questions: usize,
     /// The work of the detector, if there is one.
     #[serde(skip_serializing_if = "Option::is_none")]
-    detector: Option<Looked>,
+    detector: Option<DetectorEstimate>,
     /// One per model.
-    models: Bill,
+    models: ModelBill,
     /// The surplus of shards over a queue.
     #[serde(skip_serializing_if = "Option::is_none")]
-    shards: Option<Shards>,
+    shards: Option<ShardSurcharge>,
 }
 
 /// How much more workers need with `--shard` than with `--queue`: shards share calls only within a chunk.
 #[derive(Debug, Serialize)]
-struct Shards {
+struct ShardSurcharge {
     /// Items in a chunk.
     chunk: usize,
     /// The number of different views in each chunk, summed over the chunks.
@@ -64,7 +64,7 @@ struct Shards {
 
 /// The phrases that a detector looks for.
 #[derive(Debug, Serialize)]
-struct Looked {
+struct DetectorEstimate {
     /// The detector.
     model: String,
     /// Names that it looks for in every view by itself; the names of captions come on top.
@@ -87,63 +87,64 @@ const STRUCTURED_TOKENS: u64 = 350;
 const CAPTION_TOKENS: u64 = 60;
 const CONDENSED_TOKENS: u64 = 25;
 const INSTRUCTION_TOKENS: u64 = 60;
-impl Estimate {
+impl RunEstimate {
     /// The estimate for the whole run. With `chunk`, the number of items in a chunk, it includes the surplus of shards over a
     /// queue.
-    pub(super) fn of(plan: &Plan<'_>, chunk: Option<usize>) -> Result<Self, Error> {
+    pub(super) fn for_plan(plan: &RunPlan<'_>, chunk: Option<usize>) -> Result<Self, CommandError> {
         Self::of_items(plan, plan.items.iter(), chunk)
     }
 
     /// All calls, where a detector makes `per_view` of them for each view.
-    pub(super) fn calls(&self, per_view: u64) -> u64 {
-        self.models.calls() + per_view * self.views as u64
+    pub(super) fn call_count(&self, per_view: u64) -> u64 {
+        self.models.call_count() + per_view * self.views as u64
     }
 
     /// The estimate for some of the items.
     pub(super) fn of_items<'i>(
-        plan: &Plan<'_>,
-        items: impl Iterator<Item = &'i Item>,
+        plan: &RunPlan<'_>,
+        items: impl Iterator<Item = &'i RunItem>,
         chunk: Option<usize>,
-    ) -> Result<Self, Error> {
+    ) -> Result<Self, CommandError> {
         let settings = &plan.job.settings;
-        let prompts = prompts(settings)?;
-        let mut estimate = Self { questions: questions(settings), ..Self::default() };
-        let (mut all, mut here, mut apart) = (Views::default(), Views::default(), Different::default());
-        let mut writing = Load::default();
+        let prompts = settings_prompts(settings)?;
+        let mut estimate = Self { questions: max_questions(settings), ..Self::default() };
+        let (mut all, mut here, mut apart) =
+            (DistinctViews::default(), DistinctViews::default(), DistinctCounts::default());
+        let mut writing = CallLoad::default();
         for (number, item) in items.enumerate() {
             if chunk.is_some_and(|chunk| number.is_multiple_of(chunk)) {
-                apart += std::mem::take(&mut here).different();
+                apart += std::mem::take(&mut here).count_distinct();
             }
-            let world = Remembering::new(plan.platform);
+            let world = RememberingPlatform::new(plan.platform);
             // An item without a path fails in the run before any model is called.
-            let Ok(path) = pipeline::path(item, settings, &world) else { continue };
+            let Ok(path) = pipeline::item_path(item, settings, &world) else { continue };
             estimate.items += 1;
             estimate.frames += path.frames.len();
-            all.add(&path, settings.frames);
+            all.add_path(&path, settings.frames);
             if chunk.is_some() {
-                here.add(&path, settings.frames);
+                here.add_path(&path, settings.frames);
             }
             writing.add(write_load(&prompts, settings, &plan.styles, &path)?);
         }
-        apart += here.different();
-        let different = all.different();
+        apart += here.count_distinct();
+        let different = all.count_distinct();
         estimate.views = different.views as usize;
         if let Some(model) = &settings.roles.detector {
-            let phrases = nouns(settings, &plan.styles)?.len();
-            estimate.detector = Some(Looked { model: model.clone(), phrases });
+            let phrases = proposed_names(settings, &plan.styles)?.len();
+            estimate.detector = Some(DetectorEstimate { model: model.clone(), phrases });
         }
-        let talk = Talk::of(&prompts, settings)?;
-        estimate.models = talk.bill(plan, different, writing);
+        let talk = DialogueLoad::for_settings(&prompts, settings)?;
+        estimate.models = talk.make_bill(plan, different, writing);
         estimate.shards = chunk.filter(|_| !estimate.models.is_empty()).map(|chunk| {
-            let more = talk.bill(plan, apart - different, Load::default());
-            Shards { chunk, views: apart.views as usize, calls: more.calls(), usd: more.usd() }
+            let more = talk.make_bill(plan, apart - different, CallLoad::default());
+            ShardSurcharge { chunk, views: apart.views as usize, calls: more.call_count(), usd: more.total_usd() }
         });
         Ok(estimate)
     }
 }
 
 /// The most questions per view, including the fixed ones.
-fn questions(settings: &Settings) -> usize {
+fn max_questions(settings: &RunSettings) -> usize {
     match settings.perception {
         Perception::Dialogue => settings.questions + 1,
         Perception::Fixed => 2,
@@ -154,10 +155,10 @@ fn questions(settings: &Settings) -> usize {
 }
 
 /// The average number of questions per view.
-fn usual_questions(settings: &Settings) -> usize {
+fn usual_questions(settings: &RunSettings) -> usize {
     match settings.perception {
         Perception::Dialogue => 1 + (settings.questions as f64 * USUAL_SHARE).round() as usize,
-        Perception::Fixed | Perception::Single | Perception::Structured => questions(settings),
+        Perception::Fixed | Perception::Single | Perception::Structured => max_questions(settings),
         Perception::FollowUp => 1,
     }
 }
@@ -166,57 +167,65 @@ fn usual_questions(settings: &Settings) -> usize {
 ///
 /// # Errors
 /// When a prompt cannot be used.
-pub fn seeing(settings: &Settings) -> Result<Load, Error> {
-    Ok(Talk::of(&prompts(settings)?, settings)?.seeing)
+pub fn seeing_load(settings: &RunSettings) -> Result<CallLoad, CommandError> {
+    Ok(DialogueLoad::for_settings(&settings_prompts(settings)?, settings)?.seeing)
 }
 
 /// The load of the dialogue about one view, by role.
-struct Talk {
-    asking: Load,
-    seeing: Load,
+struct DialogueLoad {
+    asking: CallLoad,
+    seeing: CallLoad,
     /// One question about what a structured answer left open.
-    settling: Load,
-    summing: Load,
-    condensing: Load,
+    settling: CallLoad,
+    summing: CallLoad,
+    condensing: CallLoad,
 }
 
-impl Talk {
-    fn of(prompts: &Prompts, settings: &Settings) -> Result<Self, PromptError> {
+impl DialogueLoad {
+    fn for_settings(prompts: &Prompts, settings: &RunSettings) -> Result<Self, PromptError> {
         let rounds = usual_questions(settings);
         let mut transcript = Vec::new();
-        let (mut asking, mut seeing) = (Load::default(), Load::default());
+        let (mut asking, mut seeing) = (CallLoad::default(), CallLoad::default());
         let picture = picture_tokens(settings.roles.picture_px);
         for round in 0..rounds {
             if round > 0 {
-                asking.call(&prompts.question(&transcript)?, QUESTION_TOKENS);
+                asking.add_call(&prompts.question_prompt(&transcript)?, QUESTION_TOKENS);
             }
             if round == 0 && settings.perception.is_structured() {
-                seeing.call(&prompts.see(None)?, STRUCTURED_TOKENS);
+                seeing.add_call(&prompts.view_prompt(None)?, STRUCTURED_TOKENS);
             } else {
-                seeing.call(&prompts.answer(Manner::Chat, TYPICAL_QUESTION, &transcript)?, ANSWER_TOKENS);
+                seeing.add_call(
+                    &prompts.answer_prompt(PromptManner::Chat, TYPICAL_QUESTION, &transcript)?,
+                    ANSWER_TOKENS,
+                );
             }
             seeing.tokens_in += picture;
-            transcript.push(Exchange::new(TYPICAL_QUESTION, TYPICAL_ANSWER));
+            transcript.push(DialogueExchange::new(TYPICAL_QUESTION, TYPICAL_ANSWER));
         }
-        let mut settling = Load::default();
-        settling.call(&prompts.answer(Manner::Chat, TYPICAL_QUESTION, &[])?, ANSWER_TOKENS);
+        let mut settling = CallLoad::default();
+        settling.add_call(&prompts.answer_prompt(PromptManner::Chat, TYPICAL_QUESTION, &[])?, ANSWER_TOKENS);
         settling.tokens_in += picture;
-        let (mut summing, mut condensing) = (Load::default(), Load::default());
-        summing.call(&prompts.summary(&transcript, &[], &[])?, CAPTION_TOKENS);
+        let (mut summing, mut condensing) = (CallLoad::default(), CallLoad::default());
+        summing.add_call(&prompts.summary_prompt(&transcript, &[], &[])?, CAPTION_TOKENS);
         let around = [("ahead", TYPICAL_CAPTION); 4];
-        condensing.call(&prompts.condense(&around, 20, &[])?, CONDENSED_TOKENS);
+        condensing.add_call(&prompts.condense_prompt(&around, 20, &[])?, CONDENSED_TOKENS);
         Ok(Self { asking, seeing, settling, summing, condensing })
     }
 
     /// The bill for this number of views, and for the texts.
-    fn bill(&self, plan: &Plan<'_>, Different { views, panoramas }: Different, writing: Load) -> Bill {
+    fn make_bill(
+        &self,
+        plan: &RunPlan<'_>,
+        DistinctCounts { views, panoramas }: DistinctCounts,
+        writing: CallLoad,
+    ) -> ModelBill {
         let settings = &plan.job.settings;
         let roles = &settings.roles;
         let dialogue = settings.has_dialogue();
         let open = if settings.perception == Perception::FollowUp { views * OPEN_PER_HUNDRED_VIEWS / 100 } else { 0 };
         let seeing = self.seeing.times(views).plus(self.settling.times(open));
         let summing = self.summing.times(views).plus(self.condensing.times(panoramas));
-        let mut bill = Bill::default();
+        let mut bill = ModelBill::default();
         for (role, model, load, takes_part) in [
             ("asks", &roles.ask, self.asking.times(views), dialogue),
             ("sees", &roles.see, seeing, true),
@@ -224,42 +233,49 @@ impl Talk {
             ("writes", &roles.write, writing, true),
         ] {
             if is_model(model) && takes_part {
-                bill.add(model, role, load);
+                bill.add_load(model, role, load);
             }
         }
-        bill.price(&plan.models);
+        bill.fill_prices(&plan.models);
         bill
     }
 }
 
 /// The load of writing each text of a path once. Repairs come on top; their number is not known in advance.
-fn write_load(prompts: &Prompts, settings: &Settings, styles: &[Measured], path: &Path) -> Result<Load, PromptError> {
-    let seen = Observation { summary: TYPICAL_CAPTION.to_owned(), ..Observation::default() };
-    let walk = Walk::new(path.clone(), vec![seen; path.frames.len()]);
+fn write_load(
+    prompts: &Prompts,
+    settings: &RunSettings,
+    styles: &[MeasuredStyle],
+    path: &Path,
+) -> Result<CallLoad, PromptError> {
+    let seen = FrameObservation { summary: TYPICAL_CAPTION.to_owned(), ..FrameObservation::default() };
+    let walk = ObservedWalk::new(path.clone(), vec![seen; path.frames.len()]);
     let memory = walk.memory();
-    let mut load = Load::default();
+    let mut load = CallLoad::default();
     let pictures = if settings.roles.write_sees { path.frames.len().min(pipeline::MOST_SHOWN) as u64 } else { 0 };
-    for Measured { style, profile, .. } in styles {
+    for MeasuredStyle { style, profile, .. } in styles {
         let earlier: Vec<String> = (0..settings.per_path).map(|_| TYPICAL_INSTRUCTION.to_owned()).collect();
         for number in 0..settings.per_path {
-            let brief =
-                Brief { earlier: &earlier[..number], ..Brief::new(&walk, &memory, style, profile, settings.seed) };
-            load.call(&prompts.write(&brief)?, INSTRUCTION_TOKENS);
+            let brief = WritingBrief {
+                earlier: &earlier[..number],
+                ..WritingBrief::new(&walk, &memory, style, profile, settings.seed)
+            };
+            load.add_call(&prompts.writing_prompt(&brief)?, INSTRUCTION_TOKENS);
             load.tokens_in += pictures * picture_tokens(settings.roles.picture_px);
         }
     }
     Ok(load.times(u64::from(settings.candidates)))
 }
 
-impl fmt::Display for Estimate {
+impl fmt::Display for RunEstimate {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (items, frames) = (count(self.items, "item"), count(self.frames, "frame"));
-        writeln!(f, "{items}, {frames}, {} to caption", count(self.views, "different view"))?;
-        if let Some(Looked { model, phrases }) = &self.detector {
+        let (items, frames) = (count_phrase(self.items, "item"), count_phrase(self.frames, "frame"));
+        writeln!(f, "{items}, {frames}, {} to caption", count_phrase(self.views, "different view"))?;
+        if let Some(DetectorEstimate { model, phrases }) = &self.detector {
             writeln!(
                 f,
                 "{model} looks for {} and what captions name in each of these views, free: it runs in process",
-                count(*phrases, "thing")
+                count_phrase(*phrases, "thing")
             )?;
         }
         if self.models.is_empty() {
@@ -271,8 +287,8 @@ impl fmt::Display for Estimate {
             "estimate, if dialogues end where they usually do, nothing is asked or written twice, and the ledger is empty:"
         )?;
         self.models.fmt(f)?;
-        let Some(Shards { chunk, views, calls, usd }) = &self.shards else { return Ok(()) };
-        let (views, calls) = (count(*views, "view"), count(*calls, "call"));
+        let Some(ShardSurcharge { chunk, views, calls, usd }) = &self.shards else { return Ok(()) };
+        let (views, calls) = (count_phrase(*views, "view"), count_phrase(*calls, "call"));
         write!(f, "\nwith --shard calls are shared within a chunk of {chunk} alone: {views} to caption, {calls}")?;
         match usd {
             Some(usd) => write!(f, " and ${usd:.2} more than with --queue"),

@@ -2,19 +2,21 @@
 //! or endpoints have changed.
 
 use crate::{
-    error::Error,
-    looking_for::{Proposals, proposals},
+    error::CommandError,
+    looking_for::{DetectorProposals, asked_proposals},
     run_folder::{hash_of_file, short_hex},
-    settings::{Job, Providers},
-    styles::Measured,
-    team::prompts,
+    settings::{ProviderTables, RunJob},
+    styles::MeasuredStyle,
+    team::settings_prompts,
 };
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 
-pub(super) fn inputs(job: &Job, styles: &[Measured]) -> Result<BTreeMap<String, String>, Error> {
-    let mut inputs: BTreeMap<String, String> =
-        styles.iter().map(|Measured { style, hash, .. }| (format!("style {}", style.name), hash.clone())).collect();
+pub(super) fn hash_inputs(job: &RunJob, styles: &[MeasuredStyle]) -> Result<BTreeMap<String, String>, CommandError> {
+    let mut inputs: BTreeMap<String, String> = styles
+        .iter()
+        .map(|MeasuredStyle { style, hash, .. }| (format!("style {}", style.name), hash.clone()))
+        .collect();
     if let Some(file) = &job.settings.episodes {
         inputs.insert("episodes".into(), hash_of_file(file)?);
     }
@@ -24,15 +26,15 @@ pub(super) fn inputs(job: &Job, styles: &[Measured]) -> Result<BTreeMap<String, 
     if let Some(file) = &job.settings.detector_figures {
         inputs.insert("detector figures".into(), hash_of_file(file)?);
     }
-    if let Some(Proposals::File(file)) = proposals(&job.settings) {
+    if let Some(DetectorProposals::File(file)) = asked_proposals(&job.settings) {
         inputs.insert("proposals".into(), hash_of_file(file)?);
     }
-    let prompts = prompts(&job.settings)?;
-    if !job.settings.roles.models().is_empty() {
+    let prompts = settings_prompts(&job.settings)?;
+    if !job.settings.roles.model_names().is_empty() {
         inputs.insert("prompts".into(), prompts.hash().to_owned());
     }
     if !job.providers.is_empty() {
-        inputs.insert("providers".into(), providers(&job.providers));
+        inputs.insert("providers".into(), hash_providers(&job.providers));
     }
     Ok(inputs)
 }
@@ -40,7 +42,7 @@ pub(super) fn inputs(job: &Job, styles: &[Measured]) -> Result<BTreeMap<String, 
 /// Fields of a provider that have no influence on answers, and so may change between two commands of a run.
 const WITHOUT_EFFECT: [&str; 3] = ["requests_per_minute", "tokens_per_minute", "key_env"];
 
-fn providers(providers: &Providers) -> String {
+fn hash_providers(providers: &ProviderTables) -> String {
     let mut hash = Sha256::new();
     for (name, table) in providers {
         let telling = table.iter().filter(|(field, _)| !WITHOUT_EFFECT.contains(&field.as_str()));

@@ -7,47 +7,47 @@ mod inputs;
 mod views;
 
 use crate::{
-    calls::Calls,
-    error::Error,
-    item::{Item, check_names, items},
-    looking_for::{self, Lookout},
-    output::Output,
-    settings::{Job, Settings},
-    styles::{self, Measured},
+    calls::ModelCalls,
+    error::CommandError,
+    item::{RunItem, check_names, run_items},
+    looking_for::{self, DetectorLookout},
+    output::CommandOutput,
+    settings::{RunJob, RunSettings},
+    styles::{self, MeasuredStyle},
 };
 use std::collections::BTreeMap;
 use wayword_core::Platform;
-use wayword_remote::Price;
+use wayword_remote::ModelPrice;
 
-pub use bill::{Bill, Load, picture_tokens};
-pub use estimate::Estimate;
-pub use estimate::seeing;
+pub use bill::{CallLoad, ModelBill, picture_tokens};
+pub use estimate::RunEstimate;
+pub use estimate::seeing_load;
 
 /// Number of items from which the calls of the other items are extrapolated.
-const FEW: usize = 8;
+const SAMPLED_ITEMS: usize = 8;
 
 /// The items, styles and models of a run.
-pub struct Plan<'a> {
+pub struct RunPlan<'a> {
     /// The settings, and how models are reached.
-    pub job: &'a Job,
+    pub job: &'a RunJob,
     /// The platform.
     pub platform: &'a dyn Platform,
     /// The paths, in their order.
-    pub items: Vec<Item>,
+    pub items: Vec<RunItem>,
     /// The styles to write in; empty for a run that only looks.
-    pub styles: Vec<Measured>,
+    pub styles: Vec<MeasuredStyle>,
     /// The models, over a network or in process.
-    pub models: Models<'a>,
+    pub models: JobModels<'a>,
 }
 
-impl<'a> Plan<'a> {
+impl<'a> RunPlan<'a> {
     /// A run that only looks along its paths, without writing texts.
     ///
     /// # Errors
     /// When the platform has no paths of this kind, or a model is not known.
-    pub fn looking(job: &'a Job, platform: &'a dyn Platform) -> Result<Self, Error> {
-        let items = items(&job.settings, platform)?;
-        Ok(Self { job, platform, items, styles: Vec::new(), models: Models::of(job)? })
+    pub fn for_looking(job: &'a RunJob, platform: &'a dyn Platform) -> Result<Self, CommandError> {
+        let items = run_items(&job.settings, platform)?;
+        Ok(Self { job, platform, items, styles: Vec::new(), models: JobModels::for_job(job)? })
     }
 
     /// A run that writes instructions for paths.
@@ -55,20 +55,20 @@ impl<'a> Plan<'a> {
     /// # Errors
     /// When a style or a detector's file cannot be read, the platform has no paths of this kind, two items share a name, or a
     /// model is not known.
-    pub fn writing(job: &'a Job, platform: &'a dyn Platform) -> Result<Self, Error> {
-        let styles = styles::find(&job.settings.style)?;
-        looking_for::check(&job.settings, &styles)?;
-        let items = items(&job.settings, platform)?;
+    pub fn for_writing(job: &'a RunJob, platform: &'a dyn Platform) -> Result<Self, CommandError> {
+        let styles = styles::find_styles(&job.settings.style)?;
+        looking_for::check_detector_files(&job.settings, &styles)?;
+        let items = run_items(&job.settings, platform)?;
         check_names(&items)?;
-        Ok(Self { job, platform, items, styles, models: Models::of(job)? })
+        Ok(Self { job, platform, items, styles, models: JobModels::for_job(job)? })
     }
 
     /// The settings as a run folder keeps them: with hashes of the files and tables that they only name.
     ///
     /// # Errors
     /// When a file cannot be read.
-    pub fn settings(&self) -> Result<Settings, Error> {
-        Ok(Settings { inputs: inputs::inputs(self.job, &self.styles)?, ..self.job.settings.clone() })
+    pub fn settings_with_hashes(&self) -> Result<RunSettings, CommandError> {
+        Ok(RunSettings { inputs: inputs::hash_inputs(self.job, &self.styles)?, ..self.job.settings.clone() })
     }
 
     /// The expected number of calls per item: the mean of the first few of these items, without repeated calls. A lookout adds
@@ -76,10 +76,10 @@ impl<'a> Plan<'a> {
     ///
     /// # Errors
     /// When a prompt cannot be used.
-    pub fn calls_per_item(&self, items: &[&Item], lookout: Option<&Lookout>) -> Result<f64, Error> {
-        let few = &items[..items.len().min(FEW)];
-        let calls =
-            Estimate::of_items(self, few.iter().copied(), None)?.calls(lookout.map_or(0, Lookout::calls_per_view));
+    pub fn calls_per_item(&self, items: &[&RunItem], lookout: Option<&DetectorLookout>) -> Result<f64, CommandError> {
+        let few = &items[..items.len().min(SAMPLED_ITEMS)];
+        let calls = RunEstimate::of_items(self, few.iter().copied(), None)?
+            .call_count(lookout.map_or(0, DetectorLookout::calls_per_view));
         Ok(calls as f64 / few.len().max(1) as f64)
     }
 
@@ -88,33 +88,33 @@ impl<'a> Plan<'a> {
     ///
     /// # Errors
     /// When a prompt cannot be used.
-    pub fn estimate(&self, chunk: Option<usize>) -> Result<Estimate, Error> {
-        Estimate::of(self, chunk)
+    pub fn estimate_calls(&self, chunk: Option<usize>) -> Result<RunEstimate, CommandError> {
+        RunEstimate::for_plan(self, chunk)
     }
 }
 
 /// The models that a job names: known, priced, and not asked yet.
-pub struct Models<'a> {
-    job: &'a Job,
+pub struct JobModels<'a> {
+    job: &'a RunJob,
     /// By model; `None` if the price is not known.
-    prices: BTreeMap<String, Option<Price>>,
+    prices: BTreeMap<String, Option<ModelPrice>>,
 }
 
-impl<'a> Models<'a> {
+impl<'a> JobModels<'a> {
     /// The models of a job.
     ///
     /// # Errors
     /// When one is not known, has no price and needs one, or a file for the calls is not there.
-    pub fn of(job: &'a Job) -> Result<Self, Error> {
-        Ok(Self { job, prices: Calls::rehearse(job)? })
+    pub fn for_job(job: &'a RunJob) -> Result<Self, CommandError> {
+        Ok(Self { job, prices: ModelCalls::rehearse_job(job)? })
     }
 
     /// Opens ledger and services for the models; `None` if there are none. The calls are booked under the name `run`.
     ///
     /// # Errors
     /// When the ledger cannot be opened.
-    pub fn open(&self, run: &str, output: &Output) -> Result<Option<Calls>, Error> {
-        if self.is_empty() { Ok(None) } else { Calls::open(self.job, run, output) }
+    pub fn open_calls(&self, run: &str, output: &CommandOutput) -> Result<Option<ModelCalls>, CommandError> {
+        if self.is_empty() { Ok(None) } else { ModelCalls::open(self.job, run, output) }
     }
 
     /// Whether no model takes part.
@@ -125,7 +125,7 @@ impl<'a> Models<'a> {
 
     /// The price of a model, if it is known.
     #[must_use]
-    pub fn price(&self, model: &str) -> Option<&Price> {
+    pub fn model_price(&self, model: &str) -> Option<&ModelPrice> {
         self.prices.get(model)?.as_ref()
     }
 }

@@ -5,32 +5,32 @@ use std::{
     collections::BTreeSet,
     ops::{AddAssign, Sub},
 };
-use wayword_core::{Gaze, Path, SceneId, ViewpointId};
-use wayword_synthesis::{observe::gazes, walk::FrameSelection};
+use wayword_core::{Path, SceneId, ViewGaze, ViewpointId};
+use wayword_synthesis::{observe::frame_gazes, walk::FrameSelection};
 
 /// A place in a scene.
-type Place = (SceneId, ([u64; 3], Option<ViewpointId>));
+type ViewPlace = (SceneId, ([u64; 3], Option<ViewpointId>));
 
 /// The views of some paths.
 #[derive(Default)]
-pub(super) struct Views {
-    views: BTreeSet<(Place, i64)>,
-    panoramas: BTreeSet<Place>,
+pub(super) struct DistinctViews {
+    views: BTreeSet<(ViewPlace, i64)>,
+    panoramas: BTreeSet<ViewPlace>,
 }
 
 /// How many views and panoramas differ.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub(super) struct Different {
+pub(super) struct DistinctCounts {
     pub(super) views: u64,
     pub(super) panoramas: u64,
 }
 
-impl Views {
+impl DistinctViews {
     /// Adds the views along a path.
-    pub(super) fn add(&mut self, path: &Path, frames: FrameSelection) {
+    pub(super) fn add_path(&mut self, path: &Path, frames: FrameSelection) {
         for frame in &path.frames {
-            let place = (path.scene.clone(), frame.place());
-            self.views.extend(gazes(frame, frames).iter().map(|gaze| (place.clone(), micro_rad(*gaze))));
+            let place = (path.scene.clone(), frame.place_key());
+            self.views.extend(frame_gazes(frame, frames).iter().map(|gaze| (place.clone(), micro_rad(*gaze))));
             if frames == FrameSelection::Panoramic {
                 self.panoramas.insert(place);
             }
@@ -38,19 +38,19 @@ impl Views {
     }
 
     /// Counts the views and panoramas that were added.
-    pub(super) fn different(&self) -> Different {
-        Different { views: self.views.len() as u64, panoramas: self.panoramas.len() as u64 }
+    pub(super) fn count_distinct(&self) -> DistinctCounts {
+        DistinctCounts { views: self.views.len() as u64, panoramas: self.panoramas.len() as u64 }
     }
 }
 
-impl AddAssign for Different {
+impl AddAssign for DistinctCounts {
     fn add_assign(&mut self, other: Self) {
         self.views += other.views;
         self.panoramas += other.panoramas;
     }
 }
 
-impl Sub for Different {
+impl Sub for DistinctCounts {
     type Output = Self;
 
     fn sub(self, other: Self) -> Self {
@@ -59,6 +59,6 @@ impl Sub for Different {
 }
 
 /// Headings that differ only by rounding look at the same thing.
-fn micro_rad(gaze: Gaze) -> i64 {
+fn micro_rad(gaze: ViewGaze) -> i64 {
     (gaze.heading.rad() * 1e6).round() as i64
 }

@@ -1,6 +1,6 @@
 //! Registers worlds that are Python objects of the program that this one runs in, so that `--data python:NAME` can open them.
 
-use crate::error::Error;
+use crate::error::CommandError;
 use std::{
     collections::BTreeMap,
     path::{Path, PathBuf},
@@ -9,40 +9,40 @@ use std::{
 use wayword_platforms::process::ProcessOptions;
 
 /// The prefix of `--data` for a registered world, as in `python:Rooms`.
-const SCHEME: &str = "python:";
+const INSIDE_SCHEME: &str = "python:";
 
-static WORLDS: Mutex<BTreeMap<String, ProcessOptions>> = Mutex::new(BTreeMap::new());
+static INSIDE_WORLDS: Mutex<BTreeMap<String, ProcessOptions>> = Mutex::new(BTreeMap::new());
 
 /// Registers a world under a name, and replaces an older one of that name. Returns the value of `--data` for it.
 #[must_use]
 pub fn put_inside(name: &str, options: ProcessOptions) -> PathBuf {
-    let data = format!("{SCHEME}{name}");
-    worlds().insert(data.clone(), options);
+    let data = format!("{INSIDE_SCHEME}{name}");
+    lock_worlds().insert(data.clone(), options);
     data.into()
 }
 
 /// Forgets a world.
 pub fn forget_inside(data: &Path) {
-    worlds().remove(&*data.to_string_lossy());
+    lock_worlds().remove(&*data.to_string_lossy());
 }
 
 /// The world for a value of `--data`; `None` if that is a file.
 ///
 /// # Errors
 /// When no world of that name is registered.
-pub(super) fn find(data: &Path) -> Result<Option<ProcessOptions>, Error> {
+pub(super) fn find_inside(data: &Path) -> Result<Option<ProcessOptions>, CommandError> {
     let data = data.to_string_lossy();
-    let Some(name) = data.strip_prefix(SCHEME) else { return Ok(None) };
-    worlds().get(&*data).cloned().map(Some).ok_or_else(|| {
-        Error::usage(
+    let Some(name) = data.strip_prefix(INSIDE_SCHEME) else { return Ok(None) };
+    lock_worlds().get(&*data).cloned().map(Some).ok_or_else(|| {
+        CommandError::usage(
             format!("world {name} is an object of a Python program, and is not here"),
             "give the same call in Python again, with the world as `platform`",
         )
     })
 }
 
-fn worlds() -> MutexGuard<'static, BTreeMap<String, ProcessOptions>> {
-    WORLDS.lock().unwrap_or_else(PoisonError::into_inner)
+fn lock_worlds() -> MutexGuard<'static, BTreeMap<String, ProcessOptions>> {
+    INSIDE_WORLDS.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 #[cfg(test)]
@@ -50,7 +50,7 @@ mod tests {
     use super::*;
     use crate::platforms::open_named;
     use serde_json::{Value, json};
-    use wayword_platforms::process::Inside;
+    use wayword_platforms::process::InsideWorld;
 
     fn answer(request: &[u8]) -> Vec<u8> {
         let request: Value = serde_json::from_slice(request).unwrap();
@@ -66,10 +66,10 @@ mod tests {
 
     #[test]
     fn find_inside_opens_a_world_until_it_is_forgotten() {
-        let data = put_inside("Yard", ProcessOptions::inside("Yard", Inside::new(answer)));
+        let data = put_inside("Yard", ProcessOptions::for_inside_world("Yard", InsideWorld::new(answer)));
         let yard = open_named("process", Some(&data), None, None).unwrap();
-        assert_eq!(yard.scenes().unwrap()[0].as_str(), "yard");
-        let refused = yard.graph(&yard.scenes().unwrap()[0]).err().unwrap().to_string();
+        assert_eq!(yard.list_scenes().unwrap()[0].as_str(), "yard");
+        let refused = yard.graph_for_scene(&yard.list_scenes().unwrap()[0]).err().unwrap().to_string();
         assert!(refused.contains("graph") && refused.contains("Yard"), "{refused}");
         forget_inside(&data);
         let gone = open_named("process", Some(&data), None, None).err().unwrap().to_string();

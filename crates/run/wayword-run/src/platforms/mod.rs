@@ -6,9 +6,9 @@ mod live;
 mod remembering;
 
 use crate::{
-    error::Error,
+    error::CommandError,
     output,
-    settings::{AskedPlatform, Settings},
+    settings::{AskedPlatform, RunSettings},
     similar::did_you_mean,
     stores,
 };
@@ -17,18 +17,18 @@ use wayword_core::Platform;
 #[cfg(feature = "habitat")]
 use wayword_habitat::{HabitatOptions, HabitatPlatform};
 use wayword_house::HousePlatform;
-use wayword_platforms::{matterport::Matterport, process};
+use wayword_platforms::{matterport::MatterportPlatform, process};
 use wayword_recording::RecordingPlatform;
 
 pub use inside::{forget_inside, put_inside};
-pub use remembering::Remembering;
+pub use remembering::RememberingPlatform;
 
 /// Number of scene surveys that a command keeps in memory.
 pub const SCENES_KEPT: usize = 128;
 
 /// A platform, as `wayword platforms` lists it.
 #[derive(Debug, Clone, Copy, serde::Serialize)]
-pub struct Listed {
+pub struct PlatformListing {
     /// Its name, as `--platform` takes it.
     pub name: &'static str,
     /// A short description.
@@ -42,50 +42,50 @@ pub struct Listed {
 }
 
 /// All platforms, in this build or not.
-pub const PLATFORMS: [Listed; 7] = [
-    Listed {
+pub const PLATFORMS: [PlatformListing; 7] = [
+    PlatformListing {
         name: "house",
         what: "generated homes, built in",
         needs: "nothing",
         offers: "pictures, labels, rooms, storeys",
         is_here: true,
     },
-    Listed {
+    PlatformListing {
         name: "matterport",
         what: "Matterport3D's buildings, from files",
         needs: "--data DIR with connectivity/ (docs/DATA.md lists what else is used)",
         offers: "rooms, storeys; labels with REVERIE's boxes or .house files; pictures with photographs",
         is_here: true,
     },
-    Listed {
+    PlatformListing {
         name: "process",
         what: "any simulator in any language, as a child process (docs/PROCESS.md)",
         needs: "--data FILE: a world file, or the program itself",
         offers: "what that program says it offers",
         is_here: true,
     },
-    Listed {
+    PlatformListing {
         name: "habitat",
         what: "AI Habitat's scenes, without Habitat",
         needs: "--data FILE or DIR: .glb, .gltf or .stage_config.json, with the .navmesh beside it or baked; or --connectivity DIR of viewpoint graphs",
         offers: "pictures, geodesic paths or paths along the graphs; labels and rooms with semantic files",
         is_here: cfg!(feature = "habitat"),
     },
-    Listed {
+    PlatformListing {
         name: "tdw",
         what: "ThreeDWorld: waits for a build to connect",
         needs: "a TDW build started with -port 1071, or another as in --at 127.0.0.1:1072; --data PACKAGE for furnished floor plans",
         offers: "pictures; labels of furniture, only in furnished plans (floorplan_1a_0)",
         is_here: cfg!(feature = "live"),
     },
-    Listed {
+    PlatformListing {
         name: "virtualhome",
         what: "VirtualHome's executable, while it runs",
         needs: "its HTTP address, as in --at http://127.0.0.1:8080 (the default)",
         offers: "pictures, labels, rooms",
         is_here: cfg!(feature = "live"),
     },
-    Listed {
+    PlatformListing {
         name: "recording",
         what: "recordings of robots: folders of pictures, MP4, MCAP, LeRobot datasets",
         needs: match (cfg!(feature = "mcap"), cfg!(all(feature = "lerobot", feature = "video"))) {
@@ -105,13 +105,13 @@ pub const PLATFORMS: [Listed; 7] = [
 ];
 
 /// The names of all platforms, as `--platform` takes them.
-pub(crate) fn names() -> [&'static str; PLATFORMS.len()] {
+pub(crate) fn platform_names() -> [&'static str; PLATFORMS.len()] {
     PLATFORMS.map(|platform| platform.name)
 }
 
 /// Whether random paths of a platform can have hops. Elsewhere they run over open ground, and `--hops` has no effect. A
 /// recording with poses has none either, but whether it has poses is known only once it is opened.
-pub fn has_hops(settings: &Settings) -> bool {
+pub fn has_hops(settings: &RunSettings) -> bool {
     settings.connectivity.is_some() || matches!(&*settings.platform, "matterport" | "process" | "recording")
 }
 
@@ -122,7 +122,7 @@ fn is_live(name: &str) -> bool {
 
 /// Where the scenes of a platform are, from flags or settings.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Place<'a> {
+pub struct PlatformPlace<'a> {
     /// The folder or file of its data.
     pub data: Option<&'a Path>,
     /// The address of a running simulator.
@@ -133,16 +133,16 @@ pub struct Place<'a> {
     pub connectivity: Option<&'a Path>,
 }
 
-impl<'a> From<&'a AskedPlatform> for Place<'a> {
+impl<'a> From<&'a AskedPlatform> for PlatformPlace<'a> {
     fn from(asked: &'a AskedPlatform) -> Self {
         let AskedPlatform { platform: _, data, at, island, connectivity } = asked;
         Self { data: data.as_deref(), at: at.as_deref(), island: *island, connectivity: connectivity.as_deref() }
     }
 }
 
-impl<'a> From<&'a Settings> for Place<'a> {
-    fn from(settings: &'a Settings) -> Self {
-        let Settings { data, at, island, connectivity, .. } = settings;
+impl<'a> From<&'a RunSettings> for PlatformPlace<'a> {
+    fn from(settings: &'a RunSettings) -> Self {
+        let RunSettings { data, at, island, connectivity, .. } = settings;
         Self { data: data.as_deref(), at: at.as_deref(), island: *island, connectivity: connectivity.as_deref() }
     }
 }
@@ -151,19 +151,19 @@ impl<'a> From<&'a Settings> for Place<'a> {
 ///
 /// # Errors
 /// When there is no platform of that name, or its data cannot be opened.
-pub fn open(settings: &Settings) -> Result<Box<dyn Platform>, Error> {
-    open_and_warn(&settings.platform, Place::from(settings))
+pub fn open_platform(settings: &RunSettings) -> Result<Box<dyn Platform>, CommandError> {
+    open_and_warn(&settings.platform, PlatformPlace::from(settings))
 }
 
 /// As [`open_at`], and warns if the data has no files with objects.
 ///
 /// # Errors
 /// As [`open_at`].
-pub fn open_and_warn(name: &str, place: Place<'_>) -> Result<Box<dyn Platform>, Error> {
+pub fn open_and_warn(name: &str, place: PlatformPlace<'_>) -> Result<Box<dyn Platform>, CommandError> {
     let platform = open_at(name, place)?;
     if name == "matterport"
         && let Some(data) = place.data
-        && let Some(lack) = Matterport::lack_of_objects(&stores::local(data)?)
+        && let Some(lack) = MatterportPlatform::lack_of_objects(&stores::local_data(data)?)
     {
         output::pass_on(&lack);
     }
@@ -180,34 +180,34 @@ pub fn open_named(
     data: Option<&Path>,
     at: Option<&str>,
     island: Option<usize>,
-) -> Result<Box<dyn Platform>, Error> {
-    open_at(name, Place { data, at, island, ..Place::default() })
+) -> Result<Box<dyn Platform>, CommandError> {
+    open_at(name, PlatformPlace { data, at, island, ..PlatformPlace::default() })
 }
 
 /// Opens a platform by its name, with where its scenes are.
 ///
 /// # Errors
 /// When there is none of that name in this build, its data cannot be opened, or it does not use a part of `place`.
-pub fn open_at(name: &str, place: Place<'_>) -> Result<Box<dyn Platform>, Error> {
-    let Place { data, island, connectivity, .. } = place;
-    if let Some((flag, example)) = unused(name, place) {
+pub fn open_at(name: &str, place: PlatformPlace<'_>) -> Result<Box<dyn Platform>, CommandError> {
+    let PlatformPlace { data, island, connectivity, .. } = place;
+    if let Some((flag, example)) = unused_flag(name, place) {
         let default = if name == "house" { ", the default," } else { "" };
-        return Err(Error::usage(
+        return Err(CommandError::usage(
             format!("platform {name}{default} takes no {flag}"),
             format!("say with --platform which platform this {flag} is for, as in --platform {example}"),
         ));
     }
     if island.is_some() && connectivity.is_some() {
-        return Err(Error::usage(
+        return Err(CommandError::usage(
             "--island and --connectivity cannot be combined: a scene with a graph is not walked on a navmesh",
             "give one of them",
         ));
     }
-    let data = || data.ok_or_else(|| no_data(name)).and_then(stores::local);
+    let data = || data.ok_or_else(|| no_data(name)).and_then(stores::local_data);
     match name {
         "house" => Ok(Box::new(HousePlatform::default())),
-        "matterport" => Ok(Box::new(Matterport::open(&data()?)?)),
-        "process" => child(&data()?),
+        "matterport" => Ok(Box::new(MatterportPlatform::open(&data()?)?)),
+        "process" => open_child(&data()?),
         #[cfg(feature = "habitat")]
         "habitat" => {
             let connectivity = connectivity.map(Path::to_owned);
@@ -215,33 +215,34 @@ pub fn open_at(name: &str, place: Place<'_>) -> Result<Box<dyn Platform>, Error>
             Ok(Box::new(HabitatPlatform::open(&data()?, options, Arc::new(output::pass_on))?))
         }
         #[cfg(feature = "live")]
-        "tdw" => live::tdw(place.data, place.at),
+        "tdw" => live::open_tdw(place.data, place.at),
         #[cfg(feature = "live")]
-        "virtualhome" => live::virtualhome(place.at),
+        "virtualhome" => live::open_virtualhome(place.at),
         "recording" => Ok(Box::new(RecordingPlatform::open(&data()?, Arc::new(output::pass_on))?)),
         absent if PLATFORMS.iter().any(|platform| platform.name == absent) => {
-            Err(Error::not_built(format!("this build has no platform {absent}")))
+            Err(CommandError::not_built(format!("this build has no platform {absent}")))
         }
-        other => Err(Error::usage(
-            format!("there is no platform {other:?}{}", did_you_mean(other, names())),
-            format!("name one of: {}", names().join(", ")),
+        other => Err(CommandError::usage(
+            format!("there is no platform {other:?}{}", did_you_mean(other, platform_names())),
+            format!("name one of: {}", platform_names().join(", ")),
         )),
     }
 }
 
 /// A platform that is another program, or an object of the program that this one runs in. If this program is killed, a second
 /// copy of it ends the other program.
-fn child(file: &Path) -> Result<Box<dyn Platform>, Error> {
-    if let Some(options) = inside::find(file)? {
+fn open_child(file: &Path) -> Result<Box<dyn Platform>, CommandError> {
+    if let Some(options) = inside::find_inside(file)? {
         return Ok(Box::new(process::ProcessPlatform::start(options, Arc::new(output::pass_on))?));
     }
-    let options = process::ProcessOptions { guard: process::this_program(), ..process::ProcessOptions::read(file)? };
+    let options =
+        process::ProcessOptions { guard: process::this_program(), ..process::ProcessOptions::read_world_file(file)? };
     Ok(Box::new(process::ProcessPlatform::start(options, Arc::new(output::pass_on))?))
 }
 
 /// The flag that a platform does not use, and one of the platforms that use it. Otherwise `--data` without `--platform`
 /// would silently give a generated house.
-fn unused(name: &str, place: Place<'_>) -> Option<(&'static str, &'static str)> {
+fn unused_flag(name: &str, place: PlatformPlace<'_>) -> Option<(&'static str, &'static str)> {
     match (place.data, place.at) {
         (Some(_), _) if matches!(name, "house" | "virtualhome") => Some(("--data", "matterport")),
         (_, Some(_)) if !is_live(name) => Some(("--at", "tdw")),
@@ -251,7 +252,7 @@ fn unused(name: &str, place: Place<'_>) -> Option<(&'static str, &'static str)> 
     }
 }
 
-pub fn no_data(name: &str) -> Error {
+pub fn no_data(name: &str) -> CommandError {
     let needs = PLATFORMS.into_iter().find(|platform| platform.name == name).map_or("", |platform| platform.needs);
-    Error::usage(format!("platform {name} needs --data"), format!("give {needs}"))
+    CommandError::usage(format!("platform {name} needs --data"), format!("give {needs}"))
 }

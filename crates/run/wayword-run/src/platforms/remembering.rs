@@ -6,22 +6,22 @@ use std::{
     sync::{Arc, Mutex, PoisonError},
 };
 use wayword_core::{
-    Depth, Frame, FromAbove, Gaze, Island, ObjectId, Path, PathRequest, Placed, Platform, PlatformError, SceneId, View,
-    ViewpointGraph, ViewpointId, Way,
+    DepthImage, Frame, FromAbove, GroundIsland, GroundRoute, ObjectId, Path, PathRequest, PlacedObject, Platform,
+    PlatformError, SceneId, View, ViewGaze, ViewpointGraph, ViewpointId,
 };
 
 /// A platform that caches its views, because perception, evidence and report look at the same ones.
-pub struct Remembering<'a> {
+pub struct RememberingPlatform<'a> {
     platform: &'a dyn Platform,
-    views: Mutex<BTreeMap<Key, View>>,
+    views: Mutex<BTreeMap<ViewKey, View>>,
     /// Whether its views have pictures.
     has_pictures: bool,
 }
 
 /// Scene, place, heading and width, as bits: equal looks give equal views.
-type Key = (SceneId, ([u64; 3], Option<ViewpointId>), u64, u64);
+type ViewKey = (SceneId, ([u64; 3], Option<ViewpointId>), u64, u64);
 
-impl<'a> Remembering<'a> {
+impl<'a> RememberingPlatform<'a> {
     /// An empty cache over a platform.
     #[must_use]
     pub fn new(platform: &'a dyn Platform) -> Self {
@@ -34,81 +34,81 @@ impl<'a> Remembering<'a> {
         Self { has_pictures: false, ..Self::new(platform) }
     }
 
-    fn remembered(&self, key: &Key) -> Option<View> {
+    fn remembered_view(&self, key: &ViewKey) -> Option<View> {
         self.views.lock().unwrap_or_else(PoisonError::into_inner).get(key).cloned()
     }
 
-    fn remember(&self, key: Key, view: &View) {
+    fn remember_view(&self, key: ViewKey, view: &View) {
         self.views.lock().unwrap_or_else(PoisonError::into_inner).insert(key, view.clone());
     }
 
-    fn labels(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
-        let key = key(scene, from, gaze);
-        if let Some(view) = self.remembered(&key) {
+    fn look_at_labels(&self, scene: &SceneId, from: &Frame, gaze: ViewGaze) -> Result<View, PlatformError> {
+        let key = view_key(scene, from, gaze);
+        if let Some(view) = self.remembered_view(&key) {
             return Ok(view);
         }
         let mut view = self.platform.look_without_picture(scene, from, gaze)?;
         view.image = None;
-        self.remember(key, &view);
+        self.remember_view(key, &view);
         Ok(view)
     }
 }
 
-fn key(scene: &SceneId, from: &Frame, gaze: Gaze) -> Key {
+fn view_key(scene: &SceneId, from: &Frame, gaze: ViewGaze) -> ViewKey {
     // Headings that differ only by rounding look at the same thing.
     let micro_rad = |rad: f64| (rad * 1e6).round() as u64;
-    (scene.clone(), from.place(), micro_rad(gaze.heading.rad()), micro_rad(gaze.horizontal_fov_rad))
+    (scene.clone(), from.place_key(), micro_rad(gaze.heading.rad()), micro_rad(gaze.horizontal_fov_rad))
 }
 
-impl Platform for Remembering<'_> {
+impl Platform for RememberingPlatform<'_> {
     fn name(&self) -> &'static str {
         self.platform.name()
     }
 
-    fn scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
-        self.platform.scenes()
+    fn list_scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
+        self.platform.list_scenes()
     }
 
-    fn graph(&self, scene: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {
-        self.platform.graph(scene)
+    fn graph_for_scene(&self, scene: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {
+        self.platform.graph_for_scene(scene)
     }
 
     fn sample_path(&self, scene: &SceneId, request: &PathRequest, seed: u64) -> Result<Path, PlatformError> {
         self.platform.sample_path(scene, request, seed)
     }
 
-    fn look(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
+    fn look_from(&self, scene: &SceneId, from: &Frame, gaze: ViewGaze) -> Result<View, PlatformError> {
         if !self.has_pictures {
-            return self.labels(scene, from, gaze);
+            return self.look_at_labels(scene, from, gaze);
         }
-        let key = key(scene, from, gaze);
-        if let Some(view) = self.remembered(&key) {
+        let key = view_key(scene, from, gaze);
+        if let Some(view) = self.remembered_view(&key) {
             return Ok(view);
         }
-        let view = self.platform.look(scene, from, gaze)?;
-        self.remember(key, &view);
+        let view = self.platform.look_from(scene, from, gaze)?;
+        self.remember_view(key, &view);
         Ok(view)
     }
 
-    fn look_without_picture(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
+    fn look_without_picture(&self, scene: &SceneId, from: &Frame, gaze: ViewGaze) -> Result<View, PlatformError> {
         if !self.has_pictures {
-            return self.labels(scene, from, gaze);
+            return self.look_at_labels(scene, from, gaze);
         }
-        let key = key(scene, from, gaze);
-        if let Some(view) = self.remembered(&key) {
+        let key = view_key(scene, from, gaze);
+        if let Some(view) = self.remembered_view(&key) {
             return Ok(view);
         }
         let view = self.platform.look_without_picture(scene, from, gaze)?;
         // A view with its picture is complete.
         if view.image.is_some() {
-            self.remember(key, &view);
+            self.remember_view(key, &view);
         }
         Ok(view)
     }
 
     /// Depth is not cached: it is larger than a picture, and asked for once.
-    fn depth(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<Option<Depth>, PlatformError> {
-        self.platform.depth(scene, from, gaze)
+    fn view_depth(&self, scene: &SceneId, from: &Frame, gaze: ViewGaze) -> Result<Option<DepthImage>, PlatformError> {
+        self.platform.view_depth(scene, from, gaze)
     }
 
     fn look_down(&self, scene: &SceneId, level: u32) -> Result<Option<FromAbove>, PlatformError> {
@@ -123,15 +123,15 @@ impl Platform for Remembering<'_> {
         self.platform.visible_from(scene, object)
     }
 
-    fn way(&self, scene: &SceneId, from: &Frame, to: &Frame) -> Result<Option<Way>, PlatformError> {
-        self.platform.way(scene, from, to)
+    fn ground_route(&self, scene: &SceneId, from: &Frame, to: &Frame) -> Result<Option<GroundRoute>, PlatformError> {
+        self.platform.ground_route(scene, from, to)
     }
 
-    fn islands(&self, scene: &SceneId) -> Result<Vec<Island>, PlatformError> {
-        self.platform.islands(scene)
+    fn ground_islands(&self, scene: &SceneId) -> Result<Vec<GroundIsland>, PlatformError> {
+        self.platform.ground_islands(scene)
     }
 
-    fn listed_objects(&self, scene: &SceneId) -> Result<Vec<Placed>, PlatformError> {
+    fn listed_objects(&self, scene: &SceneId) -> Result<Vec<PlacedObject>, PlatformError> {
         self.platform.listed_objects(scene)
     }
 
@@ -143,7 +143,7 @@ impl Platform for Remembering<'_> {
         self.platform.scene_file(scene)
     }
 
-    fn files(&self, scene: &SceneId) -> Result<Vec<PathBuf>, PlatformError> {
-        self.platform.files(scene)
+    fn source_files(&self, scene: &SceneId) -> Result<Vec<PathBuf>, PlatformError> {
+        self.platform.source_files(scene)
     }
 }

@@ -3,16 +3,16 @@
 
 use super::{file, write_whole};
 use crate::{
-    error::Error,
+    error::CommandError,
     own_format::{self, OwnFormat},
-    settings::Settings,
+    settings::RunSettings,
     text_file,
 };
 use serde::Serialize;
 use std::{collections::BTreeSet, path::Path};
 
 /// Writes the settings into a new folder. In an old one, refuses settings that differ from those of the file.
-pub fn keep_config<S>(folder: &Path, settings: &S) -> Result<(), Error>
+pub fn keep_config<S>(folder: &Path, settings: &S) -> Result<(), CommandError>
 where
     S: Serialize + OwnFormat + PartialEq,
 {
@@ -24,11 +24,11 @@ where
     if before == *settings { Ok(()) } else { Err(other_settings(folder, &before, settings)) }
 }
 
-fn other_settings<S: Serialize>(folder: &Path, before: &S, settings: &S) -> Error {
-    let differs = differing(before, settings).into_iter().collect::<Vec<_>>().join(", ");
+fn other_settings<S: Serialize>(folder: &Path, before: &S, settings: &S) -> CommandError {
+    let differs = differing_keys(before, settings).into_iter().collect::<Vec<_>>().join(", ");
     let problem = format!("{} holds a run with other settings: {differs}", folder.display());
     let config = folder.join(file::CONFIG);
-    Error::usage(
+    CommandError::usage(
         problem,
         format!(
             "to continue it, give the old settings and input files again ({} has the settings); for a new run, another --out",
@@ -38,16 +38,16 @@ fn other_settings<S: Serialize>(folder: &Path, before: &S, settings: &S) -> Erro
 }
 
 /// As [`keep_config`] for a run. Its number of paths or items may grow.
-pub(super) fn keep_settings(folder: &Path, settings: &Settings) -> Result<(), Error> {
+pub(super) fn keep_settings(folder: &Path, settings: &RunSettings) -> Result<(), CommandError> {
     let path = folder.join(file::CONFIG);
     if !path.exists() {
         return keep_config(folder, settings);
     }
-    let before: Settings = config_of(folder)?;
+    let before: RunSettings = config_of(folder)?;
     if settings.paths < before.paths {
         let problem =
             format!("{} holds a run of {} paths, but {} are asked for", folder.display(), before.paths, settings.paths);
-        return Err(Error::usage(
+        return Err(CommandError::usage(
             problem,
             "ask for as many or more to continue it, or give another --out for a new run",
         ));
@@ -58,7 +58,7 @@ pub(super) fn keep_settings(folder: &Path, settings: &Settings) -> Result<(), Er
     if before == *settings { Ok(()) } else { write_config(&path, settings) }
 }
 
-fn write_config<S: Serialize + OwnFormat>(path: &Path, settings: &S) -> Result<(), Error> {
+fn write_config<S: Serialize + OwnFormat>(path: &Path, settings: &S) -> Result<(), CommandError> {
     write_whole(path, &config_text(settings)?)
 }
 
@@ -66,19 +66,20 @@ fn write_config<S: Serialize + OwnFormat>(path: &Path, settings: &S) -> Result<(
 ///
 /// # Errors
 /// When they cannot be written as TOML.
-pub fn config_text<S: Serialize + OwnFormat>(settings: &S) -> Result<String, Error> {
-    let text = toml::to_string_pretty(settings)
-        .map_err(|error| Error::usage(format!("the settings cannot be written: {error}"), "report this as a bug"))?;
-    Ok(own_format::headed::<S>(&text))
+pub fn config_text<S: Serialize + OwnFormat>(settings: &S) -> Result<String, CommandError> {
+    let text = toml::to_string_pretty(settings).map_err(|error| {
+        CommandError::usage(format!("the settings cannot be written: {error}"), "report this as a bug")
+    })?;
+    Ok(own_format::with_header::<S>(&text))
 }
 
 /// Refuses a folder with a run in chunks that are not merged yet, because the files of the whole run are missing.
 ///
 /// # Errors
 /// When the run is not merged.
-pub fn refuse_unmerged(folder: &Path) -> Result<(), Error> {
+pub fn refuse_unmerged(folder: &Path) -> Result<(), CommandError> {
     if !is_begun(folder) && folder.join(wayword_queue::PLAN).exists() {
-        return Err(Error::usage(
+        return Err(CommandError::usage(
             format!("{}: this run lies in chunks", folder.display()),
             format!("put them together first: wayword runs merge {}", folder.display()),
         ));
@@ -97,30 +98,30 @@ pub fn is_begun(folder: &Path) -> bool {
 ///
 /// # Errors
 /// When the folder's settings cannot be read.
-pub fn continued(folder: &Path, settings: &Settings) -> Result<Settings, Error> {
+pub fn continued_settings(folder: &Path, settings: &RunSettings) -> Result<RunSettings, CommandError> {
     if !is_begun(folder) {
         return Ok(settings.clone());
     }
-    let Settings { raised_from, left_out, .. } = config_of::<Settings>(folder)?.raised_to(settings);
-    Ok(Settings { raised_from, left_out, ..settings.clone() })
+    let RunSettings { raised_from, left_out, .. } = config_of::<RunSettings>(folder)?.raised_to(settings);
+    Ok(RunSettings { raised_from, left_out, ..settings.clone() })
 }
 
 /// The settings of a run.
 ///
 /// # Errors
 /// When the folder is not a run folder.
-pub fn settings_of(folder: &Path) -> Result<Settings, Error> {
+pub fn settings_of(folder: &Path) -> Result<RunSettings, CommandError> {
     refuse_unmerged(folder)?;
     config_of(folder)
 }
 
 /// The table in `config.toml` of a folder, whatever its format.
-pub fn table_of(folder: &Path) -> Result<toml::Table, Error> {
+pub fn table_of(folder: &Path) -> Result<toml::Table, CommandError> {
     let path = folder.join(file::CONFIG);
-    let text = text_file::read(&path, "read the folder's settings")?;
+    let text = text_file::read_text_file(&path, "read the folder's settings")?;
     toml::from_str(&text).map_err(|error| {
         let problem = format!("{}: {}", path.display(), error.to_string().trim());
-        Error::usage(problem, "it was changed by hand or by another program: use another folder")
+        CommandError::usage(problem, "it was changed by hand or by another program: use another folder")
     })
 }
 
@@ -128,31 +129,31 @@ pub fn table_of(folder: &Path) -> Result<toml::Table, Error> {
 ///
 /// # Errors
 /// When `config.toml` cannot be read or names another format.
-pub fn refuse_other_format<S: OwnFormat>(folder: &Path) -> Result<(), Error> {
+pub fn refuse_other_format<S: OwnFormat>(folder: &Path) -> Result<(), CommandError> {
     let path = folder.join(file::CONFIG);
     refuse_unmerged(folder)?;
     if !path.exists() {
         return Ok(());
     }
-    let text = text_file::read(&path, "read the folder's settings")?;
-    own_format::check::<S>(&text).map_err(|unread| {
-        let hint = unread.hint("it was changed by hand or by another program: use another folder");
-        Error::usage(format!("{}: {unread}", path.display()), hint)
+    let text = text_file::read_text_file(&path, "read the folder's settings")?;
+    own_format::check_header::<S>(&text).map_err(|unread| {
+        let hint = unread.hint_or("it was changed by hand or by another program: use another folder");
+        CommandError::usage(format!("{}: {unread}", path.display()), hint)
     })
 }
 
 /// Reads `config.toml` of a folder.
-pub fn config_of<S: OwnFormat>(folder: &Path) -> Result<S, Error> {
+pub fn config_of<S: OwnFormat>(folder: &Path) -> Result<S, CommandError> {
     let path = folder.join(file::CONFIG);
-    let text = text_file::read(&path, "read the run's settings")?;
-    own_format::read(&text).map_err(|unread| {
-        let hint = unread.hint("it was written by another command or another version: use another folder");
-        Error::usage(format!("{}: {unread}", path.display()), hint)
+    let text = text_file::read_text_file(&path, "read the run's settings")?;
+    own_format::parse_document(&text).map_err(|unread| {
+        let hint = unread.hint_or("it was written by another command or another version: use another folder");
+        CommandError::usage(format!("{}: {unread}", path.display()), hint)
     })
 }
 
 /// The keys in which two settings differ. Inputs that differ are listed as "contents of NAME".
-pub fn differing<S: Serialize>(a: &S, b: &S) -> BTreeSet<String> {
+pub fn differing_keys<S: Serialize>(a: &S, b: &S) -> BTreeSet<String> {
     let table = |settings: &S| toml::Table::try_from(settings).unwrap_or_default();
     let (a, b) = (table(a), table(b));
     let keys: BTreeSet<&String> = a.keys().chain(b.keys()).collect();

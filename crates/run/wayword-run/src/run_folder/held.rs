@@ -7,7 +7,7 @@
 //! to remove it. The program recognises network file systems on Linux only.
 
 use super::file;
-use crate::{error::Error, interrupt};
+use crate::{error::CommandError, interrupt};
 use serde::{Deserialize, Serialize};
 use std::{
     fs::{self, File, TryLockError},
@@ -17,19 +17,19 @@ use std::{
 
 /// A folder that no other process works in for as long as this lives.
 #[derive(Debug)]
-pub struct Held {
+pub struct FolderLock {
     /// `None` if a network file system has no locks.
     _lock: Option<File>,
-    _mark: Option<Mark>,
+    _mark: Option<OwnerMark>,
 }
 
 /// The file that names the process at work in a folder on a network file system; removed on drop.
 #[derive(Debug)]
-struct Mark(PathBuf);
+struct OwnerMark(PathBuf);
 
 /// The process that works in a folder.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-struct Owner {
+struct FolderOwner {
     /// The name of its machine, to be shown.
     host: String,
     /// Identifies the machine, its boot and its container, because process numbers are unique only within these.
@@ -43,29 +43,33 @@ struct Owner {
 ///
 /// # Errors
 /// When another process does, or may do.
-pub fn hold(folder: &Path) -> Result<Held, Error> {
+pub fn lock_folder(folder: &Path) -> Result<FolderLock, CommandError> {
     hold_on(folder, wayword_ledger::network_at(folder))
 }
 
-fn hold_on(folder: &Path, network: Option<&'static str>) -> Result<Held, Error> {
+fn hold_on(folder: &Path, network: Option<&'static str>) -> Result<FolderLock, CommandError> {
     let path = folder.join(file::LOCK);
-    let lock =
-        File::options().create(true).truncate(false).write(true).open(&path).map_err(Error::io(&path, "open"))?;
+    let lock = File::options()
+        .create(true)
+        .truncate(false)
+        .write(true)
+        .open(&path)
+        .map_err(CommandError::io(&path, "open"))?;
     let lock = match lock.try_lock() {
         Ok(()) => Some(lock),
-        Err(TryLockError::WouldBlock) => return Err(Error::Busy(folder.to_owned())),
+        Err(TryLockError::WouldBlock) => return Err(CommandError::Busy(folder.to_owned())),
         // On a network file system only the owner's file is reliable.
         Err(TryLockError::Error(_)) if network.is_some() => None,
-        Err(TryLockError::Error(source)) => return Err(Error::Io { path, doing: "lock", source }),
+        Err(TryLockError::Error(source)) => return Err(CommandError::Io { path, doing: "lock", source }),
     };
-    let mark = network.map(|kind| Mark::new(folder, kind, &Owner::this())).transpose()?;
-    Ok(Held { _lock: lock, _mark: mark })
+    let mark = network.map(|kind| OwnerMark::new(folder, kind, &FolderOwner::this_process())).transpose()?;
+    Ok(FolderLock { _lock: lock, _mark: mark })
 }
 
-impl Mark {
-    fn new(folder: &Path, kind: &'static str, owner: &Owner) -> Result<Self, Error> {
+impl OwnerMark {
+    fn new(folder: &Path, kind: &'static str, owner: &FolderOwner) -> Result<Self, CommandError> {
         let path = folder.join(file::OWNER);
-        let text = serde_json::to_string(owner).map_err(|error| Error::Io {
+        let text = serde_json::to_string(owner).map_err(|error| CommandError::Io {
             path: path.clone(),
             doing: "write",
             source: error.into(),
@@ -74,46 +78,46 @@ impl Mark {
         for _ in 0..2 {
             match File::options().create_new(true).write(true).open(&path) {
                 Ok(mut file) => {
-                    interrupt::removes(&path);
-                    file.write_all(text.as_bytes()).map_err(Error::io(&path, "write"))?;
+                    interrupt::remove_on_exit(&path);
+                    file.write_all(text.as_bytes()).map_err(CommandError::io(&path, "write"))?;
                     return Ok(Self(path));
                 }
                 Err(error) if error.kind() == ErrorKind::AlreadyExists => give_way(folder, &path, kind, owner)?,
-                Err(source) => return Err(Error::Io { path, doing: "make", source }),
+                Err(source) => return Err(CommandError::Io { path, doing: "make", source }),
             }
         }
-        Err(Error::Busy(folder.to_owned()))
+        Err(CommandError::Busy(folder.to_owned()))
     }
 }
 
 /// Removes the file of a process that is gone, and refuses otherwise.
-fn give_way(folder: &Path, path: &Path, kind: &'static str, we: &Owner) -> Result<(), Error> {
-    let text = crate::text_file::read(path, "read who works in the folder")?;
-    let by: Option<Owner> = serde_json::from_str(&text).ok();
+fn give_way(folder: &Path, path: &Path, kind: &'static str, we: &FolderOwner) -> Result<(), CommandError> {
+    let text = crate::text_file::read_text_file(path, "read who works in the folder")?;
+    let by: Option<FolderOwner> = serde_json::from_str(&text).ok();
     match by {
         Some(by) if by.place != we.place => {
             let by = format!("process {} of {}", by.pid, by.host);
-            Err(Error::BusyElsewhere { folder: folder.to_owned(), by, kind, mark: path.to_owned() })
+            Err(CommandError::BusyElsewhere { folder: folder.to_owned(), by, kind, mark: path.to_owned() })
         }
-        Some(by) if began(by.pid).as_ref() == Some(&by.began) => Err(Error::Busy(folder.to_owned())),
-        Some(_) => fs::remove_file(path).map_err(Error::io(path, "remove")),
+        Some(by) if process_start(by.pid).as_ref() == Some(&by.began) => Err(CommandError::Busy(folder.to_owned())),
+        Some(_) => fs::remove_file(path).map_err(CommandError::io(path, "remove")),
         // Killed before it was written, or still being written.
         None => {
             let by = "another process".to_owned();
-            Err(Error::BusyElsewhere { folder: folder.to_owned(), by, kind, mark: path.to_owned() })
+            Err(CommandError::BusyElsewhere { folder: folder.to_owned(), by, kind, mark: path.to_owned() })
         }
     }
 }
 
-impl Drop for Mark {
+impl Drop for OwnerMark {
     fn drop(&mut self) {
         // If the file stays, the next process reports it.
         let _ = fs::remove_file(&self.0);
     }
 }
 
-impl Owner {
-    fn this() -> Self {
+impl FolderOwner {
+    fn this_process() -> Self {
         let read = |path: &str| fs::read_to_string(path).unwrap_or_default().trim().to_owned();
         let space = fs::read_link("/proc/self/ns/pid").unwrap_or_default();
         let pid = std::process::id();
@@ -121,13 +125,13 @@ impl Owner {
             host: read("/proc/sys/kernel/hostname"),
             place: format!("{} {}", read("/proc/sys/kernel/random/boot_id"), space.display()),
             pid,
-            began: began(pid).unwrap_or_default(),
+            began: process_start(pid).unwrap_or_default(),
         }
     }
 }
 
 /// The start time of a process of this machine; `None` if there is no process of this number.
-fn began(pid: u32) -> Option<String> {
+fn process_start(pid: u32) -> Option<String> {
     let stat = fs::read_to_string(format!("/proc/{pid}/stat")).ok()?;
     // The name of the program comes second, in brackets, and may hold anything.
     let (_, fields) = stat.rsplit_once(')')?;
@@ -139,7 +143,7 @@ fn began(pid: u32) -> Option<String> {
 mod tests {
     use super::*;
 
-    fn left_behind(folder: &Path, owner: &Owner) -> std::io::Result<PathBuf> {
+    fn left_behind(folder: &Path, owner: &FolderOwner) -> std::io::Result<PathBuf> {
         let path = folder.join(file::OWNER);
         fs::write(&path, serde_json::to_string(owner)?)?;
         Ok(path)
@@ -150,7 +154,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let held = hold_on(folder.path(), Some("NFS")).unwrap();
         assert!(folder.path().join(file::OWNER).exists());
-        assert!(matches!(hold_on(folder.path(), Some("NFS")), Err(Error::Busy(_))));
+        assert!(matches!(hold_on(folder.path(), Some("NFS")), Err(CommandError::Busy(_))));
         drop(held);
         assert!(!folder.path().join(file::OWNER).exists());
         drop(hold_on(folder.path(), None).unwrap());
@@ -160,7 +164,7 @@ mod tests {
     #[test]
     fn a_process_of_another_machine_is_never_taken_for_gone() {
         let folder = tempfile::tempdir().unwrap();
-        let far = Owner { host: "node17".into(), place: "another".into(), ..Owner::this() };
+        let far = FolderOwner { host: "node17".into(), place: "another".into(), ..FolderOwner::this_process() };
         let path = left_behind(folder.path(), &far).unwrap();
         let error = hold_on(folder.path(), Some("Lustre")).unwrap_err();
         let told = error.to_string();
@@ -173,18 +177,18 @@ mod tests {
     #[test]
     fn a_process_of_this_machine_that_is_gone_gives_way() {
         let folder = tempfile::tempdir().unwrap();
-        let gone = Owner { began: "1".into(), ..Owner::this() };
+        let gone = FolderOwner { began: "1".into(), ..FolderOwner::this_process() };
         left_behind(folder.path(), &gone).unwrap();
         assert!(hold_on(folder.path(), Some("NFS")).is_ok(), "its number is another process's now");
-        let (other, we) = (std::os::unix::process::parent_id(), Owner::this());
-        left_behind(folder.path(), &Owner { pid: other, began: began(other).unwrap(), ..we }).unwrap();
-        assert!(matches!(hold_on(folder.path(), Some("NFS")), Err(Error::Busy(_))));
+        let (other, we) = (std::os::unix::process::parent_id(), FolderOwner::this_process());
+        left_behind(folder.path(), &FolderOwner { pid: other, began: process_start(other).unwrap(), ..we }).unwrap();
+        assert!(matches!(hold_on(folder.path(), Some("NFS")), Err(CommandError::Busy(_))));
     }
 
     #[test]
     fn lock_folder_refuses_a_half_written_owner_file() {
         let folder = tempfile::tempdir().unwrap();
         fs::write(folder.path().join(file::OWNER), "{\"host\": \"no").unwrap();
-        assert!(matches!(hold_on(folder.path(), Some("NFS")), Err(Error::BusyElsewhere { .. })));
+        assert!(matches!(hold_on(folder.path(), Some("NFS")), Err(CommandError::BusyElsewhere { .. })));
     }
 }

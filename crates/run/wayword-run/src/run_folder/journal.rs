@@ -2,7 +2,7 @@
 //! key occurs once.
 
 use super::lines;
-use crate::error::Error;
+use crate::error::CommandError;
 use indexmap::IndexSet;
 use serde::{Serialize, de::DeserializeOwned};
 use serde_json::Value;
@@ -27,13 +27,13 @@ impl Journal {
     ///
     /// # Errors
     /// When it cannot be read, or a complete line is not a record of its kind.
-    pub fn open(path: &Path, key_of: fn(&Value) -> Option<String>) -> Result<Self, Error> {
-        let file = appending(path)?;
-        let whole = whole_bytes(path).map_err(Error::io(path, "read"))?;
-        file.set_len(whole).map_err(Error::io(path, "cut off the incomplete last line of"))?;
+    pub fn open(path: &Path, key_of: fn(&Value) -> Option<String>) -> Result<Self, CommandError> {
+        let file = open_appending(path)?;
+        let whole = whole_bytes(path).map_err(CommandError::io(path, "read"))?;
+        file.set_len(whole).map_err(CommandError::io(path, "cut off the incomplete last line of"))?;
         let mut keys = IndexSet::new();
-        lines::each(path, |line| {
-            let key = key_of(&line.parse()?).ok_or_else(|| line.broken("it lacks the fields that identify it"))?;
+        lines::each_line(path, |line| {
+            let key = key_of(&line.parse()?).ok_or_else(|| line.broken_line("it lacks the fields that identify it"))?;
             keys.insert(key);
             Ok(())
         })?;
@@ -44,14 +44,14 @@ impl Journal {
     ///
     /// # Errors
     /// When it cannot be written.
-    pub fn begin(path: &Path, key_of: fn(&Value) -> Option<String>) -> Result<Self, Error> {
-        File::create(path).map_err(Error::io(path, "empty"))?;
+    pub fn begin_empty(path: &Path, key_of: fn(&Value) -> Option<String>) -> Result<Self, CommandError> {
+        File::create(path).map_err(CommandError::io(path, "empty"))?;
         Self::open(path, key_of)
     }
 
     /// Whether it has a line with that key.
     #[must_use]
-    pub fn has(&self, key: &str) -> bool {
+    pub fn has_key(&self, key: &str) -> bool {
         self.keys.contains(key)
     }
 
@@ -76,11 +76,14 @@ impl Journal {
     ///
     /// # Errors
     /// When it cannot be written.
-    pub fn append(&mut self, record: &impl Serialize) -> Result<(), Error> {
-        let fail =
-            |error: serde_json::Error| Error::Io { path: self.path.clone(), doing: "write", source: error.into() };
+    pub fn append(&mut self, record: &impl Serialize) -> Result<(), CommandError> {
+        let fail = |error: serde_json::Error| CommandError::Io {
+            path: self.path.clone(),
+            doing: "write",
+            source: error.into(),
+        };
         let value = serde_json::to_value(record).map_err(fail)?;
-        let key = (self.key_of)(&value).ok_or_else(|| Error::Io {
+        let key = (self.key_of)(&value).ok_or_else(|| CommandError::Io {
             path: self.path.clone(),
             doing: "write a record without a name to",
             source: io::ErrorKind::InvalidData.into(),
@@ -90,7 +93,7 @@ impl Journal {
         }
         let mut line = serde_json::to_vec(&value).map_err(fail)?;
         line.push(b'\n');
-        self.file.write_all(&line).map_err(Error::io(&self.path, "write"))
+        self.file.write_all(&line).map_err(CommandError::io(&self.path, "write"))
     }
 
     /// Sorts the lines by `place`, which gives the place of a key's line, or `None` to drop the line. Whenever the
@@ -98,14 +101,14 @@ impl Journal {
     ///
     /// # Errors
     /// When it cannot be read or written.
-    pub fn arrange(&mut self, place: impl Fn(&str) -> Option<usize>) -> Result<(), Error> {
+    pub fn arrange_by(&mut self, place: impl Fn(&str) -> Option<usize>) -> Result<(), CommandError> {
         let places: Vec<Option<usize>> = self.keys.iter().map(|key| place(key)).collect();
         if places.iter().all(Option::is_some) && places.is_sorted() {
             return Ok(());
         }
         let key_of = self.key_of;
         let (mut spans, mut start) = (Vec::new(), 0);
-        lines::each(&self.path, |line| {
+        lines::each_line(&self.path, |line| {
             let key = key_of(&line.parse()?);
             let length = line.len() as u64;
             spans.extend(key.and_then(|key| place(&key)).map(|place| (place, start, length)));
@@ -114,8 +117,8 @@ impl Journal {
         })?;
         spans.sort_unstable();
         let temporary = self.path.with_extension("new");
-        copy_spans(&self.path, &temporary, &spans).map_err(Error::io(&temporary, "write"))?;
-        fs::rename(&temporary, &self.path).map_err(Error::io(&self.path, "write"))?;
+        copy_spans(&self.path, &temporary, &spans).map_err(CommandError::io(&temporary, "write"))?;
+        fs::rename(&temporary, &self.path).map_err(CommandError::io(&self.path, "write"))?;
         *self = Self::open(&self.path, self.key_of)?;
         Ok(())
     }
@@ -124,13 +127,13 @@ impl Journal {
     ///
     /// # Errors
     /// When it cannot be flushed.
-    pub fn sync(&mut self) -> Result<(), Error> {
-        self.file.sync_data().map_err(Error::io(&self.path, "flush"))
+    pub fn sync(&mut self) -> Result<(), CommandError> {
+        self.file.sync_data().map_err(CommandError::io(&self.path, "flush"))
     }
 }
 
-fn appending(path: &Path) -> Result<File, Error> {
-    File::options().create(true).append(true).read(true).open(path).map_err(Error::io(path, "open"))
+fn open_appending(path: &Path) -> Result<File, CommandError> {
+    File::options().create(true).append(true).read(true).open(path).map_err(CommandError::io(path, "open"))
 }
 
 /// Writes parts of a file, each given by start and length in bytes, to another file, which then survives a crash of the
@@ -167,9 +170,9 @@ fn whole_bytes(path: &Path) -> io::Result<u64> {
 ///
 /// # Errors
 /// When it cannot be read, or a line is not of the kind.
-pub fn read_lines<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, Error> {
+pub fn read_lines<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, CommandError> {
     let mut records = Vec::new();
-    lines::each(path, |line| {
+    lines::each_line(path, |line| {
         records.push(line.parse()?);
         Ok(())
     })?;
@@ -212,12 +215,12 @@ mod tests {
         for id in ["c", "gone", "a"] {
             journal.append(&json!({ "id": id })).unwrap();
         }
-        journal.arrange(|key| "abcd".find(key)).unwrap();
+        journal.arrange_by(|key| "abcd".find(key)).unwrap();
         journal.append(&json!({"id": "d"})).unwrap();
         journal.append(&json!({"id": "a"})).unwrap();
         let lines = ["a", "c", "d"].map(|id| format!("{{\"id\":\"{id}\"}}\n")).concat();
         assert_eq!(fs::read_to_string(&path).unwrap(), lines);
-        assert!(!journal.has("gone") && journal.has("d"));
+        assert!(!journal.has_key("gone") && journal.has_key("d"));
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Reads the files of a run line by line, so that a long run needs no more memory than a short one.
 
-use crate::error::Error;
+use crate::error::CommandError;
 use serde::de::DeserializeOwned;
 use std::{
     fmt::Display,
@@ -13,7 +13,7 @@ use std::{
 const MOST_LINE_BYTES: usize = 16 << 20;
 
 /// A whole line of a file.
-pub struct Line<'a> {
+pub struct RecordLine<'a> {
     path: &'a Path,
     number: usize,
     bytes: &'a [u8],
@@ -24,19 +24,22 @@ pub struct Line<'a> {
 ///
 /// # Errors
 /// When the file cannot be read, a line is too long, or `take` fails.
-pub fn each(path: &Path, mut take: impl FnMut(Line<'_>) -> Result<(), Error>) -> Result<(), Error> {
-    if !fs::exists(path).map_err(Error::io(path, "look for"))? {
+pub fn each_line(
+    path: &Path,
+    mut take: impl FnMut(RecordLine<'_>) -> Result<(), CommandError>,
+) -> Result<(), CommandError> {
+    if !fs::exists(path).map_err(CommandError::io(path, "look for"))? {
         return Ok(());
     }
-    let mut reader = BufReader::new(File::open(path).map_err(Error::io(path, "open"))?);
+    let mut reader = BufReader::new(File::open(path).map_err(CommandError::io(path, "open"))?);
     let mut bytes = Vec::new();
     for number in 1.. {
         bytes.clear();
         let most = MOST_LINE_BYTES as u64 + 1;
-        reader.by_ref().take(most).read_until(b'\n', &mut bytes).map_err(Error::io(path, "read"))?;
-        let line = Line { path, number, bytes: &bytes };
+        reader.by_ref().take(most).read_until(b'\n', &mut bytes).map_err(CommandError::io(path, "read"))?;
+        let line = RecordLine { path, number, bytes: &bytes };
         if bytes.len() > MOST_LINE_BYTES {
-            return Err(line.broken(format_args!("it is longer than {} MiB", MOST_LINE_BYTES >> 20)));
+            return Err(line.broken_line(format_args!("it is longer than {} MiB", MOST_LINE_BYTES >> 20)));
         }
         if bytes.last() != Some(&b'\n') {
             break;
@@ -46,7 +49,7 @@ pub fn each(path: &Path, mut take: impl FnMut(Line<'_>) -> Result<(), Error>) ->
     Ok(())
 }
 
-impl Line<'_> {
+impl RecordLine<'_> {
     /// Its length, bytes.
     pub fn len(&self) -> usize {
         self.bytes.len()
@@ -56,18 +59,21 @@ impl Line<'_> {
     ///
     /// # Errors
     /// When the value is not of that kind.
-    pub fn parse<T: DeserializeOwned>(&self) -> Result<T, Error> {
+    pub fn parse<T: DeserializeOwned>(&self) -> Result<T, CommandError> {
         serde_json::from_slice(self.bytes).map_err(|error| {
             let told = error.to_string();
             let problem = told.rsplit_once(" at line ").map_or(told.as_str(), |(problem, _)| problem);
-            self.broken(format_args!("column {}: {problem}", error.column()))
+            self.broken_line(format_args!("column {}: {problem}", error.column()))
         })
     }
 
     /// The error about a line with wrong content.
-    pub fn broken(&self, problem: impl Display) -> Error {
+    pub fn broken_line(&self, problem: impl Display) -> CommandError {
         let problem = format!("{}: line {}: {problem}", self.path.display(), self.number);
-        Error::usage(problem, "the file was changed by hand or by another program: give another --out for a new run")
+        CommandError::usage(
+            problem,
+            "the file was changed by hand or by another program: give another --out for a new run",
+        )
     }
 }
 
@@ -75,12 +81,12 @@ impl Line<'_> {
 mod tests {
     use super::*;
 
-    fn numbers(text: &str) -> Result<Vec<u32>, Error> {
+    fn numbers(text: &str) -> Result<Vec<u32>, CommandError> {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("x.jsonl");
         fs::write(&path, text).unwrap();
         let mut numbers = Vec::new();
-        each(&path, |line| {
+        each_line(&path, |line| {
             numbers.push(line.parse()?);
             Ok(())
         })?;

@@ -14,7 +14,7 @@ pub mod lines;
 mod record;
 mod world_data;
 
-use crate::{error::Error, item::Item, pictures, settings::Settings, text_file};
+use crate::{error::CommandError, item::RunItem, pictures, settings::RunSettings, text_file};
 use serde::{Deserialize, de::IgnoredAny};
 use sha2::{Digest, Sha256};
 use std::{
@@ -27,13 +27,13 @@ use std::{
 use wayword_world::files;
 
 use config::keep_settings;
-pub use config::{config_of, config_text, differing, keep_config, refuse_other_format, refuse_unmerged, table_of};
-pub use config::{continued, is_begun, settings_of};
-pub use held::{Held, hold};
+pub use config::{config_of, config_text, differing_keys, keep_config, refuse_other_format, refuse_unmerged, table_of};
+pub use config::{continued_settings, is_begun, settings_of};
+pub use held::{FolderLock, lock_folder};
 pub use journal::{Journal, read_lines};
-pub use record::{FailedItem, Map, Rejected, WalkRecord, extra, name_of_text, text_name};
+pub use record::{FailedItem, PathMap, RejectedText, WalkRecord, extra_fields, name_of_text, text_name};
 pub use world_data::WorldData;
-pub(crate) use world_data::hashes;
+pub(crate) use world_data::scene_hashes;
 
 /// A run folder in which only this process works.
 #[derive(Debug)]
@@ -52,7 +52,7 @@ pub struct RunFolder {
     /// Items that have a line in `walks.jsonl`, but not all the pictures that belong to it.
     without_pictures: BTreeSet<String>,
     /// Keeps other processes out for as long as this lives.
-    _held: Option<Held>,
+    _held: Option<FolderLock>,
 }
 
 /// Names of the files in a run folder.
@@ -86,10 +86,10 @@ impl RunFolder {
     ///
     /// # Errors
     /// When another process works in it or may do, it holds a run with other settings, or it cannot be written.
-    pub fn open(folder: &Path, settings: &Settings) -> Result<Self, Error> {
-        fs::create_dir_all(folder).map_err(Error::io(folder, "make the run folder"))?;
-        let held = hold(folder)?;
-        Self::of(folder, settings, Some(held))
+    pub fn open(folder: &Path, settings: &RunSettings) -> Result<Self, CommandError> {
+        fs::create_dir_all(folder).map_err(CommandError::io(folder, "make the run folder"))?;
+        let held = lock_folder(folder)?;
+        Self::with_lock(folder, settings, Some(held))
     }
 
     /// Opens the folder of a chunk. It is not locked, because only one worker knows its name, and because locks are not reliable
@@ -97,12 +97,12 @@ impl RunFolder {
     ///
     /// # Errors
     /// When it holds a run with other settings, or it cannot be written.
-    pub(crate) fn of_worker(folder: &Path, settings: &Settings) -> Result<Self, Error> {
-        fs::create_dir_all(folder).map_err(Error::io(folder, "make the chunk's folder"))?;
-        Self::of(folder, settings, None)
+    pub(crate) fn of_worker(folder: &Path, settings: &RunSettings) -> Result<Self, CommandError> {
+        fs::create_dir_all(folder).map_err(CommandError::io(folder, "make the chunk's folder"))?;
+        Self::with_lock(folder, settings, None)
     }
 
-    fn of(folder: &Path, settings: &Settings, held: Option<Held>) -> Result<Self, Error> {
+    fn with_lock(folder: &Path, settings: &RunSettings, held: Option<FolderLock>) -> Result<Self, CommandError> {
         keep_settings(folder, settings)?;
         let walks = folder.join(file::WALKS);
         Ok(Self {
@@ -110,8 +110,8 @@ impl RunFolder {
             without_pictures: without_pictures(&walks, &folder.join(file::FRAMES))?,
             walks: Journal::open(&walks, WalkRecord::key_of)?,
             instructions: Journal::open(&folder.join(file::INSTRUCTIONS), record::instruction_key)?,
-            rejected: Journal::open(&folder.join(file::REJECTED), Rejected::key_of)?,
-            errors: Journal::begin(&folder.join(file::ERRORS), FailedItem::key_of)?,
+            rejected: Journal::open(&folder.join(file::REJECTED), RejectedText::key_of)?,
+            errors: Journal::begin_empty(&folder.join(file::ERRORS), FailedItem::key_of)?,
             folder: folder.to_owned(),
             _held: held,
         })
@@ -119,7 +119,7 @@ impl RunFolder {
 
     /// Where pictures of frames go.
     #[must_use]
-    pub fn frames(&self) -> PathBuf {
+    pub fn frames_folder(&self) -> PathBuf {
         self.folder.join(file::FRAMES)
     }
 
@@ -127,17 +127,17 @@ impl RunFolder {
     #[must_use]
     fn is_done(&self, item: &str, styles: &[String]) -> bool {
         let has = |style: &str| {
-            let key = record::key(item, style);
-            self.instructions.has(&key) || self.rejected.has(&key)
+            let key = record::line_key(item, style);
+            self.instructions.has_key(&key) || self.rejected.has_key(&key)
         };
-        self.walks.has(item) && !self.without_pictures.contains(item) && styles.iter().all(|style| has(style))
+        self.walks.has_key(item) && !self.without_pictures.contains(item) && styles.iter().all(|style| has(style))
     }
 
     /// The items that need more work. Those that failed last time come last, so that they do not hold up the others.
     #[must_use]
-    pub fn left<'a>(&self, items: &'a [Item], styles: &[String]) -> Vec<&'a Item> {
+    pub fn items_left<'a>(&self, items: &'a [RunItem], styles: &[String]) -> Vec<&'a RunItem> {
         let left = items.iter().filter(|item| !self.is_done(&item.id(), styles));
-        let (failed, mut left): (Vec<&Item>, Vec<&Item>) =
+        let (failed, mut left): (Vec<&RunItem>, Vec<&RunItem>) =
             left.partition(|item| self.failed_before.contains(&item.id()));
         left.extend(failed);
         left
@@ -148,10 +148,14 @@ impl RunFolder {
     ///
     /// # Errors
     /// When a file cannot be read or written.
-    pub fn arrange<'a>(&mut self, items: impl Iterator<Item = &'a Item>, styles: &[String]) -> Result<(), Error> {
+    pub fn arrange_lines<'a>(
+        &mut self,
+        items: impl Iterator<Item = &'a RunItem>,
+        styles: &[String],
+    ) -> Result<(), CommandError> {
         let places: BTreeMap<String, usize> = items.enumerate().map(|(place, item)| (item.id(), place)).collect();
         let place = |key: &str| {
-            let (item, style) = record::parts(key);
+            let (item, style) = record::key_parts(key);
             // An item that is not among these stays, at the end.
             let item = places.get(item).copied().unwrap_or(places.len());
             match style {
@@ -164,16 +168,16 @@ impl RunFolder {
                 }
             }
         };
-        self.walks.arrange(place)?;
-        self.instructions.arrange(place)?;
-        self.rejected.arrange(place)
+        self.walks.arrange_by(place)?;
+        self.instructions.arrange_by(place)?;
+        self.rejected.arrange_by(place)
     }
 
     /// Flushes all files to the disk, so that they survive a crash of the machine.
     ///
     /// # Errors
     /// When a file cannot be flushed.
-    pub fn sync(&mut self) -> Result<(), Error> {
+    pub fn sync(&mut self) -> Result<(), CommandError> {
         self.walks.sync()?;
         self.instructions.sync()?;
         self.rejected.sync()?;
@@ -185,11 +189,11 @@ impl RunFolder {
 ///
 /// # Errors
 /// When it is a file.
-pub fn refuse_file(folder: &Path) -> Result<(), Error> {
+pub fn refuse_file(folder: &Path) -> Result<(), CommandError> {
     if !folder.exists() || folder.is_dir() {
         return Ok(());
     }
-    Err(Error::io(folder, "make the folder")(std::io::ErrorKind::NotADirectory.into()))
+    Err(CommandError::io(folder, "make the folder")(std::io::ErrorKind::NotADirectory.into()))
 }
 
 /// The name under which the ledger keeps a folder's spending: the one that the folder keeps, else a new one. This function does
@@ -198,7 +202,7 @@ pub fn refuse_file(folder: &Path) -> Result<(), Error> {
 ///
 /// # Errors
 /// When it cannot be read.
-pub fn id_of(folder: &Path, kind: &str) -> Result<String, Error> {
+pub fn id_of(folder: &Path, kind: &str) -> Result<String, CommandError> {
     Ok(kept_id(folder)?.unwrap_or_else(|| fresh_id(kind)))
 }
 
@@ -206,24 +210,24 @@ pub fn id_of(folder: &Path, kind: &str) -> Result<String, Error> {
 ///
 /// # Errors
 /// When it cannot be read or written, or another process has kept its own since [`id_of`] gave this one.
-pub fn keep_id(folder: &Path, id: &str) -> Result<(), Error> {
+pub fn keep_id(folder: &Path, id: &str) -> Result<(), CommandError> {
     match kept_id(folder)? {
         None => write_whole(&folder.join(file::ID), id),
         Some(kept) if kept == id => Ok(()),
-        Some(_) => Err(Error::Busy(folder.to_owned())),
+        Some(_) => Err(CommandError::Busy(folder.to_owned())),
     }
 }
 
-fn kept_id(folder: &Path) -> Result<Option<String>, Error> {
+fn kept_id(folder: &Path) -> Result<Option<String>, CommandError> {
     let path = folder.join(file::ID);
-    let read = || text_file::read(&path, "read the run's name");
+    let read = || text_file::read_text_file(&path, "read the run's name");
     if path.exists() { Ok(Some(read()?.trim().to_owned())) } else { Ok(None) }
 }
 
 /// The items in `errors.jsonl`.
-fn keys_of(errors: &Path) -> Result<BTreeSet<String>, Error> {
+fn keys_of(errors: &Path) -> Result<BTreeSet<String>, CommandError> {
     let mut keys = BTreeSet::new();
-    lines::each(errors, |line| {
+    lines::each_line(errors, |line| {
         keys.extend(FailedItem::key_of(&line.parse()?));
         Ok(())
     })?;
@@ -231,12 +235,13 @@ fn keys_of(errors: &Path) -> Result<BTreeSet<String>, Error> {
 }
 
 /// The items with missing pictures.
-fn without_pictures(walks: &Path, frames: &Path) -> Result<BTreeSet<String>, Error> {
+fn without_pictures(walks: &Path, frames: &Path) -> Result<BTreeSet<String>, CommandError> {
     let mut without = BTreeSet::new();
-    lines::each(walks, |line| {
-        let Pictured { path: PicturedPath { id, frames: of_path }, has_pictures } = line.parse()?;
-        let is_there =
-            |frame: usize| fs::metadata(pictures::file(frames, &id, frame)).is_ok_and(|metadata| metadata.len() > 0);
+    lines::each_line(walks, |line| {
+        let PicturedLine { path: PicturedPath { id, frames: of_path }, has_pictures } = line.parse()?;
+        let is_there = |frame: usize| {
+            fs::metadata(pictures::picture_file(frames, &id, frame)).is_ok_and(|metadata| metadata.len() > 0)
+        };
         if has_pictures && !(0..of_path.len()).all(is_there) {
             without.insert(id);
         }
@@ -247,7 +252,7 @@ fn without_pictures(walks: &Path, frames: &Path) -> Result<BTreeSet<String>, Err
 
 /// The fields of a line of `walks.jsonl` from which the expected pictures follow.
 #[derive(Deserialize)]
-struct Pictured {
+struct PicturedLine {
     path: PicturedPath,
     has_pictures: bool,
 }
@@ -266,7 +271,7 @@ pub fn fresh_id(kind: &str) -> String {
 }
 
 /// Writes a small file so that it is whole or absent, whenever the process is killed.
-pub fn write_whole(path: &Path, text: &str) -> Result<(), Error> {
+pub fn write_whole(path: &Path, text: &str) -> Result<(), CommandError> {
     let mut temporary = path.as_os_str().to_owned();
     temporary.push(".new");
     let temporary = PathBuf::from(temporary);
@@ -275,20 +280,20 @@ pub fn write_whole(path: &Path, text: &str) -> Result<(), Error> {
         file.write_all(text.as_bytes())?;
         file.sync_data()
     };
-    write().map_err(Error::io(&temporary, "write"))?;
-    fs::rename(&temporary, path).map_err(Error::io(path, "write"))
+    write().map_err(CommandError::io(&temporary, "write"))?;
+    fs::rename(&temporary, path).map_err(CommandError::io(path, "write"))
 }
 
 /// The beginning of the hash of an input file.
-pub fn hash_of_file(file: &Path) -> Result<String, Error> {
+pub fn hash_of_file(file: &Path) -> Result<String, CommandError> {
     // Reading a pipe would wait for ever.
-    let about = fs::metadata(file).map_err(Error::io(file, "read"))?;
-    if let Some(reason) = files::irregular(&about) {
-        return Err(Error::usage(format!("{}: it {reason}", file.display()), "name a file"));
+    let about = fs::metadata(file).map_err(CommandError::io(file, "read"))?;
+    if let Some(reason) = files::describe_irregular(&about) {
+        return Err(CommandError::usage(format!("{}: it {reason}", file.display()), "name a file"));
     }
     let mut hash = Sha256::new();
     let copied = File::open(file).and_then(|mut file| std::io::copy(&mut file, &mut hash));
-    copied.map_err(Error::io(file, "read"))?;
+    copied.map_err(CommandError::io(file, "read"))?;
     Ok(short_hex(hash))
 }
 

@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Map as JsonMap, Value};
-use wayword_core::{DVec3, Failure, Instruction, Observation, Path, Platform, PlatformError, ViewpointGraph};
-use wayword_formats::jsonl::Record;
+use wayword_core::{DVec3, FailureKind, FrameObservation, Instruction, Path, Platform, PlatformError, ViewpointGraph};
+use wayword_formats::jsonl::InstructionRecord;
 
 /// A path and what was seen along it: a line of `walks.jsonl`.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -13,18 +13,18 @@ pub struct WalkRecord {
     /// The path.
     pub path: Path,
     /// One per frame.
-    pub observations: Vec<Observation>,
+    pub observations: Vec<FrameObservation>,
     /// Instructions by people for the same path, if the episodes have any.
     pub originals: Vec<String>,
     /// The viewpoint graph around the path.
-    pub map: Map,
+    pub map: PathMap,
     /// Whether `frames/` holds pictures of the frames, named ITEM_FRAME.jpg.
     pub has_pictures: bool,
 }
 
 /// The viewpoint graph around a path, from above.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
-pub struct Map {
+pub struct PathMap {
     /// Positions of nodes: x and y, metres, world frame.
     pub nodes: Vec<[f64; 2]>,
     /// Pairs of nodes.
@@ -38,7 +38,7 @@ const MAP_HEIGHT_M: f64 = 1.6;
 
 /// A text that failed its checks: a line of `rejected.jsonl`.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct Rejected {
+pub struct RejectedText {
     /// The item.
     pub item: String,
     /// The style.
@@ -65,17 +65,17 @@ pub struct FailedItem {
     pub item: String,
     /// The kind of failure. Older versions wrote no kind, and kept only failures of models.
     #[serde(default = "lost")]
-    pub failure: Failure,
+    pub failure: FailureKind,
     /// The message of the error.
     pub reason: String,
 }
 
-fn lost() -> Failure {
-    Failure::Lost
+fn lost() -> FailureKind {
+    FailureKind::Lost
 }
 
 /// The name of a line: an item and a style.
-pub(super) fn key(item: &str, style: &str) -> String {
+pub(super) fn line_key(item: &str, style: &str) -> String {
     format!("{item}\u{1f}{style}")
 }
 
@@ -86,30 +86,30 @@ pub fn text_name(style: &str, number: usize) -> String {
 }
 
 /// The field of a record that has the number of its text.
-const NUMBER: &str = "number";
+const NUMBER_FIELD: &str = "number";
 
 /// Identifies the text of a record within its item, as a part of file names: its style, and its number where the style has
 /// several.
 #[must_use]
-pub fn name_of_text(record: &Record) -> String {
+pub fn name_of_text(record: &InstructionRecord) -> String {
     let style = &record.instruction.style;
-    match record.extra.get(NUMBER).and_then(Value::as_u64) {
+    match record.extra.get(NUMBER_FIELD).and_then(Value::as_u64) {
         Some(number) if number > 0 => format!("{style}-{number}"),
         _ => style.clone(),
     }
 }
 
 fn name_of(value: &Value) -> Option<String> {
-    let number = value.get(NUMBER).and_then(Value::as_u64).and_then(|number| usize::try_from(number).ok());
+    let number = value.get(NUMBER_FIELD).and_then(Value::as_u64).and_then(|number| usize::try_from(number).ok());
     Some(text_name(value.get("style")?.as_str()?, number.unwrap_or(0)))
 }
 
 pub(super) fn instruction_key(value: &Value) -> Option<String> {
-    Some(key(value.get("path")?.get("id")?.as_str()?, &name_of(value)?))
+    Some(line_key(value.get("path")?.get("id")?.as_str()?, &name_of(value)?))
 }
 
 /// The item of a key, and the name of its text if it has one.
-pub(super) fn parts(key: &str) -> (&str, Option<&str>) {
+pub(super) fn key_parts(key: &str) -> (&str, Option<&str>) {
     key.split_once('\u{1f}').map_or((key, None), |(item, style)| (item, Some(style)))
 }
 
@@ -125,40 +125,40 @@ impl WalkRecord {
     }
 }
 
-impl Rejected {
+impl RejectedText {
     pub(super) fn key_of(value: &Value) -> Option<String> {
-        Some(key(value.get("item")?.as_str()?, &name_of(value)?))
+        Some(line_key(value.get("item")?.as_str()?, &name_of(value)?))
     }
 }
 
 /// The additional fields of an instruction's record: the path in its dataset, and the number of the text where its path and
 /// style have several.
 #[must_use]
-pub fn extra(path_id: &str, number: usize) -> JsonMap<String, Value> {
+pub fn extra_fields(path_id: &str, number: usize) -> JsonMap<String, Value> {
     let mut extra = JsonMap::new();
     extra.insert("path_id".to_owned(), path_id.into());
     if number > 0 {
-        extra.insert(NUMBER.to_owned(), number.into());
+        extra.insert(NUMBER_FIELD.to_owned(), number.into());
     }
     extra
 }
 
-impl Map {
+impl PathMap {
     /// The graph around a path; empty if the path has no poses.
     ///
     /// # Errors
     /// When the platform cannot give it.
-    pub fn around(path: &Path, platform: &dyn Platform) -> Result<Self, PlatformError> {
+    pub fn around_path(path: &Path, platform: &dyn Platform) -> Result<Self, PlatformError> {
         if !path.motion.is_known() {
             return Ok(Self::default());
         }
         let stops: Vec<DVec3> = path.frames.iter().map(|frame| frame.pose.position).collect();
-        Ok(Self::near(&stops, &*platform.graph(&path.scene)?))
+        Ok(Self::near_stops(&stops, &*platform.graph_for_scene(&path.scene)?))
     }
 
     /// A graph around some places, on their storeys.
     #[must_use]
-    pub fn near(stops: &[DVec3], graph: &ViewpointGraph) -> Self {
+    pub fn near_stops(stops: &[DVec3], graph: &ViewpointGraph) -> Self {
         let near = |position: DVec3| {
             stops.iter().any(|stop| {
                 let off = *stop - position;
@@ -167,17 +167,19 @@ impl Map {
         };
         let mut map = Self::default();
         let mut places = std::collections::BTreeMap::new();
-        for (id, position) in
-            graph.viewpoints().filter_map(|id| Some((id, graph.position(id)?))).filter(|(_, position)| near(*position))
+        for (id, position) in graph
+            .viewpoints()
+            .filter_map(|id| Some((id, graph.position_of(id)?)))
+            .filter(|(_, position)| near(*position))
         {
             places.insert(id, map.nodes.len());
-            map.nodes.push([centimetres(position.x), centimetres(position.y)]);
+            map.nodes.push([round_to_centimetres(position.x), round_to_centimetres(position.y)]);
         }
         map.edges = graph.edges().filter_map(|(a, b, _)| Some([*places.get(a)?, *places.get(b)?])).collect();
         map
     }
 }
 
-fn centimetres(metres: f64) -> f64 {
+fn round_to_centimetres(metres: f64) -> f64 {
     (metres * 100.0).round() / 100.0
 }

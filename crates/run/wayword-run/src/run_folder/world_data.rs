@@ -1,7 +1,7 @@
 //! Hashes of the files that a run's scenes are read from, so that a run is not continued after these files have changed.
 
 use super::{Sha256, file, short_hex, write_whole};
-use crate::{error::Error, text_file};
+use crate::{error::CommandError, text_file};
 use sha2::Digest;
 use std::{
     collections::BTreeMap,
@@ -15,12 +15,12 @@ use wayword_core::{Platform, PlatformError, SceneId};
 /// A file up to this size, bytes, is hashed whole; of a larger one only its beginning, middle and end are hashed.
 const MOST_WHOLE: u64 = 8 << 20;
 /// Size of each of these samples, bytes.
-const SAMPLE: u64 = 64 << 10;
+const SAMPLE_BYTES: u64 = 64 << 10;
 /// How much of the beginning of a picture is hashed, bytes, because a scene may have thousands. Its length is hashed
 /// too.
-const PICTURE: u64 = 4 << 10;
+const PICTURE_HEAD_BYTES: u64 = 4 << 10;
 
-const HINT: &str = "make sure that you may read it, or move it away";
+const UNREADABLE_HINT: &str = "make sure that you may read it, or move it away";
 
 /// The hashes of a run's scenes: those in its folder (`data.json`), and those of the files as they are now.
 #[derive(Debug)]
@@ -28,11 +28,11 @@ pub struct WorldData {
     path: PathBuf,
     /// For a run of many workers, the hashes in its plan and the file of the plan.
     planned: Option<(BTreeMap<String, String>, PathBuf)>,
-    state: Mutex<State>,
+    state: Mutex<SceneHashes>,
 }
 
 #[derive(Debug, Default)]
-struct State {
+struct SceneHashes {
     /// The hashes in the folder.
     kept: BTreeMap<String, String>,
     /// The hashes of the files now; `None` for a scene that is read from no file.
@@ -46,23 +46,23 @@ impl WorldData {
     ///
     /// # Errors
     /// When the file cannot be read.
-    pub fn of(folder: &Path) -> Result<Self, Error> {
+    pub fn from_folder(folder: &Path) -> Result<Self, CommandError> {
         let path = folder.join(file::DATA);
         let kept = if path.exists() {
-            let text = text_file::read(&path, "read the hashes of the scenes")?;
+            let text = text_file::read_text_file(&path, "read the hashes of the scenes")?;
             serde_json::from_str(&text).map_err(|error| {
                 let hint = "the file was changed by hand or by another program: give another --out for a new run";
-                Error::usage(format!("{}: {error}", path.display()), hint)
+                CommandError::usage(format!("{}: {error}", path.display()), hint)
             })?
         } else {
             BTreeMap::new()
         };
-        Ok(Self { path, planned: None, state: Mutex::new(State { kept, ..State::default() }) })
+        Ok(Self { path, planned: None, state: Mutex::new(SceneHashes { kept, ..SceneHashes::default() }) })
     }
 
     /// The same, and scenes that differ from those of a plan are refused as well.
     #[must_use]
-    pub(crate) fn expecting(self, planned: &BTreeMap<String, String>, file: &Path) -> Self {
+    pub(crate) fn expecting_plan(self, planned: &BTreeMap<String, String>, file: &Path) -> Self {
         Self { planned: Some((planned.clone(), file.to_owned())), ..self }
     }
 
@@ -70,21 +70,21 @@ impl WorldData {
     ///
     /// # Errors
     /// When the files are others, or cannot be read.
-    pub fn check(&self, platform: &dyn Platform, scene: &SceneId) -> Result<(), Error> {
-        let mut state = self.lock();
+    pub fn check_scene(&self, platform: &dyn Platform, scene: &SceneId) -> Result<(), CommandError> {
+        let mut state = self.lock_state();
         if !state.now.contains_key(scene.as_str()) {
-            let files = platform.files(scene)?;
-            let now = if files.is_empty() { None } else { Some(state.hash(&files)?) };
+            let files = platform.source_files(scene)?;
+            let now = if files.is_empty() { None } else { Some(state.hash_files(&files)?) };
             state.now.insert(scene.to_string(), now);
         }
         let (kept, now) = (state.kept.get(scene.as_str()), state.now.get(scene.as_str()).cloned().flatten());
         if kept.is_some() && kept != now.as_ref() {
-            return Err(Error::ChangedScene { scene: scene.to_string(), record: self.path.clone() });
+            return Err(CommandError::ChangedScene { scene: scene.to_string(), record: self.path.clone() });
         }
         if let Some((planned, file)) = &self.planned {
             let planned = planned.get(scene.as_str());
             if planned.is_some() && planned != now.as_ref() {
-                return Err(Error::ChangedScene { scene: scene.to_string(), record: file.clone() });
+                return Err(CommandError::ChangedScene { scene: scene.to_string(), record: file.clone() });
             }
         }
         Ok(())
@@ -94,8 +94,8 @@ impl WorldData {
     ///
     /// # Errors
     /// When the file cannot be written.
-    pub fn keep(&self, scene: &SceneId) -> Result<(), Error> {
-        let mut state = self.lock();
+    pub fn keep_scene(&self, scene: &SceneId) -> Result<(), CommandError> {
+        let mut state = self.lock_state();
         let Some(now) = state.now.get(scene.as_str()).cloned().flatten() else { return Ok(()) };
         if state.kept.insert(scene.to_string(), now).is_some() {
             return Ok(());
@@ -104,7 +104,7 @@ impl WorldData {
         write_whole(&self.path, &text)
     }
 
-    fn lock(&self) -> MutexGuard<'_, State> {
+    fn lock_state(&self) -> MutexGuard<'_, SceneHashes> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -113,27 +113,28 @@ impl WorldData {
 ///
 /// # Errors
 /// When a file cannot be read.
-pub(crate) fn hashes<'a>(
+pub(crate) fn scene_hashes<'a>(
     platform: &dyn Platform,
     scenes: impl IntoIterator<Item = &'a SceneId>,
-) -> Result<BTreeMap<String, String>, Error> {
-    let mut state = State::default();
+) -> Result<BTreeMap<String, String>, CommandError> {
+    let mut state = SceneHashes::default();
     let mut hashes = BTreeMap::new();
     for scene in scenes {
-        let files = platform.files(scene)?;
+        let files = platform.source_files(scene)?;
         if !files.is_empty() {
-            hashes.insert(scene.to_string(), state.hash(&files)?);
+            hashes.insert(scene.to_string(), state.hash_files(&files)?);
         }
     }
     Ok(hashes)
 }
 
-impl State {
-    fn hash(&mut self, files: &[PathBuf]) -> Result<String, PlatformError> {
+impl SceneHashes {
+    fn hash_files(&mut self, files: &[PathBuf]) -> Result<String, PlatformError> {
         let mut hash = Sha256::new();
         for file in files {
             if !self.files.contains_key(file) {
-                let one = hash_of(file).map_err(|error| PlatformError::unread(file, &error, HINT))?;
+                let one =
+                    hash_of(file).map_err(|error| PlatformError::for_unread_file(file, &error, UNREADABLE_HINT))?;
                 self.files.insert(file.clone(), one);
             }
             hash.update(file.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default());
@@ -155,13 +156,13 @@ fn hash_of(path: &Path) -> io::Result<String> {
     hash.update(length.to_le_bytes());
     let is_picture = path.extension().is_some_and(|ending| ["jpg", "jpeg", "png"].iter().any(|one| ending == *one));
     if is_picture {
-        io::copy(&mut file.take(PICTURE), &mut hash)?;
+        io::copy(&mut file.take(PICTURE_HEAD_BYTES), &mut hash)?;
     } else if length <= MOST_WHOLE {
         io::copy(&mut file, &mut hash)?;
     } else {
-        for start in [0, (length - SAMPLE) / 2, length - SAMPLE] {
+        for start in [0, (length - SAMPLE_BYTES) / 2, length - SAMPLE_BYTES] {
             file.seek(SeekFrom::Start(start))?;
-            io::copy(&mut file.by_ref().take(SAMPLE), &mut hash)?;
+            io::copy(&mut file.by_ref().take(SAMPLE_BYTES), &mut hash)?;
         }
     }
     Ok(short_hex(hash))

@@ -1,7 +1,7 @@
 //! The settings as flags and the settings file give them, before defaults are filled in. Each group is declared once, by a
 //! macro, and serves as flags (clap) and as keys of the file (serde).
 
-use super::{AskedRoles, Perception, Providers, Service, Sources, TargetMode};
+use super::{AskedRoles, EvidenceSources, Perception, ProviderTables, Service, TargetMode};
 use crate::{platforms, styles};
 use clap::{Args, ValueEnum, builder::PossibleValuesParser};
 use serde::Deserialize;
@@ -31,12 +31,12 @@ macro_rules! group {
 }
 pub(super) use group;
 
-/// The groups with keys at the top of the settings file, by their fields in [`Asked`].
+/// The groups with keys at the top of the settings file, by their fields in [`AskedSettings`].
 macro_rules! top_groups {
     ($($name:ident: $(#[$of:meta])* pub struct $Group:ident { $($(#[$how:meta])* pub $key:ident: Option<$Type:ty>,)* })*) => {
         $(group! { $(#[$of])* pub struct $Group { $($(#[$how])* pub $key: Option<$Type>,)* } })*
 
-        /// The settings file as it is written. `#[serde(flatten)]` in [`Asked`] would do the same, but errors would lose their
+        /// The settings file as it is written. `#[serde(flatten)]` in [`AskedSettings`] would do the same, but errors would lose their
         /// line.
         #[derive(Default, Deserialize)]
         #[serde(deny_unknown_fields, default)]
@@ -44,10 +44,10 @@ macro_rules! top_groups {
             $($($key: Option<$Type>,)*)*
             roles: AskedRoles,
             service: Service,
-            providers: Providers,
+            providers: ProviderTables,
         }
 
-        impl From<SettingsFile> for Asked {
+        impl From<SettingsFile> for AskedSettings {
             fn from(file: SettingsFile) -> Self {
                 $(let $name = $Group { $($key: file.$key,)* };)*
                 Self { $($name,)* roles: file.roles, service: file.service, providers: file.providers }
@@ -60,7 +60,7 @@ macro_rules! top_groups {
 /// from a default.
 #[derive(Debug, Clone, Default, PartialEq, Args, Deserialize)]
 #[serde(from = "SettingsFile")]
-pub struct Asked {
+pub struct AskedSettings {
     /// The platform.
     #[command(flatten)]
     pub platform: AskedPlatform,
@@ -81,7 +81,7 @@ pub struct Asked {
     pub service: Service,
     /// The user's own providers. Only the settings file has them.
     #[arg(skip)]
-    pub providers: Providers,
+    pub providers: ProviderTables,
 }
 
 top_groups! {
@@ -91,7 +91,7 @@ platform:
     pub struct AskedPlatform {
         /// Where scenes come from: house (generated, built in), matterport, habitat, tdw, virtualhome, process or recording.
         /// `wayword platforms` lists what each needs. [default: house]
-        #[arg(long, value_parser = PossibleValuesParser::new(platforms::names()), hide_possible_values = true)]
+        #[arg(long, value_parser = PossibleValuesParser::new(platforms::platform_names()), hide_possible_values = true)]
         pub platform: Option<String>,
         /// Folder or file of the platform's data.
         #[arg(long, value_name = "PATH")]
@@ -137,11 +137,11 @@ writing:
     pub struct Writing {
         /// Write in this style: r2r, reverie, a TOML file, or NAME=DATASET to take the texts of a dataset file as examples. May be
         /// given several times. [default: r2r and reverie]
-        #[arg(long, value_name = "STYLE", value_parser = styles::typed)]
+        #[arg(long, value_name = "STYLE", value_parser = styles::check_style_name)]
         pub style: Option<Vec<String>>,
         /// At each frame, describe the view along the heading, or all four views. [default: central]
         #[arg(long)]
-        pub frames: Option<Frames>,
+        pub frames: Option<AskedFrames>,
         /// How a view is described: with one request for JSON (structured, and follow-up with questions about what stays open),
         /// question by question, with fixed queries, or with one request for a description. [default: structured for models over
         /// HTTP, dialogue for labels and models in process]
@@ -167,7 +167,7 @@ writing:
         /// Check texts against these, separated by commas: labels (where the platform has them; else captions), captions, and detector
         /// (what --detector finds and misses). [default: labels; with a detector labels,captions,detector]
         #[arg(long, value_name = "SOURCES")]
-        pub evidence: Option<Sources>,
+        pub evidence: Option<EvidenceSources>,
         /// What `wayword perceive --detector` measured of the detector. Without it a thing that the detector misses is not taken
         /// to be absent.
         #[arg(long, value_name = "FILE")]
@@ -207,18 +207,18 @@ draw:
 /// Which views are described.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, ValueEnum)]
 #[serde(rename_all = "snake_case")]
-pub enum Frames {
+pub enum AskedFrames {
     /// The view along the heading.
     Central,
     /// North, east, south and west, condensed into one description.
     Panoramic,
 }
 
-impl From<Frames> for FrameSelection {
-    fn from(frames: Frames) -> Self {
+impl From<AskedFrames> for FrameSelection {
+    fn from(frames: AskedFrames) -> Self {
         match frames {
-            Frames::Central => Self::Central,
-            Frames::Panoramic => Self::Panoramic,
+            AskedFrames::Central => Self::Central,
+            AskedFrames::Panoramic => Self::Panoramic,
         }
     }
 }
@@ -233,7 +233,7 @@ impl AskedPlatform {
 
 impl Walks {
     /// The values of flags, completed by those of a file.
-    fn or(self, mut file: Self) -> Self {
+    fn or_file(self, mut file: Self) -> Self {
         // Episodes and random paths exclude each other, so a flag for one also removes the other of a file.
         if self.paths.is_some() {
             file.episodes = None;
@@ -245,23 +245,23 @@ impl Walks {
     }
 }
 
-impl Asked {
+impl AskedSettings {
     /// The values of flags, completed by those of a file.
     #[must_use]
-    pub fn or(self, file: Self) -> Self {
+    pub fn or_file(self, file: Self) -> Self {
         Self {
             platform: self.platform.over(file.platform),
-            walks: self.walks.or(file.walks),
+            walks: self.walks.or_file(file.walks),
             writing: self.writing.over(file.writing),
             draw: self.draw.over(file.draw),
-            roles: self.roles.or(file.roles),
-            service: self.service.or(file.service),
+            roles: self.roles.or_file(file.roles),
+            service: self.service.or_file(file.service),
             providers: file.providers,
         }
     }
 }
 
-impl From<AskedPlatform> for Asked {
+impl From<AskedPlatform> for AskedSettings {
     fn from(platform: AskedPlatform) -> Self {
         Self { platform, ..Self::default() }
     }

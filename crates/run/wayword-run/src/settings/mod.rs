@@ -1,11 +1,11 @@
-//! Settings of a run: flags and a TOML file, resolved once into [`Settings`], which the run folder keeps.
+//! Settings of a run: flags and a TOML file, resolved once into [`RunSettings`], which the run folder keeps.
 
 mod asked;
 mod roles;
 mod service;
 mod sources;
 
-use crate::{calls::Keeping, error::Error};
+use crate::{calls::CallKeeping, error::CommandError};
 use serde::{Deserialize, Serialize};
 use std::{
     collections::BTreeMap,
@@ -13,21 +13,23 @@ use std::{
     path::{Path, PathBuf},
     str::FromStr,
 };
-use wayword_core::{Lack, PathRequest};
+use wayword_core::{PathRequest, SceneLack};
 use wayword_synthesis::{
-    dialogue::{Mode, QUESTIONS},
+    dialogue::{DEFAULT_MAX_QUESTIONS, DialogueMode},
     walk::FrameSelection,
 };
 
-pub use asked::{Asked, AskedPlatform, Draw, Frames, Walks, Writing};
-pub use roles::{AskedRoles, Finish, LABELS, Precision, RULES, Roles, can_play, is_in_process, is_model};
-pub use service::{Providers, Service};
-pub use sources::Sources;
+pub use asked::{AskedFrames, AskedPlatform, AskedSettings, Draw, Walks, Writing};
+pub use roles::{
+    AskedPrecision, AskedRoles, FailureFinish, LABELS_ROLE, RULES_ROLE, RunRoles, can_play, is_in_process, is_model,
+};
+pub use service::{ProviderTables, Service};
+pub use sources::EvidenceSources;
 
 /// The resolved settings of a run. They decide its results, so a run cannot be continued with others.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Settings {
+pub struct RunSettings {
     /// Name of the platform: see `wayword platforms`.
     pub platform: String,
     /// Folder of the platform's data.
@@ -79,7 +81,7 @@ pub struct Settings {
     pub limit: Option<usize>,
     /// The sources of evidence that texts are checked against.
     #[serde(default)]
-    pub evidence: Sources,
+    pub evidence: EvidenceSources,
     /// The file with the measured figures of the detector.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub detector_figures: Option<PathBuf>,
@@ -97,13 +99,13 @@ pub struct Settings {
     pub no_route: bool,
     /// Who asks, sees, summarises and writes.
     #[serde(default)]
-    pub roles: Roles,
+    pub roles: RunRoles,
     /// Hashes of the files and styles that the run began with, by name. A run is not continued with others.
     #[serde(default)]
     pub inputs: BTreeMap<String, String>,
     /// The scenes that the run leaves out because they could not be used when it began, by name.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub left_out: BTreeMap<String, Lack>,
+    pub left_out: BTreeMap<String, SceneLack>,
 }
 
 fn one() -> u32 {
@@ -151,7 +153,7 @@ impl Perception {
     }
 
     /// The default for this model, or for labels.
-    fn of(see: &str) -> Self {
+    fn default_for(see: &str) -> Self {
         if is_model(see) && !is_in_process(see) { Self::Structured } else { Self::Dialogue }
     }
 }
@@ -168,13 +170,13 @@ pub enum TargetMode {
 }
 
 /// Default number of random paths, without episodes.
-const PATHS: usize = 10;
+const DEFAULT_PATHS: usize = 10;
 /// Default of how often a text that failed is written again.
-const REPAIRS: u32 = 8;
+const DEFAULT_REPAIRS: u32 = 8;
 /// The same if a model writes, because each repair costs a call.
 const REPAIRS_OF_MODELS: u32 = 3;
 /// Default of how many texts are written, of which one is kept. If a model writes, it is 1, because each costs a call.
-const CANDIDATES: u32 = 4;
+const DEFAULT_CANDIDATES: u32 = 4;
 /// Largest `--candidates`.
 const MOST_CANDIDATES: u32 = 32;
 /// Largest `--repairs`.
@@ -188,24 +190,24 @@ const MOST_PATHS: usize = 1_000_000;
 
 /// The settings of a run, and how it may reach models.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Job {
+pub struct RunJob {
     /// The resolved settings.
-    pub settings: Settings,
+    pub settings: RunSettings,
     /// How models are reached, and how much may be spent.
     pub service: Service,
     /// The user's own providers.
-    pub providers: Providers,
+    pub providers: ProviderTables,
     /// Which ledger keeps the calls.
-    pub keeping: Keeping,
+    pub keeping: CallKeeping,
 }
 
-impl Asked {
+impl AskedSettings {
     /// Resolves it, together with how models are reached.
     ///
     /// # Errors
     /// When a range cannot be read, a number is out of range, or two settings exclude each other.
-    pub fn job(mut self) -> Result<Job, Error> {
-        let service = std::mem::take(&mut self.service).checked()?;
+    pub fn into_job(mut self) -> Result<RunJob, CommandError> {
+        let service = std::mem::take(&mut self.service).into_checked()?;
         let providers = std::mem::take(&mut self.providers);
         let settings = self.resolve()?;
         for (flag, path) in [
@@ -217,70 +219,77 @@ impl Asked {
             ("--proposals", &settings.proposals),
             ("--prompts", &settings.roles.prompts),
         ] {
-            nameable(flag, path.as_deref())?;
+            refuse_unnameable(flag, path.as_deref())?;
         }
-        Ok(Job { settings, service, providers, keeping: Keeping::Machine })
+        Ok(RunJob { settings, service, providers, keeping: CallKeeping::Machine })
     }
 
     /// Resolves these settings. Values that were not given get their defaults.
     ///
     /// # Errors
     /// When a range cannot be read, or two settings exclude each other.
-    pub fn resolve(self) -> Result<Settings, Error> {
+    pub fn resolve(self) -> Result<RunSettings, CommandError> {
         let Self { platform, walks, writing, draw, roles, .. } = self;
-        let paths = walks.paths.unwrap_or(if walks.episodes.is_some() { 0 } else { PATHS });
+        let paths = walks.paths.unwrap_or(if walks.episodes.is_some() { 0 } else { DEFAULT_PATHS });
         if walks.episodes.is_some() && paths > 0 {
-            return Err(Error::usage("--episodes and --paths cannot be combined", "give one of them"));
+            return Err(CommandError::usage("--episodes and --paths cannot be combined", "give one of them"));
         }
         if walks.paths == Some(0) {
-            return Err(Error::usage("--paths 0 asks for no path", "give at least 1, or leave the flag out for 10"));
+            return Err(CommandError::usage(
+                "--paths 0 asks for no path",
+                "give at least 1, or leave the flag out for 10",
+            ));
         }
         if draw.limit == Some(0) {
-            return Err(Error::usage("--limit 0 leaves no item", "give at least 1, or leave the flag out for all"));
+            return Err(CommandError::usage(
+                "--limit 0 leaves no item",
+                "give at least 1, or leave the flag out for all",
+            ));
         }
         if paths > MOST_PATHS {
-            return Err(Error::usage(
+            return Err(CommandError::usage(
                 format!("--paths {paths} is more than {MOST_PATHS}"),
                 "make several runs, each with its own --seed",
             ));
         }
         if writing.reject_ambiguous == Some(true) && writing.no_route == Some(true) {
-            return Err(Error::usage(
+            return Err(CommandError::usage(
                 "--reject-ambiguous and --no-route cannot be combined: a text that is not followed is not known to be ambiguous",
                 "give one of them",
             ));
         }
         if writing.repairs.is_some_and(|repairs| repairs > MOST_REPAIRS) {
-            return Err(Error::usage(
+            return Err(CommandError::usage(
                 format!("--repairs is more than {MOST_REPAIRS}"),
                 "give fewer: a text that fails that often will not pass later",
             ));
         }
         if writing.candidates.is_some_and(|candidates| !(1..=MOST_CANDIDATES).contains(&candidates)) {
-            return Err(Error::usage(
+            return Err(CommandError::usage(
                 format!("--candidates is not from 1 to {MOST_CANDIDATES}"),
                 "give a number in that range: each further text gains less",
             ));
         }
         if writing.per_path.is_some_and(|number| !(1..=MOST_PER_PATH).contains(&number)) {
-            return Err(Error::usage(
+            return Err(CommandError::usage(
                 format!("--per-path is not from 1 to {MOST_PER_PATH}"),
                 "for more texts make several runs, each with its own --seed",
             ));
         }
         if writing.questions.is_some_and(|questions| questions > MOST_QUESTIONS) {
-            return Err(Error::usage(
+            return Err(CommandError::usage(
                 format!("--questions is more than {MOST_QUESTIONS}"),
                 "give fewer: after about nine questions a dialogue brings little that is new",
             ));
         }
-        let request = request(walks.hops.as_deref(), walks.metres.as_deref())?;
+        let request = resolve_request(walks.hops.as_deref(), walks.metres.as_deref())?;
         let roles = roles.resolve()?;
-        let (repairs, candidates) = if is_model(&roles.write) { (REPAIRS_OF_MODELS, 1) } else { (REPAIRS, CANDIDATES) };
-        let perception = writing.perception.unwrap_or_else(|| Perception::of(&roles.see));
-        let evidence = evidence(&writing, &roles)?;
+        let (repairs, candidates) =
+            if is_model(&roles.write) { (REPAIRS_OF_MODELS, 1) } else { (DEFAULT_REPAIRS, DEFAULT_CANDIDATES) };
+        let perception = writing.perception.unwrap_or_else(|| Perception::default_for(&roles.see));
+        let evidence = resolve_evidence(&writing, &roles)?;
         let styles = writing.style.filter(|styles| !styles.is_empty());
-        Ok(Settings {
+        Ok(RunSettings {
             platform: platform.name().to_owned(),
             data: platform.data,
             at: platform.at,
@@ -294,7 +303,7 @@ impl Asked {
             style: styles.unwrap_or_else(|| vec!["r2r".into(), "reverie".into()]),
             frames: writing.frames.map(FrameSelection::from).unwrap_or_default(),
             perception,
-            questions: writing.questions.unwrap_or(QUESTIONS),
+            questions: writing.questions.unwrap_or(DEFAULT_MAX_QUESTIONS),
             target: writing.target.unwrap_or_default(),
             repairs: writing.repairs.unwrap_or(repairs),
             candidates: writing.candidates.unwrap_or(candidates),
@@ -315,15 +324,15 @@ impl Asked {
 }
 
 /// Resolves the sources of evidence. Refuses settings for a detector if there is none.
-fn evidence(writing: &Writing, roles: &Roles) -> Result<Sources, Error> {
-    let evidence = writing.evidence.unwrap_or_else(|| Sources::usual(roles.detector.is_some()));
+fn resolve_evidence(writing: &Writing, roles: &RunRoles) -> Result<EvidenceSources, CommandError> {
+    let evidence = writing.evidence.unwrap_or_else(|| EvidenceSources::usual_sources(roles.detector.is_some()));
     let without = [
         ("--evidence detector", evidence.detector),
         ("--detector-figures", writing.detector_figures.is_some()),
         ("--proposals", writing.proposals.is_some()),
     ];
     match without.iter().find(|(_, is_asked)| *is_asked && roles.detector.is_none()) {
-        Some((flag, _)) => Err(Error::usage(
+        Some((flag, _)) => Err(CommandError::usage(
             format!("{flag} has no effect without a detector"),
             "name one, as in --detector hf/google/owlv2-base-patch16-ensemble, or leave it out",
         )),
@@ -332,9 +341,9 @@ fn evidence(writing: &Writing, roles: &Roles) -> Result<Sources, Error> {
 }
 
 /// Refuses a path that a run folder cannot keep: settings are UTF-8 text, and a file's name need not be.
-pub fn nameable(flag: &str, path: Option<&Path>) -> Result<(), Error> {
+pub fn refuse_unnameable(flag: &str, path: Option<&Path>) -> Result<(), CommandError> {
     match path {
-        Some(path) if path.to_str().is_none() => Err(Error::usage(
+        Some(path) if path.to_str().is_none() => Err(CommandError::usage(
             format!("{flag} {}: this name is not valid UTF-8, and a run keeps it as text", path.display()),
             "rename it, or make a symbolic link to it with a plain name and give that",
         )),
@@ -343,18 +352,18 @@ pub fn nameable(flag: &str, path: Option<&Path>) -> Result<(), Error> {
 }
 
 /// The lengths that random paths may have.
-fn request(hops: Option<&str>, metres: Option<&str>) -> Result<PathRequest, Error> {
+fn resolve_request(hops: Option<&str>, metres: Option<&str>) -> Result<PathRequest, CommandError> {
     let default = PathRequest::default();
-    let length_m: RangeInclusive<f64> = metres.map_or(Ok(default.length_m), |text| range("--metres", text))?;
+    let length_m: RangeInclusive<f64> = metres.map_or(Ok(default.length_m), |text| parse_range("--metres", text))?;
     if !length_m.end().is_finite() {
-        return Err(Error::usage("--metres must be finite", "write it as in --metres 5..20"));
+        return Err(CommandError::usage("--metres must be finite", "write it as in --metres 5..20"));
     }
-    let hops = hops.map_or(Ok(default.hops), |text| range("--hops", text))?;
+    let hops = hops.map_or(Ok(default.hops), |text| parse_range("--hops", text))?;
     if *hops.end() == 0 {
-        return Err(Error::usage("--hops 0: a path has at least 1 hop", "write it as in --hops 4..7"));
+        return Err(CommandError::usage("--hops 0: a path has at least 1 hop", "write it as in --hops 4..7"));
     }
     if *length_m.end() <= 0.0 {
-        return Err(Error::usage(
+        return Err(CommandError::usage(
             format!("--metres {}: a path is longer than 0", metres.unwrap_or_default()),
             "write it as in --metres 5..20",
         ));
@@ -362,7 +371,7 @@ fn request(hops: Option<&str>, metres: Option<&str>) -> Result<PathRequest, Erro
     Ok(PathRequest { hops, length_m })
 }
 
-impl Settings {
+impl RunSettings {
     /// Whether there is a dialogue.
     #[must_use]
     pub fn has_dialogue(&self) -> bool {
@@ -386,19 +395,19 @@ impl Settings {
 
     /// How views are described.
     #[must_use]
-    pub fn mode(&self) -> Mode {
+    pub fn dialogue_mode(&self) -> DialogueMode {
         match self.perception {
-            Perception::Dialogue => Mode::Dialogue { questions: self.questions },
-            Perception::Fixed => Mode::Fixed,
-            Perception::Single => Mode::Single,
-            Perception::Structured => Mode::Structured { questions: 0 },
-            Perception::FollowUp => Mode::Structured { questions: self.questions },
+            Perception::Dialogue => DialogueMode::Dialogue { questions: self.questions },
+            Perception::Fixed => DialogueMode::Fixed,
+            Perception::Single => DialogueMode::Single,
+            Perception::Structured => DialogueMode::Structured { questions: 0 },
+            Perception::FollowUp => DialogueMode::Structured { questions: self.questions },
         }
     }
 }
 
 /// A range as typed: "4..7", both ends included, or one number.
-fn range<N: FromStr + PartialOrd + Copy>(flag: &str, text: &str) -> Result<RangeInclusive<N>, Error> {
+fn parse_range<N: FromStr + PartialOrd + Copy>(flag: &str, text: &str) -> Result<RangeInclusive<N>, CommandError> {
     let (from, to) = text.split_once("..").unwrap_or((text, text));
     let parsed = from.trim().parse::<N>().ok().zip(to.trim_start_matches('=').trim().parse::<N>().ok());
     let problem = match parsed {
@@ -406,7 +415,7 @@ fn range<N: FromStr + PartialOrd + Copy>(flag: &str, text: &str) -> Result<Range
         Some((from, to)) if from > to => "the first number is larger than the second",
         _ => "this is not a range",
     };
-    Err(Error::usage(
+    Err(CommandError::usage(
         format!("{flag} {text}: {problem}"),
         format!("write it as in {flag} 4..7, the smaller number first"),
     ))
@@ -418,52 +427,55 @@ mod tests {
 
     #[test]
     fn resolve_prefers_flags_to_the_file_and_the_file_to_defaults() {
-        let flags = Asked { draw: Draw { seed: Some(7), ..Draw::default() }, ..Asked::default() };
-        let file: Asked = toml::from_str("seed = 1\nrepairs = 2\nhops = \"2..3\"").unwrap();
-        let settings = flags.or(file).resolve().unwrap();
+        let flags = AskedSettings { draw: Draw { seed: Some(7), ..Draw::default() }, ..AskedSettings::default() };
+        let file: AskedSettings = toml::from_str("seed = 1\nrepairs = 2\nhops = \"2..3\"").unwrap();
+        let settings = flags.or_file(file).resolve().unwrap();
         assert_eq!(
             (settings.seed, settings.repairs, settings.request.hops, settings.questions),
-            (7, 2, 2..=3, QUESTIONS)
+            (7, 2, 2..=3, DEFAULT_MAX_QUESTIONS)
         );
     }
 
     #[test]
     fn ranges_are_read_or_refused() {
-        assert_eq!(range::<usize>("--hops", "4..7").unwrap(), 4..=7);
-        assert_eq!(range::<f64>("--metres", "5").unwrap(), 5.0..=5.0);
+        assert_eq!(parse_range::<usize>("--hops", "4..7").unwrap(), 4..=7);
+        assert_eq!(parse_range::<f64>("--metres", "5").unwrap(), 5.0..=5.0);
         for bad in ["7..4", "x", "", "1..", "NaN..3"] {
-            assert!(range::<f64>("--metres", bad).is_err(), "{bad}");
+            assert!(parse_range::<f64>("--metres", bad).is_err(), "{bad}");
         }
     }
 
     #[test]
     fn ranges_that_no_path_fits_are_refused() {
-        let told = |hops, metres| request(hops, metres).unwrap_err().to_string();
+        let told = |hops, metres| resolve_request(hops, metres).unwrap_err().to_string();
         assert!(told(Some("9..3"), None).contains("first number is larger"));
         assert!(told(Some("9-3"), None).contains("not a range"));
         assert!(told(None, Some("20..5")).contains("--metres 20..5"));
         assert!(told(Some("0"), None).contains("--hops 0"));
         assert!(told(None, Some("-3..0")).contains("--metres -3..0"));
-        assert!(request(Some("0..3"), Some("0..5")).is_ok());
+        assert!(resolve_request(Some("0..3"), Some("0..5")).is_ok());
     }
 
     #[test]
     fn lengths_are_finite() {
-        let asked = |text: &str| request(None, Some(text));
+        let asked = |text: &str| resolve_request(None, Some(text));
         assert!(asked("5..1e400").is_err() && asked("5..20").is_ok());
     }
 
     #[test]
     fn dialogues_are_bounded() {
         let asked = |questions| {
-            Asked { writing: Writing { questions: Some(questions), ..Writing::default() }, ..Asked::default() }
-                .resolve()
+            AskedSettings {
+                writing: Writing { questions: Some(questions), ..Writing::default() },
+                ..AskedSettings::default()
+            }
+            .resolve()
         };
         assert!(asked(MOST_QUESTIONS).is_ok() && asked(MOST_QUESTIONS + 1).is_err() && asked(usize::MAX).is_err());
     }
 
     #[test]
     fn a_misspelt_key_of_the_file_is_refused() {
-        assert!(toml::from_str::<Asked>("sed = 1").is_err());
+        assert!(toml::from_str::<AskedSettings>("sed = 1").is_err());
     }
 }

@@ -1,15 +1,15 @@
 //! The roles of a run: which model, or labels or rules, asks, sees, summarises and writes.
 
 use super::{asked::group, is_false};
-use crate::error::Error;
+use crate::error::CommandError;
 use clap::{Args, ValueEnum};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
 /// The name of the role that answers from ground-truth labels.
-pub const LABELS: &str = "labels";
+pub const LABELS_ROLE: &str = "labels";
 /// The name of a role that works by rules.
-pub const RULES: &str = "rules";
+pub const RULES_ROLE: &str = "rules";
 
 /// Default for the longer side of the pictures that models are sent, pixels.
 const PICTURE_PX: u32 = 512;
@@ -48,7 +48,7 @@ group! {
         /// What happens if all texts of the model failed a check: rules write the instruction, or with `nobody` it is rejected. The
         /// provenance names the writer. [default: rules]
         #[arg(long)]
-        pub finish: Option<Finish>,
+        pub finish: Option<FailureFinish>,
         /// Base URL of the provider. For several providers use [providers.NAME] in the settings file.
         #[arg(long, value_name = "URL")]
         pub base_url: Option<String>,
@@ -57,7 +57,7 @@ group! {
         pub picture_px: Option<u32>,
         /// Number format of the weights of a model that runs inside this program: f32, bf16 or f16. [default: f32; for BLIP-2, bf16]
         #[arg(long, value_name = "NUMBERS")]
-        pub precision: Option<Precision>,
+        pub precision: Option<AskedPrecision>,
         /// Folder with your own prompt templates: question.j2, answer.j2, answer_question.j2 (BLIP), answer_completion.j2 (BLIP-2),
         /// summary.j2, condense.j2, write.j2.
         #[arg(long, value_name = "DIR")]
@@ -68,7 +68,7 @@ group! {
 /// Number format of a model's weights.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
 #[serde(rename_all = "snake_case")]
-pub enum Precision {
+pub enum AskedPrecision {
     /// 32 bits.
     F32,
     /// 16 bits, with the range of f32.
@@ -80,7 +80,7 @@ pub enum Precision {
 /// Who finishes if all of a model's texts failed.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
 #[serde(rename_all = "snake_case")]
-pub enum Finish {
+pub enum FailureFinish {
     /// The writer that works by rules finishes.
     #[default]
     Rules,
@@ -91,7 +91,7 @@ pub enum Finish {
 /// Who plays which role in a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Roles {
+pub struct RunRoles {
     /// Who asks.
     pub ask: String,
     /// Who sees.
@@ -107,7 +107,7 @@ pub struct Roles {
     #[serde(default, skip_serializing_if = "is_false")]
     pub write_sees: bool,
     /// Who finishes if all texts of a model failed.
-    pub finish: Finish,
+    pub finish: FailureFinish,
     /// Base URL, if there is one provider.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub base_url: Option<String>,
@@ -115,22 +115,22 @@ pub struct Roles {
     pub picture_px: u32,
     /// Number format of the weights of models in process, if not the default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub precision: Option<Precision>,
+    pub precision: Option<AskedPrecision>,
     /// Folder of prompt templates.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub prompts: Option<PathBuf>,
 }
 
-impl Default for Roles {
+impl Default for RunRoles {
     fn default() -> Self {
         Self {
-            ask: RULES.to_owned(),
-            see: LABELS.to_owned(),
-            summarise: RULES.to_owned(),
-            write: RULES.to_owned(),
+            ask: RULES_ROLE.to_owned(),
+            see: LABELS_ROLE.to_owned(),
+            summarise: RULES_ROLE.to_owned(),
+            write: RULES_ROLE.to_owned(),
             detector: None,
             write_sees: false,
-            finish: Finish::default(),
+            finish: FailureFinish::default(),
             base_url: None,
             picture_px: PICTURE_PX,
             precision: None,
@@ -142,7 +142,7 @@ impl Default for Roles {
 impl AskedRoles {
     /// The values of flags, completed by those of a file. A flag `--llm` wins over the file's text roles.
     #[must_use]
-    pub fn or(self, mut file: Self) -> Self {
+    pub fn or_file(self, mut file: Self) -> Self {
         if self.llm.is_some() {
             file = Self { ask: None, summarise: None, write: None, ..file };
         }
@@ -153,16 +153,16 @@ impl AskedRoles {
     ///
     /// # Errors
     /// When a name is neither built in nor provider/model.
-    pub fn resolve(self) -> Result<Roles, Error> {
-        let default = Roles::default();
+    pub fn resolve(self) -> Result<RunRoles, CommandError> {
+        let default = RunRoles::default();
         let text = |role: Option<String>, flag, none: &str| match (role, &self.llm) {
-            (Some(name), _) => named(flag, name, RULES),
-            (None, Some(name)) => named("--llm", name.clone(), RULES),
+            (Some(name), _) => check_role_name(flag, name, RULES_ROLE),
+            (None, Some(name)) => check_role_name("--llm", name.clone(), RULES_ROLE),
             (None, None) => Ok(none.to_owned()),
         };
         let picture_px = self.picture_px.unwrap_or(default.picture_px);
         if !(32..=MOST_PICTURE_PX).contains(&picture_px) {
-            return Err(Error::usage(
+            return Err(CommandError::usage(
                 format!("--picture-px {picture_px} is not from 32 to {MOST_PICTURE_PX}"),
                 "most models look at 300 to 1600 pixels",
             ));
@@ -170,17 +170,17 @@ impl AskedRoles {
         let write = text(self.write, "--write", &default.write)?;
         let write_sees = self.write_sees.unwrap_or(false);
         if write_sees && (!is_model(&write) || is_in_process(&write)) {
-            return Err(Error::usage(
+            return Err(CommandError::usage(
                 format!("--write-sees: {write} writes, and cannot be shown pictures"),
                 "name a model over HTTP that sees, as in --write openai/gpt-4.1-mini --write-sees",
             ));
         }
-        Ok(Roles {
+        Ok(RunRoles {
             ask: text(self.ask, "--ask", &default.ask)?,
-            see: self.see.map_or(Ok(default.see), |name| named("--see", name, LABELS))?,
+            see: self.see.map_or(Ok(default.see), |name| check_role_name("--see", name, LABELS_ROLE))?,
             summarise: text(self.summarise, "--summarise", &default.summarise)?,
             write,
-            detector: self.detector.map(detects).transpose()?,
+            detector: self.detector.map(check_detector_name).transpose()?,
             write_sees,
             finish: self.finish.unwrap_or_default(),
             base_url: self.base_url,
@@ -192,22 +192,22 @@ impl AskedRoles {
 }
 
 /// Checks the name of a role's player: `rules` or `labels`, or provider/model.
-fn named(flag: &str, name: String, embedded: &str) -> Result<String, Error> {
+fn check_role_name(flag: &str, name: String, embedded: &str) -> Result<String, CommandError> {
     if can_play(&name, embedded) {
         return Ok(name);
     }
-    Err(Error::usage(
+    Err(CommandError::usage(
         format!("{flag} {name}: this is neither `{embedded}` nor a model as provider/model"),
         format!("give {embedded}, or a provider and its model, as in {flag} ollama/llava"),
     ))
 }
 
 /// Checks the name of a detector.
-fn detects(name: String) -> Result<String, Error> {
+fn check_detector_name(name: String) -> Result<String, CommandError> {
     if is_in_process(&name) {
         return Ok(name);
     }
-    Err(Error::usage(
+    Err(CommandError::usage(
         format!("--detector {name}: detectors run inside this program, and their names begin with hf/"),
         "give one as in --detector hf/google/owlv2-base-patch16-ensemble",
     ))
@@ -220,10 +220,10 @@ pub fn can_play(name: &str, embedded: &str) -> bool {
     name == embedded || name.split_once('/').is_some_and(is_model)
 }
 
-impl Roles {
+impl RunRoles {
     /// The models among them, each once, in the order of their work.
     #[must_use]
-    pub fn models(&self) -> Vec<&str> {
+    pub fn model_names(&self) -> Vec<&str> {
         let mut models: Vec<&str> = Vec::new();
         for name in [&self.ask, &self.see, &self.summarise, &self.write].into_iter().chain(&self.detector) {
             if is_model(name) && !models.contains(&name.as_str()) {
@@ -266,15 +266,15 @@ mod tests {
     fn one_model_takes_the_three_text_roles_unless_one_is_named() {
         let roles = asked(Some("a/b"), Some("c/d:e")).resolve().unwrap();
         assert_eq!((&*roles.ask, &*roles.see, &*roles.summarise, &*roles.write), ("a/b", "labels", "a/b", "c/d:e"));
-        assert_eq!(roles.models(), ["a/b", "c/d:e"]);
-        assert_eq!(AskedRoles::default().resolve().unwrap(), Roles::default());
+        assert_eq!(roles.model_names(), ["a/b", "c/d:e"]);
+        assert_eq!(AskedRoles::default().resolve().unwrap(), RunRoles::default());
     }
 
     #[test]
     fn a_flag_for_all_roles_wins_over_the_roles_of_the_file() {
-        let roles = asked(Some("a/b"), None).or(asked(None, Some("c/d"))).resolve().unwrap();
+        let roles = asked(Some("a/b"), None).or_file(asked(None, Some("c/d"))).resolve().unwrap();
         assert_eq!(roles.write, "a/b");
-        let roles = asked(None, None).or(asked(Some("e/f"), Some("c/d"))).resolve().unwrap();
+        let roles = asked(None, None).or_file(asked(Some("e/f"), Some("c/d"))).resolve().unwrap();
         assert_eq!((&*roles.ask, &*roles.write), ("e/f", "c/d"));
     }
 

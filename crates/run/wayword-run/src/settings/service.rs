@@ -1,7 +1,7 @@
 //! How models are reached, and how much may be spent. No value changes an answer, so a run may be continued with other values.
 
 use super::asked::group;
-use crate::error::Error;
+use crate::error::CommandError;
 use clap::Args;
 use serde::Deserialize;
 use std::{collections::BTreeMap, path::PathBuf};
@@ -60,12 +60,12 @@ group! {
 }
 
 /// The user's own providers, and changes to the built-in ones: tables `[providers.NAME]` of a settings file.
-pub type Providers = BTreeMap<String, toml::Table>;
+pub type ProviderTables = BTreeMap<String, toml::Table>;
 
 impl Service {
     /// The values of flags, completed by those of a file.
     #[must_use]
-    pub fn or(self, mut file: Self) -> Self {
+    pub fn or_file(self, mut file: Self) -> Self {
         // A replay excludes a recording and a ledger. A flag wins over the file, which could name the same recording.
         if self.replay.is_some() {
             file = Self { record: None, ledger: None, ..file };
@@ -80,8 +80,8 @@ impl Service {
     ///
     /// # Errors
     /// When a number is out of range, or two settings exclude each other.
-    pub fn checked(self) -> Result<Self, Error> {
-        let refuse = |flag: &str, hint: &str| Err(Error::usage(format!("{flag} is out of range"), hint));
+    pub fn into_checked(self) -> Result<Self, CommandError> {
+        let refuse = |flag: &str, hint: &str| Err(CommandError::usage(format!("{flag} is out of range"), hint));
         if self.max_usd.is_some_and(|usd| !usd.is_finite() || usd < 0.0) {
             return refuse("--max-usd", "give US dollars, as in --max-usd 2.50");
         }
@@ -99,7 +99,7 @@ impl Service {
             return refuse("a rate per minute", "give a number above 0, or leave the flag out for no limit");
         }
         if self.replay.is_some() && (self.record.is_some() || self.ledger.is_some()) {
-            return Err(Error::usage(
+            return Err(CommandError::usage(
                 "--replay cannot be combined with --record or --ledger",
                 "a replay makes no new answers that could be kept: leave the other flags out",
             ));
@@ -117,7 +117,7 @@ mod tests {
 
     #[test]
     fn numbers_out_of_their_range_are_refused() {
-        let refused = |text: &str| toml::from_str::<Service>(text).unwrap().checked().is_err();
+        let refused = |text: &str| toml::from_str::<Service>(text).unwrap().into_checked().is_err();
         for bad in [
             "max_usd = -1.0",
             "max_usd = nan",
@@ -134,10 +134,10 @@ mod tests {
     #[test]
     fn a_replay_never_writes_the_recording_of_a_settings_file() {
         let read = |text: &str| toml::from_str::<Service>(text).unwrap();
-        let replayed = read("replay = 'calls.jsonl'").or(read("record = 'calls.jsonl'\nledger = 'calls.db'"));
+        let replayed = read("replay = 'calls.jsonl'").or_file(read("record = 'calls.jsonl'\nledger = 'calls.db'"));
         assert_eq!(replayed, read("replay = 'calls.jsonl'"));
-        let recorded = read("record = 'new.jsonl'").or(read("replay = 'calls.jsonl'\nmax_calls = 3"));
+        let recorded = read("record = 'new.jsonl'").or_file(read("replay = 'calls.jsonl'\nmax_calls = 3"));
         assert_eq!(recorded, read("record = 'new.jsonl'\nmax_calls = 3"));
-        assert!(read("replay = 'calls.jsonl'\nrecord = 'calls.jsonl'").checked().is_err());
+        assert!(read("replay = 'calls.jsonl'\nrecord = 'calls.jsonl'").into_checked().is_err());
     }
 }

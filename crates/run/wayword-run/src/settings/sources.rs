@@ -6,7 +6,7 @@ use std::{fmt, str::FromStr};
 
 /// The sources of evidence that texts are checked against.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Sources {
+pub struct EvidenceSources {
     /// The platform's labels, where it has them. The other sources are not used then.
     pub labels: bool,
     /// The captions, where labels are not used.
@@ -15,17 +15,17 @@ pub struct Sources {
     pub detector: bool,
 }
 
-impl Sources {
+impl EvidenceSources {
     /// The captions alone, as on a platform without labels.
-    pub const CAPTIONS: Self = Self { labels: false, captions: true, detector: false };
+    pub const CAPTIONS_ALONE: Self = Self { labels: false, captions: true, detector: false };
 
     /// Labels where there are any, else captions; and the detector, where there is one.
     #[must_use]
-    pub fn usual(has_detector: bool) -> Self {
+    pub fn usual_sources(has_detector: bool) -> Self {
         Self { labels: true, captions: true, detector: has_detector }
     }
 
-    fn named(&self) -> Vec<&'static str> {
+    fn source_names(&self) -> Vec<&'static str> {
         // `labels` alone implies captions where there are no labels, so they need not be named.
         let captions = self.captions && (!self.labels || self.detector);
         let all = [(self.labels, "labels"), (captions, "captions"), (self.detector, "detector")];
@@ -33,19 +33,19 @@ impl Sources {
     }
 }
 
-impl Default for Sources {
+impl Default for EvidenceSources {
     fn default() -> Self {
-        Self::usual(false)
+        Self::usual_sources(false)
     }
 }
 
-impl fmt::Display for Sources {
+impl fmt::Display for EvidenceSources {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.named().join(","))
+        f.write_str(&self.source_names().join(","))
     }
 }
 
-impl FromStr for Sources {
+impl FromStr for EvidenceSources {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
@@ -65,13 +65,13 @@ impl FromStr for Sources {
     }
 }
 
-impl Serialize for Sources {
+impl Serialize for EvidenceSources {
     fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
         to.collect_str(self)
     }
 }
 
-impl<'de> Deserialize<'de> for Sources {
+impl<'de> Deserialize<'de> for EvidenceSources {
     fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
         String::deserialize(from)?.parse().map_err(de::Error::custom)
     }
@@ -86,10 +86,10 @@ mod tests {
         for text in
             ["labels", "captions", "detector", "labels,captions,detector", "captions,detector", "labels,detector"]
         {
-            assert_eq!(text.parse::<Sources>().unwrap().to_string(), text);
+            assert_eq!(text.parse::<EvidenceSources>().unwrap().to_string(), text);
         }
-        assert_eq!("labels".parse(), Ok(Sources::default()));
-        assert_eq!("labels, captions".parse(), Ok(Sources::default()));
-        assert!("label".parse::<Sources>().is_err() && "".parse::<Sources>().is_err());
+        assert_eq!("labels".parse(), Ok(EvidenceSources::default()));
+        assert_eq!("labels, captions".parse(), Ok(EvidenceSources::default()));
+        assert!("label".parse::<EvidenceSources>().is_err() && "".parse::<EvidenceSources>().is_err());
     }
 }

@@ -1,6 +1,6 @@
 //! Fetches the data of a platform from an object store into a cache folder of this machine, once.
 
-use crate::{error::Error, output};
+use crate::{error::CommandError, output};
 use etcetera::BaseStrategy;
 use sha2::{Digest, Sha256};
 use std::{
@@ -11,23 +11,23 @@ use std::{
     sync::{Mutex, PoisonError},
     time::{Duration, Instant},
 };
-use wayword_queue::{QueueError, cloud::Bucket};
+use wayword_queue::{QueueError, cloud::CloudBucket};
 
 /// Largest data that is fetched, bytes.
 const MOST_BYTES: u64 = 1 << 42;
 /// Time between two messages about the progress.
-const EVERY: Duration = Duration::from_secs(10);
+const PROGRESS_INTERVAL: Duration = Duration::from_secs(10);
 
 /// The local folder with the data of an address. Files that have changed in the store are fetched again, at most once per
 /// process.
-pub(super) fn fetched(address: &str) -> Result<PathBuf, Error> {
-    static FETCHED: Mutex<BTreeMap<String, PathBuf>> = Mutex::new(BTreeMap::new());
-    let mut known = FETCHED.lock().unwrap_or_else(PoisonError::into_inner);
+pub(super) fn fetch_data(address: &str) -> Result<PathBuf, CommandError> {
+    static FETCHED_FOLDERS: Mutex<BTreeMap<String, PathBuf>> = Mutex::new(BTreeMap::new());
+    let mut known = FETCHED_FOLDERS.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(folder) = known.get(address) {
         return Ok(folder.clone());
     }
     let nothing = || {
-        Error::usage(
+        CommandError::usage(
             format!("{address}: there is no data there"),
             "give the prefix under which the files of the data's folder lie",
         )
@@ -37,10 +37,10 @@ pub(super) fn fetched(address: &str) -> Result<PathBuf, Error> {
         return Err(nothing());
     }
     let folder = folder_of(address)?;
-    let bucket = Bucket::open(address).map_err(QueueError::from)?;
+    let bucket = CloudBucket::open(address).map_err(QueueError::from)?;
     let told = Cell::new(None::<Instant>);
     let progress = |done: u64, all: u64| {
-        if done < all && told.get().is_none_or(|at| at.elapsed() > EVERY) {
+        if done < all && told.get().is_none_or(|at| at.elapsed() > PROGRESS_INTERVAL) {
             told.set(Some(Instant::now()));
             output::pass_on(&format!("fetching {address}: {} of {} MB", done >> 20, all >> 20));
         }
@@ -54,9 +54,10 @@ pub(super) fn fetched(address: &str) -> Result<PathBuf, Error> {
 }
 
 /// The folder for the data of an address, in the user's cache and named by a hash of the address.
-fn folder_of(address: &str) -> Result<PathBuf, Error> {
-    let strategy = etcetera::choose_base_strategy()
-        .map_err(|_| Error::usage("there is no home folder to fetch the data to", "set HOME or XDG_CACHE_HOME"))?;
+fn folder_of(address: &str) -> Result<PathBuf, CommandError> {
+    let strategy = etcetera::choose_base_strategy().map_err(|_| {
+        CommandError::usage("there is no home folder to fetch the data to", "set HOME or XDG_CACHE_HOME")
+    })?;
     let hash = Sha256::digest(address.trim_end_matches('/').as_bytes());
     let name = hash.iter().take(16).fold(String::new(), |mut name, byte| {
         let _ = write!(name, "{byte:02x}");

@@ -8,18 +8,18 @@ mod data;
 mod run_place;
 
 #[cfg(not(feature = "cloud"))]
-use absent::{StoredRun, fetched};
+use absent::{CloudRun, fetch_data};
 #[cfg(feature = "cloud")]
-use data::fetched;
+use data::fetch_data;
 pub use run_place::RunPlace;
 use std::{borrow::Cow, path::Path};
 #[cfg(feature = "cloud")]
-use wayword_queue::cloud::StoredRun;
+use wayword_queue::cloud::CloudRun;
 
-use crate::error::Error;
+use crate::error::CommandError;
 
 /// The address of an object store, if the path is one and not a folder.
-fn address(path: &Path) -> Option<&str> {
+fn store_address(path: &Path) -> Option<&str> {
     path.to_str().filter(|text| text.contains("://"))
 }
 
@@ -27,10 +27,10 @@ fn address(path: &Path) -> Option<&str> {
 ///
 /// # Errors
 /// When it cannot be fetched, or this build cannot reach object stores.
-pub fn local(data: &Path) -> Result<Cow<'_, Path>, Error> {
-    match address(data) {
+pub fn local_data(data: &Path) -> Result<Cow<'_, Path>, CommandError> {
+    match store_address(data) {
         None => Ok(Cow::Borrowed(data)),
-        Some(address) => fetched(address).map(Cow::Owned),
+        Some(address) => fetch_data(address).map(Cow::Owned),
     }
 }
 
@@ -38,9 +38,9 @@ pub fn local(data: &Path) -> Result<Cow<'_, Path>, Error> {
 ///
 /// # Errors
 /// When it is one.
-pub fn refuse_address(folder: &Path, problem: &str, hint: &str) -> Result<(), Error> {
-    match address(folder) {
+pub fn refuse_address(folder: &Path, problem: &str, hint: &str) -> Result<(), CommandError> {
+    match store_address(folder) {
         None => Ok(()),
-        Some(address) => Err(Error::usage(format!("{address}: {problem}"), hint)),
+        Some(address) => Err(CommandError::usage(format!("{address}: {problem}"), hint)),
     }
 }

@@ -1,12 +1,12 @@
 //! The place of a run that many workers make: a folder that all of them share, or an object store.
 
-use super::{StoredRun, address};
-use crate::{error::Error, output::Output, run_folder::is_begun};
+use super::{CloudRun, store_address};
+use crate::{error::CommandError, output::CommandOutput, run_folder::is_begun};
 use std::{
     fs, io,
     path::{Path, PathBuf},
 };
-use wayword_queue::{Board, PLAN, Plan, QueueError, WAY, worker_name};
+use wayword_queue::{ChunkBoard, ChunkPlan, PLAN, QueueError, WORKERS_FILE, worker_name};
 
 /// The place of a run.
 pub struct RunPlace {
@@ -14,7 +14,7 @@ pub struct RunPlace {
     named: PathBuf,
     /// The folder in which this process works. For a run in an object store this is a folder of this process alone.
     folder: PathBuf,
-    stored: Option<StoredRun>,
+    stored: Option<CloudRun>,
 }
 
 impl RunPlace {
@@ -23,17 +23,17 @@ impl RunPlace {
     ///
     /// # Errors
     /// When the address cannot be used, or this build cannot reach object stores.
-    pub fn of(named: &Path) -> Result<Self, Error> {
-        let Some(address) = address(named) else {
+    pub fn open_named(named: &Path) -> Result<Self, CommandError> {
+        let Some(address) = store_address(named) else {
             return Ok(Self { named: named.to_owned(), folder: named.to_owned(), stored: None });
         };
         let folder = std::env::temp_dir().join(format!("wayword-{}", worker_name()));
-        own_folder(&folder).map_err(Error::io(&folder, "make a folder for temporary files"))?;
-        let stored = StoredRun::open(address, &folder)?;
+        own_folder(&folder).map_err(CommandError::io(&folder, "make a folder for temporary files"))?;
+        let stored = CloudRun::open(address, &folder)?;
         let place = Self { named: named.to_owned(), folder, stored: Some(stored) };
-        place.with(|stored| {
+        place.with_store(|stored| {
             stored.fetch_file(PLAN)?;
-            stored.fetch_file(WAY)
+            stored.fetch_file(WORKERS_FILE)
         })?;
         Ok(place)
     }
@@ -43,20 +43,20 @@ impl RunPlace {
     ///
     /// # Errors
     /// When the place is a folder already, the folder has another run, or the run cannot be fetched.
-    pub fn fetch(named: &Path, to: &Path, output: &Output) -> Result<(), Error> {
-        let Some(address) = address(named) else {
-            return Err(Error::usage(
+    pub fn fetch_run(named: &Path, to: &Path, output: &CommandOutput) -> Result<(), CommandError> {
+        let Some(address) = store_address(named) else {
+            return Err(CommandError::usage(
                 "--to is for a run in an object store",
                 "leave it out: a run in a folder is merged there",
             ));
         };
-        if is_begun(to) && Plan::find(to)?.is_none() {
+        if is_begun(to) && ChunkPlan::find_plan(to)?.is_none() {
             let problem = format!("{} holds a run that one machine makes", to.display());
-            return Err(Error::usage(problem, "give another folder"));
+            return Err(CommandError::usage(problem, "give another folder"));
         }
-        let stored = StoredRun::open(address, to)?;
-        let bar = output.progress(0, "chunks");
-        stored.fetch(&|done, all| {
+        let stored = CloudRun::open(address, to)?;
+        let bar = output.progress_bar(0, "chunks");
+        stored.fetch_run(&|done, all| {
             bar.set_length(all as u64);
             bar.set_position(done as u64);
         })?;
@@ -70,7 +70,7 @@ impl RunPlace {
     }
 
     /// The place as the user named it, for messages.
-    pub fn named(&self) -> &Path {
+    pub fn shown_path(&self) -> &Path {
         &self.named
     }
 
@@ -79,7 +79,7 @@ impl RunPlace {
         self.stored.is_some()
     }
 
-    fn with(&self, work: impl FnOnce(&StoredRun) -> Result<(), QueueError>) -> Result<(), Error> {
+    fn with_store(&self, work: impl FnOnce(&CloudRun) -> Result<(), QueueError>) -> Result<(), CommandError> {
         Ok(self.stored.as_ref().map_or(Ok(()), work)?)
     }
 
@@ -87,8 +87,8 @@ impl RunPlace {
     ///
     /// # Errors
     /// When it does not, or cannot be used.
-    pub(crate) fn check(&self) -> Result<(), Error> {
-        self.with(StoredRun::check)
+    pub(crate) fn check_store(&self) -> Result<(), CommandError> {
+        self.with_store(CloudRun::check_store)
     }
 
     /// Sends a file that must be the same for all workers (the plan, or how chunks are handed out). If another worker has sent
@@ -96,39 +96,39 @@ impl RunPlace {
     ///
     /// # Errors
     /// When the store cannot be used.
-    pub(crate) fn publish(&self, file: &str) -> Result<(), Error> {
-        self.with(|stored| stored.publish(file))
+    pub(crate) fn publish_file(&self, file: &str) -> Result<(), CommandError> {
+        self.with_store(|stored| stored.publish_file(file))
     }
 
     /// Fetches the marks of finished chunks, in place of those of this folder.
     ///
     /// # Errors
     /// When the store cannot be used.
-    pub fn fetch_marks(&self, plan: &Plan) -> Result<(), Error> {
-        self.with(|stored| stored.fetch_marks(plan))
+    pub fn fetch_marks(&self, plan: &ChunkPlan) -> Result<(), CommandError> {
+        self.with_store(|stored| stored.fetch_marks(plan))
     }
 
     /// Sends the marks that killed workers of a queue did not send.
     ///
     /// # Errors
     /// When the store cannot be used.
-    pub(crate) fn send_marks(&self, plan: &Plan) -> Result<(), Error> {
-        self.with(|stored| stored.send_marks(plan))
+    pub(crate) fn send_marks(&self, plan: &ChunkPlan) -> Result<(), CommandError> {
+        self.with_store(|stored| stored.send_marks(plan))
     }
 
     /// Removes marks of chunks that are to be made again.
     ///
     /// # Errors
     /// When the store cannot be used.
-    pub fn reopen(&self, chunks: &[usize]) -> Result<(), Error> {
-        self.with(|stored| chunks.iter().try_for_each(|chunk| stored.reopen(*chunk)))
+    pub fn reopen_chunks(&self, chunks: &[usize]) -> Result<(), CommandError> {
+        self.with_store(|stored| chunks.iter().try_for_each(|chunk| stored.reopen_chunk(*chunk)))
     }
 
     /// Runs `work` with a board. If the run is in an object store, each chunk is sent before the board marks it as finished.
-    pub(crate) fn sending<T>(&self, board: &dyn Board, work: impl FnOnce(&dyn Board) -> T) -> T {
+    pub(crate) fn with_sending<T>(&self, board: &dyn ChunkBoard, work: impl FnOnce(&dyn ChunkBoard) -> T) -> T {
         match &self.stored {
             None => work(board),
-            Some(stored) => work(&stored.sending(board)),
+            Some(stored) => work(&stored.sending_board(board)),
         }
     }
 }

@@ -2,7 +2,7 @@
 
 mod file;
 
-use crate::{error::Error, output::Output};
+use crate::{error::CommandError, output::CommandOutput};
 use file::LineFile;
 use serde::Serialize;
 use serde_json::{Map, Value};
@@ -21,7 +21,7 @@ use tracing::{
 use tracing_subscriber::{Layer, layer::Context, registry::LookupSpan};
 
 /// Writes spans as lines of JSON.
-pub(super) struct Lines {
+pub(super) struct SpanLines {
     file: LineFile,
     /// The first span's id.
     first: u64,
@@ -31,7 +31,7 @@ pub(super) struct Lines {
 
 /// A line. Times are by this machine's clock.
 #[derive(Serialize)]
-struct Line<'a> {
+struct SpanLine<'a> {
     name: &'static str,
     id: String,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -42,20 +42,20 @@ struct Line<'a> {
 }
 
 /// A span that has not ended.
-struct Open {
+struct OpenSpan {
     id: u64,
     parent: Option<u64>,
     start_unix_s: f64,
     since: Instant,
-    fields: Fields,
+    fields: SpanFields,
 }
 
-impl Lines {
+impl SpanLines {
     /// Begins this worker's file in the folder. `None` if the disk is full, after a warning.
     ///
     /// # Errors
     /// When the file cannot be made for another reason.
-    pub(super) fn begin(folder: &Path, worker: &str, output: &Output) -> Result<Option<Self>, Error> {
+    pub(super) fn begin(folder: &Path, worker: &str, output: &CommandOutput) -> Result<Option<Self>, CommandError> {
         let file = LineFile::begin(&folder.join(format!("{worker}.jsonl")), output)?;
         Ok(file.map(|file| Self { file, first: first_id(worker), spans: AtomicU64::new(0) }))
     }
@@ -71,36 +71,36 @@ fn first_id(worker: &str) -> u64 {
     Sha256::digest(worker).iter().take(8).fold(0, |id, byte| id << 8 | u64::from(*byte))
 }
 
-fn hex(id: u64) -> String {
+fn hex_id(id: u64) -> String {
     format!("{id:016x}")
 }
 
-impl<S: Subscriber + for<'a> LookupSpan<'a>> Layer<S> for Lines {
+impl<S: Subscriber + for<'a> LookupSpan<'a>> Layer<S> for SpanLines {
     fn on_new_span(&self, attributes: &Attributes<'_>, id: &Id, context: Context<'_, S>) {
         let Some(span) = context.span(id) else { return };
-        let parent = span.parent().and_then(|parent| parent.extensions().get::<Open>().map(|open| open.id));
+        let parent = span.parent().and_then(|parent| parent.extensions().get::<OpenSpan>().map(|open| open.id));
         let start_unix_s = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0.0, |since| since.as_secs_f64());
-        let mut fields = Fields::default();
+        let mut fields = SpanFields::default();
         attributes.record(&mut fields);
-        let open = Open { id: self.next_id(), parent, start_unix_s, since: Instant::now(), fields };
+        let open = OpenSpan { id: self.next_id(), parent, start_unix_s, since: Instant::now(), fields };
         span.extensions_mut().insert(open);
     }
 
     fn on_record(&self, id: &Id, values: &Record<'_>, context: Context<'_, S>) {
         let Some(span) = context.span(id) else { return };
-        if let Some(open) = span.extensions_mut().get_mut::<Open>() {
+        if let Some(open) = span.extensions_mut().get_mut::<OpenSpan>() {
             values.record(&mut open.fields);
         }
     }
 
     fn on_close(&self, id: Id, context: Context<'_, S>) {
         let Some(span) = context.span(&id) else { return };
-        let Some(open) = span.extensions_mut().remove::<Open>() else { return };
-        let Open { id, parent, start_unix_s, since, fields } = open;
-        let line = Line {
+        let Some(open) = span.extensions_mut().remove::<OpenSpan>() else { return };
+        let OpenSpan { id, parent, start_unix_s, since, fields } = open;
+        let line = SpanLine {
             name: span.name(),
-            id: hex(id),
-            parent: parent.map(hex),
+            id: hex_id(id),
+            parent: parent.map(hex_id),
             start_unix_s,
             duration_s: since.elapsed().as_secs_f64(),
             fields: &fields.0,
@@ -111,10 +111,10 @@ impl<S: Subscriber + for<'a> LookupSpan<'a>> Layer<S> for Lines {
 
 /// The fields of a span, in the order in which they became known.
 #[derive(Default)]
-struct Fields(Map<String, Value>);
+struct SpanFields(Map<String, Value>);
 
-impl Fields {
-    fn put(&mut self, field: &Field, value: impl Into<Value>) {
+impl SpanFields {
+    fn put_field(&mut self, field: &Field, value: impl Into<Value>) {
         // Fields for OpenTelemetry repeat other fields.
         if !field.name().starts_with("otel.") {
             self.0.insert(field.name().to_owned(), value.into());
@@ -122,29 +122,29 @@ impl Fields {
     }
 }
 
-impl Visit for Fields {
+impl Visit for SpanFields {
     fn record_debug(&mut self, field: &Field, value: &dyn fmt::Debug) {
-        self.put(field, format!("{value:?}"));
+        self.put_field(field, format!("{value:?}"));
     }
 
     fn record_str(&mut self, field: &Field, value: &str) {
-        self.put(field, value);
+        self.put_field(field, value);
     }
 
     fn record_bool(&mut self, field: &Field, value: bool) {
-        self.put(field, value);
+        self.put_field(field, value);
     }
 
     fn record_i64(&mut self, field: &Field, value: i64) {
-        self.put(field, value);
+        self.put_field(field, value);
     }
 
     fn record_u64(&mut self, field: &Field, value: u64) {
-        self.put(field, value);
+        self.put_field(field, value);
     }
 
     fn record_f64(&mut self, field: &Field, value: f64) {
-        self.put(field, value);
+        self.put_field(field, value);
     }
 }
 
@@ -156,6 +156,6 @@ mod tests {
     fn ids_of_workers_are_far_apart() {
         let [a, b] = ["node-1-a", "node-1-b"].map(first_id);
         assert!(a.abs_diff(b) > 1 << 32, "{a:x} {b:x}");
-        assert_eq!(hex(10), "000000000000000a");
+        assert_eq!(hex_id(10), "000000000000000a");
     }
 }

@@ -1,21 +1,21 @@
 //! Replaces `telemetry/` in a build without that feature.
 
-use crate::output::Output;
+use crate::output::CommandOutput;
 use tracing_subscriber::layer::Identity;
 
 /// Has no values, because this build cannot reach a collector.
-pub(super) enum Telemetry {}
+pub(super) enum SpanTelemetry {}
 
-impl Telemetry {
-    pub(super) fn start(_: &str, _: &Output) -> Option<Self> {
+impl SpanTelemetry {
+    pub(super) fn start(_: &str, _: &CommandOutput) -> Option<Self> {
         None
     }
 
-    pub(super) fn layer(&self) -> Identity {
+    pub(super) fn tracing_layer(&self) -> Identity {
         match *self {}
     }
 
-    pub(super) fn end(self) {
+    pub(super) fn send_rest(self) {
         match self {}
     }
 }

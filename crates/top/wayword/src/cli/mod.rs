@@ -1,24 +1,24 @@
 //! The command line: global flags and the list of commands, parsed by clap.
 
 use crate::{
-    demo::Demo, doctor::args::Doctor, house::args::House, launch::args::Launch, ledger::args::Ledger,
-    models_args::Models, report_command::Report, runs::args::Runs,
+    demo::DemoArgs, doctor::args::DoctorArgs, house::args::HouseArgs, launch::args::LaunchArgs,
+    ledger::args::LedgerArgs, models_args::ModelsArgs, report_command::ReportArgs, runs::args::RunsArgs,
 };
 use clap::{Parser, Subcommand};
 use wayword_experiments::{
-    compare::args::Compare, evaluate::args::Evaluate, perceive::args::Perceive, robustness::args::Robustness,
-    similarity::args::Similarity, study_args::Study,
+    compare::args::CompareArgs, evaluate::args::EvaluateArgs, perceive::args::PerceiveArgs,
+    robustness::args::RobustnessArgs, similarity::args::SimilarityArgs, study_args::StudyArgs,
 };
-use wayword_report::{export::args::Export, view::args::View};
-use wayword_run::{calibrate::Calibrate, check::args::Check, generate::args::Generate};
+use wayword_report::{export::args::ExportArgs, view::args::ViewArgs};
+use wayword_run::{calibrate::CalibrateArgs, check::args::CheckArgs, generate::args::GenerateArgs};
 
 /// Writes and checks wayfinding instructions, as a person would give them to a robot, for any simulator.
 #[derive(Debug, Parser)]
-#[command(version, after_long_help = EXAMPLES)]
-pub struct Cli {
+#[command(version, after_long_help = HELP_EXAMPLES)]
+pub struct WaywordCli {
     /// What to do.
     #[command(subcommand)]
-    pub command: Command,
+    pub command: WaywordCommand,
     /// Print the result as JSON on standard output.
     #[arg(long, global = true)]
     pub json: bool,
@@ -27,7 +27,7 @@ pub struct Cli {
     pub quiet: bool,
 }
 
-const EXAMPLES: &str = "\
+const HELP_EXAMPLES: &str = "\
 Examples:
   wayword demo
       Write instructions in two styles for a path through a generated house. Then look at wayword-demo/report.html.
@@ -56,47 +56,47 @@ Exit codes:
 
 /// The commands.
 #[derive(Debug, Subcommand)]
-pub enum Command {
+pub enum WaywordCommand {
     /// Write instructions for a path through a generated house, offline.
-    Demo(Demo),
+    Demo(DemoArgs),
     /// Write instructions for paths, check them, and repair or reject those that fail.
-    Generate(Box<Generate>),
+    Generate(Box<GenerateArgs>),
     /// Check anyone's instructions against what their paths show.
-    Check(Check),
+    Check(CheckArgs),
     /// Learn from people's texts how far labels agree with single names of objects and rooms.
-    Calibrate(Calibrate),
+    Calibrate(CalibrateArgs),
     /// Write a run as one file, in the format of R2R, REVERIE, RxR, VLN-CE or Wayword.
-    Export(Box<Export>),
+    Export(Box<ExportArgs>),
     /// Write a run as HTML pages: map, frames, dialogue, captions, instructions and checks.
-    Report(Report),
+    Report(ReportArgs),
     /// Measure captions against the labels of their views: objects named rightly, hallucinated objects, calls.
-    Perceive(Box<Perceive>),
+    Perceive(Box<PerceiveArgs>),
     /// Measure how similar two sets of instructions are, compared with two people and with random pairs.
-    Similarity(Similarity),
+    Similarity(SimilarityArgs),
     /// Let agents follow several sets of instructions, and compare how often each set leads them to the goal.
-    Compare(Box<Compare>),
+    Compare(Box<CompareArgs>),
     /// Score anyone's trajectories as the evaluators of R2R and REVERIE do, with confidence intervals.
-    Evaluate(Evaluate),
+    Evaluate(EvaluateArgs),
     /// Write a run's texts again in changed worlds, and say how much of them changes.
-    Robustness(Box<Robustness>),
+    Robustness(Box<RobustnessArgs>),
     /// Let people walk by texts, rate them or choose between them, on a site of your own.
-    Study(Study),
+    Study(StudyArgs),
     /// Check keys, servers, models and data, and say how to fix what is wrong.
-    Doctor(Box<Doctor>),
+    Doctor(Box<DoctorArgs>),
     /// Show the kept calls to models, and what they cost.
-    Ledger(Ledger),
+    Ledger(LedgerArgs),
     /// List, fetch or locate the models that run inside this program.
-    Models(Models),
+    Models(ModelsArgs),
     /// List the platforms: what each needs and offers.
     Platforms,
     /// Draw a panorama, what is seen along a path, or a map.
-    View(View),
+    View(ViewArgs),
     /// Print what starts many workers: a script for Slurm, a manifest for Kubernetes.
-    Launch(Launch),
+    Launch(LaunchArgs),
     /// Look after a run that many workers make: status, putting together, trying again.
-    Runs(Runs),
+    Runs(RunsArgs),
     /// Save generated houses as a set of scenes that AI Habitat reads, with episodes that its agents walk.
-    House(House),
+    House(HouseArgs),
     /// Print shell completions.
     Completions {
         /// For which shell.
@@ -110,7 +110,7 @@ mod tests {
     use clap::Args;
     use std::collections::BTreeSet;
     use wayword_experiments::study_args::StudyCommand;
-    use wayword_run::settings::Asked;
+    use wayword_run::settings::AskedSettings;
 
     /// Flags of `generate` that have no key in a settings file.
     const FLAGS_ALONE: [&str; 10] =
@@ -120,14 +120,14 @@ mod tests {
 
     /// The keys that a table of a settings file may have, as the error about another one lists them.
     fn keys(table: &str) -> Vec<String> {
-        let error = toml::from_str::<Asked>(&format!("{table}\nno-such-key = 1")).unwrap_err().to_string();
+        let error = toml::from_str::<AskedSettings>(&format!("{table}\nno-such-key = 1")).unwrap_err().to_string();
         let (_, known) = error.split_once("expected one of ").unwrap();
         known.split('`').skip(1).step_by(2).map(str::to_owned).collect()
     }
 
     #[test]
     fn settings_file_keys_and_flags_correspond() {
-        let generate = Generate::augment_args(clap::Command::new("generate"));
+        let generate = GenerateArgs::augment_args(clap::Command::new("generate"));
         let flags = generate.get_arguments().map(|flag| flag.get_long().unwrap().replace('-', "_"));
         let flags: BTreeSet<String> = flags.chain(TABLES.map(str::to_owned)).collect();
         let keys = ["", "[roles]", "[service]"].into_iter().flat_map(keys);
@@ -139,8 +139,8 @@ mod tests {
     #[test]
     fn a_participant_whose_id_begins_with_a_hyphen_can_be_forgotten() {
         let typed = ["wayword", "study", "forget", "study", "--participant", "-HuqVrYIytaJwRfGxaH5Pw", "--dry-run"];
-        let Command::Study(Study { command: StudyCommand::Forget(forget) }) =
-            Cli::try_parse_from(typed).unwrap().command
+        let WaywordCommand::Study(StudyArgs { command: StudyCommand::Forget(forget) }) =
+            WaywordCli::try_parse_from(typed).unwrap().command
         else {
             panic!("not read as forget");
         };

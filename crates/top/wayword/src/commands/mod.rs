@@ -2,52 +2,56 @@
 
 #[cfg(feature = "local")]
 use crate::models;
-use crate::{cli::Command, completions, demo, doctor, house, launch, ledger, platform_list, report_command, runs};
+use crate::{
+    cli::WaywordCommand, completions, demo, doctor, house, launch, ledger, platform_list, report_command, runs,
+};
 #[cfg(feature = "study")]
 use wayword_experiments::study;
 use wayword_experiments::{compare, evaluate, perceive, robustness, similarity};
 use wayword_report::{export, view};
 use wayword_run::{
     calibrate, check,
-    error::{Error, Exit},
+    error::{CommandError, Exit},
     generate,
-    output::Output,
+    output::CommandOutput,
 };
 
 /// Runs a command.
 ///
 /// # Errors
 /// The error of the command. The caller prints it.
-pub fn run(command: Command, output: &Output) -> Result<Exit, Error> {
+pub fn run_command(command: WaywordCommand, output: &CommandOutput) -> Result<Exit, CommandError> {
     match command {
-        Command::Demo(args) => demo::run(&args, output),
-        Command::Generate(args) => generate::run(&args, output),
-        Command::Check(args) => check::run(&args, output),
-        Command::Calibrate(args) => calibrate::run(&args, output),
-        Command::Export(args) => export::run(&args, output),
-        Command::Report(args) => report_command::run(&args, output),
-        Command::Compare(args) => compare::compared(&args, output),
-        Command::Evaluate(args) => evaluate::run(&args, output),
-        Command::Perceive(args) => perceive::run(&args, output),
-        Command::Robustness(args) => robustness::run(&args, output),
-        Command::Similarity(args) => similarity::run(&args, output),
+        WaywordCommand::Demo(args) => demo::run_demo(&args, output),
+        WaywordCommand::Generate(args) => generate::run_generate(&args, output),
+        WaywordCommand::Check(args) => check::run_check(&args, output),
+        WaywordCommand::Calibrate(args) => calibrate::run_calibrate(&args, output),
+        WaywordCommand::Export(args) => export::run_export(&args, output),
+        WaywordCommand::Report(args) => report_command::run_report(&args, output),
+        WaywordCommand::Compare(args) => compare::run_comparison(&args, output),
+        WaywordCommand::Evaluate(args) => evaluate::run_evaluate(&args, output),
+        WaywordCommand::Perceive(args) => perceive::run_perceive(&args, output),
+        WaywordCommand::Robustness(args) => robustness::run_robustness(&args, output),
+        WaywordCommand::Similarity(args) => similarity::run_similarity(&args, output),
         #[cfg(feature = "study")]
-        Command::Study(args) => study::run(&args, output),
+        WaywordCommand::Study(args) => study::run_study(&args, output),
         #[cfg(not(feature = "study"))]
-        Command::Study(_) => Err(Error::not_built("there are no studies: this build has no site for them")),
-        Command::Doctor(args) => doctor::run(&args, output),
-        Command::Ledger(args) => ledger::run(&args, output),
-        #[cfg(feature = "local")]
-        Command::Models(args) => models::run(&args, output),
-        #[cfg(not(feature = "local"))]
-        Command::Models(_) => {
-            Err(Error::not_built("models cannot be fetched or listed: this build runs none in process"))
+        WaywordCommand::Study(_) => {
+            Err(CommandError::not_built("there are no studies: this build has no site for them"))
         }
-        Command::Platforms => platform_list::run(output),
-        Command::View(args) => view::run(&args, output),
-        Command::Launch(args) => launch::run(&args, output),
-        Command::Runs(args) => runs::run(&args, output),
-        Command::House(args) => house::run(&args, output),
-        Command::Completions { shell } => completions::run(shell),
+        WaywordCommand::Doctor(args) => doctor::run_doctor(&args, output),
+        WaywordCommand::Ledger(args) => ledger::run_ledger(&args, output),
+        #[cfg(feature = "local")]
+        WaywordCommand::Models(args) => models::run_models(&args, output),
+        #[cfg(not(feature = "local"))]
+        WaywordCommand::Models(_) => {
+            Err(CommandError::not_built("models cannot be fetched or listed: this build runs none in process"))
+        }
+        WaywordCommand::Platforms => platform_list::list_platforms(output),
+        WaywordCommand::View(args) => view::run_view(&args, output),
+        WaywordCommand::Launch(args) => launch::run_launch(&args, output),
+        WaywordCommand::Runs(args) => runs::run_runs(&args, output),
+        WaywordCommand::House(args) => house::run_house(&args, output),
+        WaywordCommand::Completions { shell } => completions::print_completions(shell),
     }
 }

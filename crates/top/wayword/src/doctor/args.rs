@@ -2,7 +2,7 @@
 
 use clap::Args;
 use std::path::PathBuf;
-use wayword_run::settings::{Asked, AskedPlatform, AskedRoles, Service};
+use wayword_run::settings::{AskedPlatform, AskedRoles, AskedSettings, Service};
 
 /// `wayword doctor`.
 #[derive(Debug, Args)]
@@ -12,7 +12,7 @@ Examples:
   wayword doctor --see server/llava --base-url http://127.0.0.1:8000/v1
   wayword doctor --platform matterport --data DATA
   wayword doctor --platform habitat --data SCENES --connectivity GRAPHS --scenes")]
-pub struct Doctor {
+pub struct DoctorArgs {
     /// Settings as TOML, as `generate` takes them. A flag wins over the file.
     #[arg(long, value_name = "FILE")]
     pub config: Option<PathBuf>,
@@ -31,15 +31,15 @@ pub struct Doctor {
     pub service: Service,
 }
 
-impl Doctor {
+impl DoctorArgs {
     /// These flags as the settings of a run.
     #[must_use]
-    pub fn asked(&self) -> Asked {
-        Asked {
+    pub fn to_asked(&self) -> AskedSettings {
+        AskedSettings {
             platform: self.platform.clone(),
             roles: self.roles.clone(),
             service: self.service.clone(),
-            ..Asked::default()
+            ..AskedSettings::default()
         }
     }
 }

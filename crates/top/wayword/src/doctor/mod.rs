@@ -4,29 +4,29 @@
 pub mod args;
 mod scenes;
 
-use crate::doctor::args::Doctor;
+use crate::doctor::args::DoctorArgs;
 use serde::Serialize;
 use std::fmt;
 use wayword_checks::Evidence;
-use wayword_core::{Condition, Gaze, Path};
-use wayword_remote::Level;
+use wayword_core::{Path, SceneCondition, ViewGaze};
+use wayword_remote::CheckLevel;
 use wayword_run::{
-    calls::Calls,
-    count::count,
-    error::{Error, Exit},
-    item::items,
-    output::Output,
+    calls::ModelCalls,
+    count::count_phrase,
+    error::{CommandError, Exit},
+    item::run_items,
+    output::CommandOutput,
     platforms,
     run_folder::fresh_id,
-    settings::{LABELS, Settings, is_model},
+    settings::{LABELS_ROLE, RunSettings, is_model},
     settings_file as config,
-    team::prompts,
+    team::settings_prompts,
 };
 
 /// The severity of a finding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-enum Grade {
+enum DoctorGrade {
     Ok,
     Warning,
     Problem,
@@ -34,8 +34,8 @@ enum Grade {
 
 /// The result of one check.
 #[derive(Debug, Serialize)]
-struct Finding {
-    state: Grade,
+struct DoctorFinding {
+    state: DoctorGrade,
     about: String,
     told: String,
     /// How to fix it.
@@ -45,45 +45,47 @@ struct Finding {
 
 /// The results of all checks.
 #[derive(Debug, Serialize)]
-struct Report {
+struct DoctorReport {
     /// The findings, in the order of the checks.
-    findings: Vec<Finding>,
+    findings: Vec<DoctorFinding>,
     /// The scenes of the data, if they were to be examined.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    scenes: Vec<Condition>,
+    scenes: Vec<SceneCondition>,
 }
 
-pub fn run(args: &Doctor, output: &Output) -> Result<Exit, Error> {
-    let mut job = args.asked().or(config::read(args.config.as_deref())?).job()?;
+pub fn run_doctor(args: &DoctorArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
+    let mut job = args.to_asked().or_file(config::read_settings(args.config.as_deref())?).into_job()?;
     let mut findings = Vec::new();
     let mut examined = Ok(Vec::new());
     if args.scenes {
-        examined = scenes::examine(&mut job.settings, output);
-        findings.extend(scenes::findings(&examined));
+        examined = scenes::examine_run_scenes(&mut job.settings, output);
+        findings.extend(scenes::scene_findings(&examined));
     }
     findings.push(world_finding(&job.settings));
     if job.settings.roles.prompts.is_some() {
-        findings.push(match prompts(&job.settings) {
-            Ok(prompts) => ok("prompts", format!("every template can be filled; their hash is {}", prompts.hash())),
-            Err(error) => problem("prompts", &error),
+        findings.push(match settings_prompts(&job.settings) {
+            Ok(prompts) => {
+                ok_finding("prompts", format!("every template can be filled; their hash is {}", prompts.hash()))
+            }
+            Err(error) => problem_finding("prompts", &error),
         });
     }
-    match Calls::open(&job, &fresh_id("doctor"), output) {
-        Err(error) => findings.push(problem("models", &error)),
+    match ModelCalls::open(&job, &fresh_id("doctor"), output) {
+        Err(error) => findings.push(problem_finding("models", &error)),
         Ok(None) => {
             let none = "no model is named, so ground-truth labels answer, and rules ask and write; name models with \
                         --llm and --see";
-            findings.push(ok("models", none.to_owned()));
+            findings.push(ok_finding("models", none.to_owned()));
         }
         Ok(Some(calls)) => {
-            for model in job.settings.roles.models() {
+            for model in job.settings.roles.model_names() {
                 output.say(format_args!("asking {model} ..."));
                 let sees = job.settings.roles.see == model;
-                findings.extend(calls.check(model, sees).into_iter().map(|found| Finding {
+                findings.extend(calls.check_model(model, sees).into_iter().map(|found| DoctorFinding {
                     state: match found.level {
-                        Level::Ok => Grade::Ok,
-                        Level::Warning => Grade::Warning,
-                        Level::Problem => Grade::Problem,
+                        CheckLevel::Ok => DoctorGrade::Ok,
+                        CheckLevel::Warning => DoctorGrade::Warning,
+                        CheckLevel::Problem => DoctorGrade::Problem,
                     },
                     about: model.to_owned(),
                     told: found.what,
@@ -92,52 +94,53 @@ pub fn run(args: &Doctor, output: &Output) -> Result<Exit, Error> {
             }
         }
     }
-    let report = Report { findings, scenes: examined.unwrap_or_default() };
-    output.data(&report, &report);
-    let problems = report.findings.iter().any(|finding| finding.state == Grade::Problem);
+    let report = DoctorReport { findings, scenes: examined.unwrap_or_default() };
+    output.print_result(&report, &report);
+    let problems = report.findings.iter().any(|finding| finding.state == DoctorGrade::Problem);
     Ok(if problems { Exit::BadInput } else { Exit::Done })
 }
 
-fn ok(about: &str, told: String) -> Finding {
-    Finding { state: Grade::Ok, about: about.to_owned(), told, hint: None }
+fn ok_finding(about: &str, told: String) -> DoctorFinding {
+    DoctorFinding { state: DoctorGrade::Ok, about: about.to_owned(), told, hint: None }
 }
 
-fn problem(about: &str, error: &Error) -> Finding {
+fn problem_finding(about: &str, error: &CommandError) -> DoctorFinding {
     let text = error.to_string();
     let (told, hint) = text.split_once("\nhint: ").unwrap_or((&text, ""));
     let hint = (!hint.is_empty()).then(|| hint.to_owned());
-    Finding { state: Grade::Problem, about: about.to_owned(), told: told.to_owned(), hint }
+    DoctorFinding { state: DoctorGrade::Problem, about: about.to_owned(), told: told.to_owned(), hint }
 }
 
 /// Opens the platform and takes one view.
-fn world_finding(settings: &Settings) -> Finding {
+fn world_finding(settings: &RunSettings) -> DoctorFinding {
     let about = format!("platform {}", settings.platform);
-    let look = || -> Result<Seen, Error> {
-        let platform = platforms::open(settings)?;
-        let one = Settings { limit: Some(1), ..settings.clone() };
-        let items = items(&one, platform.as_ref())?;
-        let path = items[0].path(settings, platform.as_ref())?;
-        let view = platform.look(&path.scene, &path.frames[0], Gaze::quarter(path.frames[0].pose.heading))?;
+    let look = || -> Result<ModelExamination, CommandError> {
+        let platform = platforms::open_platform(settings)?;
+        let one = RunSettings { limit: Some(1), ..settings.clone() };
+        let items = run_items(&one, platform.as_ref())?;
+        let path = items[0].find_path(settings, platform.as_ref())?;
+        let view =
+            platform.look_from(&path.scene, &path.frames[0], ViewGaze::quarter_view(path.frames[0].pose.heading))?;
         let picture = view.image.is_some();
         let one = Path { frames: vec![path.frames[0].clone()], ..path };
         let labels = Evidence::from_labels(&one, &[vec![view]]).is_some();
-        Ok(Seen { scenes: platform.scenes()?.len(), picture, labels })
+        Ok(ModelExamination { scenes: platform.list_scenes()?.len(), picture, labels })
     };
     match look() {
-        Err(error) => problem(&about, &error),
-        Ok(seen) => seen.finding(about, settings),
+        Err(error) => problem_finding(&about, &error),
+        Ok(seen) => seen.to_finding(about, settings),
     }
 }
 
 /// The number of scenes, and whether the first view has a picture and labels.
-struct Seen {
+struct ModelExamination {
     scenes: usize,
     picture: bool,
     labels: bool,
 }
 
-impl Seen {
-    fn finding(&self, about: String, settings: &Settings) -> Finding {
+impl ModelExamination {
+    fn to_finding(&self, about: String, settings: &RunSettings) -> DoctorFinding {
         let Self { scenes, picture, labels } = *self;
         let has = match (picture, labels) {
             (true, true) => "a picture and labels",
@@ -145,27 +148,27 @@ impl Seen {
             (false, true) => "labels, but no picture",
             (false, false) => "neither a picture nor labels",
         };
-        let told = format!("{}; its first view has {has}", count(scenes, "scene"));
+        let told = format!("{}; its first view has {has}", count_phrase(scenes, "scene"));
         let see = &settings.roles.see;
         let hint = if is_model(see) && !picture {
             Some(format!("{see} needs pictures: add them to the data folder, or use --see labels"))
-        } else if see == LABELS && !labels {
+        } else if see == LABELS_ROLE && !labels {
             Some("name a model that sees: --see provider/model".to_owned())
         } else {
             None
         };
-        let state = if hint.is_some() { Grade::Problem } else { Grade::Ok };
-        Finding { state, about, told, hint }
+        let state = if hint.is_some() { DoctorGrade::Problem } else { DoctorGrade::Ok };
+        DoctorFinding { state, about, told, hint }
     }
 }
 
-impl fmt::Display for Report {
+impl fmt::Display for DoctorReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (at, finding) in self.findings.iter().enumerate() {
             let mark = match finding.state {
-                Grade::Ok => "ok      ",
-                Grade::Warning => "warning ",
-                Grade::Problem => "PROBLEM ",
+                DoctorGrade::Ok => "ok      ",
+                DoctorGrade::Warning => "warning ",
+                DoctorGrade::Problem => "PROBLEM ",
             };
             let end = if at > 0 { "\n" } else { "" };
             write!(f, "{end}{mark} {}: {}", finding.about, finding.told)?;

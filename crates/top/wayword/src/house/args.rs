@@ -13,7 +13,7 @@ Examples:
 
 Habitat reads the folder: habitat-lab walks its episodes with the configuration in vln.yaml, and the platform habitat of this
 program takes it as --data.")]
-pub struct House {
+pub struct HouseArgs {
     /// Seed of the first house.
     #[arg(long, default_value_t = 0)]
     pub seed: u64,

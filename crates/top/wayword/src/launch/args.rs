@@ -18,7 +18,7 @@ Workers without --queue get their parts by --shard. A worker's exit codes:
   5  the budget is spent, or a key was refused
   6  stopped by a signal; its work was handed back
   7  the simulator, a service or the disk failed; it is tried again a few times")]
-pub struct Launch {
+pub struct LaunchArgs {
     /// Where.
     #[command(subcommand)]
     pub command: LaunchCommand,
@@ -104,10 +104,10 @@ pub struct LaunchKubernetes {
     pub namespace: Option<String>,
     /// The folder that all workers share: a PersistentVolumeClaim, and where it is mounted.
     #[arg(long, value_name = "CLAIM=DIR")]
-    pub shared_claim: Option<Pair>,
+    pub shared_claim: Option<LaunchPair>,
     /// An environment variable from a secret. May be given several times.
     #[arg(long, value_name = "VARIABLE=SECRET/KEY")]
-    pub secret: Vec<Pair>,
+    pub secret: Vec<LaunchPair>,
     /// The password file of PostgreSQL, from a secret. PGPASSFILE names it.
     #[arg(long, value_name = "SECRET/KEY")]
     pub pass_file: Option<String>,
@@ -118,14 +118,14 @@ pub struct LaunchKubernetes {
 
 /// Two words with `=` between them.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Pair {
+pub struct LaunchPair {
     /// The first.
     pub left: String,
     /// The second.
     pub right: String,
 }
 
-impl FromStr for Pair {
+impl FromStr for LaunchPair {
     type Err = String;
 
     fn from_str(typed: &str) -> Result<Self, String> {

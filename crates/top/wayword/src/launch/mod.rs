@@ -1,7 +1,7 @@
 //! `wayword launch`: prints the script (Slurm) or manifest (Kubernetes) that starts many workers, or submits it.
 
 pub mod args;
-use crate::launch::args::{Launch, LaunchCommand, LaunchKubernetes, LaunchSlurm};
+use crate::launch::args::{LaunchArgs, LaunchCommand, LaunchKubernetes, LaunchSlurm};
 use serde_json::json;
 use std::{
     fs,
@@ -9,25 +9,25 @@ use std::{
     process::{Command, Stdio},
 };
 use wayword_queue::launch::{
-    Worker,
-    kubernetes::{KubernetesJob, SecretEnv, SecretFile, SharedFolder, manifest},
-    slurm::{SlurmJob, script},
+    LaunchWorker,
+    kubernetes::{KubernetesJob, SecretEnv, SecretFile, SharedFolder, write_manifest},
+    slurm::{SlurmJob, write_script},
 };
 use wayword_run::{
-    error::{Error, Exit},
-    output::Output,
+    error::{CommandError, Exit},
+    output::CommandOutput,
 };
 
-pub fn run(args: &Launch, output: &Output) -> Result<Exit, Error> {
+pub fn run_launch(args: &LaunchArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
     match &args.command {
-        LaunchCommand::Slurm(args) => slurm(args, output),
-        LaunchCommand::Kubernetes(args) => kubernetes(args, output),
+        LaunchCommand::Slurm(args) => launch_slurm(args, output),
+        LaunchCommand::Kubernetes(args) => launch_kubernetes(args, output),
     }
 }
 
-fn slurm(args: &LaunchSlurm, output: &Output) -> Result<Exit, Error> {
-    let worker = worker(&args.program, &args.arguments, args.workers)?;
-    let text = script(&SlurmJob {
+fn launch_slurm(args: &LaunchSlurm, output: &CommandOutput) -> Result<Exit, CommandError> {
+    let worker = make_worker(&args.program, &args.arguments, args.workers)?;
+    let text = write_script(&SlurmJob {
         name: args.name.clone(),
         gpus: args.gpus,
         cpus: args.cpus,
@@ -40,61 +40,65 @@ fn slurm(args: &LaunchSlurm, output: &Output) -> Result<Exit, Error> {
     })?;
     if args.submit {
         // Slurm starts no job if it cannot write its log.
-        fs::create_dir_all(&args.logs).map_err(Error::io(&args.logs, "make the folder of the logs"))?;
-        let told = submit(&text)?;
-        output.data(&json!({ "submitted": told }), &told);
+        fs::create_dir_all(&args.logs).map_err(CommandError::io(&args.logs, "make the folder of the logs"))?;
+        let told = submit_job(&text)?;
+        output.print_result(&json!({ "submitted": told }), &told);
     } else {
-        output.data(&json!({ "script": text }), &text);
+        output.print_result(&json!({ "script": text }), &text);
     }
     Ok(Exit::Done)
 }
 
-fn kubernetes(args: &LaunchKubernetes, output: &Output) -> Result<Exit, Error> {
+fn launch_kubernetes(args: &LaunchKubernetes, output: &CommandOutput) -> Result<Exit, CommandError> {
     let secret = |typed: &str, flag: &str| {
         let (secret, key) = typed.split_once('/').ok_or_else(|| {
-            Error::usage(format!("{flag}: there is no slash between the secret and its key"), "write SECRET/KEY")
+            CommandError::usage(format!("{flag}: there is no slash between the secret and its key"), "write SECRET/KEY")
         })?;
-        Ok::<_, Error>(SecretFile { secret: secret.to_owned(), key: key.to_owned() })
+        Ok::<_, CommandError>(SecretFile { secret: secret.to_owned(), key: key.to_owned() })
     };
     let variables = args.secret.iter().map(|pair| {
         let SecretFile { secret, key } = secret(&pair.right, "--secret")?;
         Ok(SecretEnv { name: pair.left.clone(), secret, key })
     });
     let shared = args.shared_claim.clone().map(|pair| SharedFolder { claim: pair.left, mount: pair.right });
-    let text = manifest(&KubernetesJob {
+    let text = write_manifest(&KubernetesJob {
         name: args.name.clone(),
         namespace: args.namespace.clone(),
         cpus: args.cpus.clone(),
         memory: args.memory.clone(),
         gpus: args.gpus,
         shared,
-        secrets: variables.collect::<Result<_, Error>>()?,
+        secrets: variables.collect::<Result<_, CommandError>>()?,
         pass_file: args.pass_file.as_deref().map(|typed| secret(typed, "--pass-file")).transpose()?,
         // The image starts the program by itself.
-        ..KubernetesJob::new(worker("", &args.arguments, args.workers)?, &args.image)
+        ..KubernetesJob::new(make_worker("", &args.arguments, args.workers)?, &args.image)
     })?;
-    output.data(&json!({ "manifest": text }), &text);
+    output.print_result(&json!({ "manifest": text }), &text);
     Ok(Exit::Done)
 }
 
 /// The command of each worker. Refuses anything but `generate` with a folder.
-fn worker(program: &str, arguments: &[String], workers: u32) -> Result<Worker, Error> {
+fn make_worker(program: &str, arguments: &[String], workers: u32) -> Result<LaunchWorker, CommandError> {
     if arguments.first().map(String::as_str) != Some("generate") {
-        return Err(Error::usage(
+        return Err(CommandError::usage(
             "only `generate` has workers",
             "write it after two hyphens, as in -- generate --out DIR",
         ));
     }
     let has = |flag: &str| arguments.iter().any(|typed| typed == flag || typed.starts_with(&format!("{flag}=")));
     if !has("--out") && !has("--config") {
-        return Err(Error::usage("the workers have no folder", "add --out DIR, a folder that all of them share"));
+        return Err(CommandError::usage(
+            "the workers have no folder",
+            "add --out DIR, a folder that all of them share",
+        ));
     }
-    Ok(Worker { program: program.to_owned(), arguments: arguments.to_vec(), workers })
+    Ok(LaunchWorker { program: program.to_owned(), arguments: arguments.to_vec(), workers })
 }
 
 /// Hands a script to sbatch, and returns its output.
-fn submit(script: &str) -> Result<String, Error> {
-    let failed = |problem: String| Error::usage(problem, "submit the printed script by hand: leave --submit out");
+fn submit_job(script: &str) -> Result<String, CommandError> {
+    let failed =
+        |problem: String| CommandError::usage(problem, "submit the printed script by hand: leave --submit out");
     let started = Command::new("sbatch").stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
     let mut sbatch = started.map_err(|error| failed(format!("sbatch cannot be started: {error}")))?;
     if let Some(mut input) = sbatch.stdin.take() {

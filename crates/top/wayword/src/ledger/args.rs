@@ -2,7 +2,7 @@
 
 use clap::{Args, Subcommand, ValueEnum};
 use std::path::PathBuf;
-use wayword_ledger::{By, Filter};
+use wayword_ledger::{CostGrouping, LedgerFilter};
 
 /// `wayword ledger`.
 #[derive(Debug, Args)]
@@ -13,7 +13,7 @@ Examples:
   wayword ledger export --out calls.jsonl
   wayword ledger prune --older-than-days 180
   wayword ledger prune --changed")]
-pub struct Ledger {
+pub struct LedgerArgs {
     /// What to do.
     #[command(subcommand)]
     pub command: LedgerCommand,
@@ -77,8 +77,8 @@ pub struct CallFilter {
 impl CallFilter {
     /// The filter that the ledger takes.
     #[must_use]
-    pub fn filter(&self) -> Filter {
-        Filter { model: self.model.clone(), run: self.run.clone(), ..Filter::default() }
+    pub fn to_filter(&self) -> LedgerFilter {
+        LedgerFilter { model: self.model.clone(), run: self.run.clone(), ..LedgerFilter::default() }
     }
 }
 
@@ -93,12 +93,12 @@ pub enum SumBy {
     Day,
 }
 
-impl From<SumBy> for By {
+impl From<SumBy> for CostGrouping {
     fn from(by: SumBy) -> Self {
         match by {
-            SumBy::Model => By::Model,
-            SumBy::Run => By::Run,
-            SumBy::Day => By::Day,
+            SumBy::Model => CostGrouping::Model,
+            SumBy::Run => CostGrouping::Run,
+            SumBy::Day => CostGrouping::Day,
         }
     }
 }

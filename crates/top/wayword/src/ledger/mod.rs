@@ -1,24 +1,24 @@
 //! `wayword ledger`: lists the calls that the ledger keeps, sums their cost, exports and drops them.
 
 pub mod args;
-use crate::ledger::args::{Ledger as Args, LedgerCommand};
+use crate::ledger::args::{LedgerArgs as Args, LedgerCommand};
 use serde::Serialize;
 use std::fmt;
-use wayword_ledger::{CostLine, Filter, Ledger, Row};
+use wayword_ledger::{CostLine, Ledger, LedgerEntry, LedgerFilter};
 use wayword_run::{
     calls::ledger_path,
-    count::count,
-    error::{Error, Exit},
-    output::Output,
+    count::count_phrase,
+    error::{CommandError, Exit},
+    output::CommandOutput,
     settings::Service,
 };
 
 const SECONDS_PER_DAY: u64 = 86_400;
 
-pub fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
+pub fn run_ledger(args: &Args, output: &CommandOutput) -> Result<Exit, CommandError> {
     let path = ledger_path(&Service { ledger: args.ledger.clone(), ..Service::default() })?;
     if !path.exists() {
-        return Err(Error::usage(
+        return Err(CommandError::usage(
             format!("{}: there is no ledger yet", path.display()),
             "the first command that asks a model makes it; if yours is elsewhere, give --ledger FILE",
         ));
@@ -26,39 +26,39 @@ pub fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
     let ledger = Ledger::open(&path)?;
     match &args.command {
         LedgerCommand::Show { filter, limit } => {
-            let rows = ledger.list(&Filter { limit: Some(*limit), ..filter.filter() })?;
-            let shown = Shown { rows };
-            output.data(&shown, &shown);
+            let rows = ledger.list_calls(&LedgerFilter { limit: Some(*limit), ..filter.to_filter() })?;
+            let shown = ShownCalls { rows };
+            output.print_result(&shown, &shown);
         }
         LedgerCommand::Cost { by } => {
-            let costs = Costs { lines: ledger.costs((*by).into())?, lost: ledger.lost()? };
-            output.data(&costs, &costs);
+            let costs = LedgerCosts { lines: ledger.sum_costs((*by).into())?, lost: ledger.count_lost_requests()? };
+            output.print_result(&costs, &costs);
         }
         LedgerCommand::Export { filter, out } => {
-            let rows = ledger.export_to(&filter.filter(), out)?;
-            let done = Done { ledger: path.display().to_string(), rows };
-            output.data(&done, format_args!("{} written to {}", count(rows, "call"), out.display()));
+            let rows = ledger.export_to(&filter.to_filter(), out)?;
+            let done = LedgerOutcome { ledger: path.display().to_string(), rows };
+            output.print_result(&done, format_args!("{} written to {}", count_phrase(rows, "call"), out.display()));
         }
         LedgerCommand::Prune { older_than_days, model, changed } => {
             if older_than_days.is_none() && model.is_none() && !changed {
-                return Err(Error::usage(
+                return Err(CommandError::usage(
                     "prune without a filter would empty the ledger",
                     "say which calls to drop: --older-than-days, --model or --changed",
                 ));
             }
-            let filter = Filter {
+            let filter = LedgerFilter {
                 older_than_s: older_than_days.map(|days| days.saturating_mul(SECONDS_PER_DAY)),
                 model: model.clone(),
-                ..Filter::default()
+                ..LedgerFilter::default()
             };
-            let rows = if *changed { ledger.prune_changed()? } else { ledger.prune(&filter)? };
-            let done = Done { ledger: path.display().to_string(), rows };
+            let rows = if *changed { ledger.prune_changed()? } else { ledger.prune_calls(&filter)? };
+            let done = LedgerOutcome { ledger: path.display().to_string(), rows };
             let then = if rows == 0 {
                 "the ledger holds none that match"
             } else {
                 "a run that needs them again pays for them again"
             };
-            output.data(&done, format_args!("{} dropped: {then}", count(rows, "call")));
+            output.print_result(&done, format_args!("{} dropped: {then}", count_phrase(rows, "call")));
         }
     }
     Ok(Exit::Done)
@@ -66,20 +66,20 @@ pub fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
 
 /// How many calls a command exported or dropped.
 #[derive(Serialize)]
-struct Done {
+struct LedgerOutcome {
     ledger: String,
     rows: usize,
 }
 
 #[derive(Serialize)]
-struct Shown {
-    rows: Vec<Row>,
+struct ShownCalls {
+    rows: Vec<LedgerEntry>,
 }
 
 /// Characters of an answer that a line shows.
 const SHOWN_CHARS: usize = 70;
 
-impl fmt::Display for Shown {
+impl fmt::Display for ShownCalls {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.rows.is_empty() {
             return write!(f, "0 calls: the ledger holds none that match");
@@ -94,18 +94,18 @@ impl fmt::Display for Shown {
                 row.call.model, row.answer.tokens_in, row.answer.tokens_out, row.answer.latency_ms
             )?;
         }
-        write!(f, "{}", count(self.rows.len(), "call"))
+        write!(f, "{}", count_phrase(self.rows.len(), "call"))
     }
 }
 
 #[derive(Serialize)]
-struct Costs {
+struct LedgerCosts {
     lines: Vec<CostLine>,
     /// Requests that were sent and got no answer that is known.
     lost: u64,
 }
 
-impl fmt::Display for Costs {
+impl fmt::Display for LedgerCosts {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.lines.is_empty() {
             writeln!(f, "the ledger holds no calls yet")?;
@@ -113,13 +113,13 @@ impl fmt::Display for Costs {
         for line in &self.lines {
             let unknown = match line.without_price {
                 0 => String::new(),
-                calls => format!(" and {}", count(calls, "call of unknown price")),
+                calls => format!(" and {}", count_phrase(calls, "call of unknown price")),
             };
             writeln!(
                 f,
                 "{:<40} {:>14}  {:>10} in  {:>10} out  ${:.4}{unknown}",
                 line.of,
-                count(line.calls, "call"),
+                count_phrase(line.calls, "call"),
                 line.tokens_in,
                 line.tokens_out,
                 line.usd
@@ -128,7 +128,7 @@ impl fmt::Display for Costs {
         match self.lost {
             0 => write!(f, "no request was lost (sent, but without a known answer)"),
             lost => {
-                let lost = count(lost, "request");
+                let lost = count_phrase(lost, "request");
                 write!(f, "{lost} lost (sent, but without a known answer); the provider may have charged for this")
             }
         }

@@ -1,50 +1,58 @@
 //! `wayword models`: lists, fetches and locates the files of models that run in process.
 
-use crate::models_args::{Models, ModelsCommand};
+use crate::models_args::{ModelsArgs, ModelsCommand};
 use indicatif::HumanBytes;
 use serde::Serialize;
 use std::{fmt, path::PathBuf};
-use wayword_local::{CachedModel, Hub, HubConfig, ModelFolder, ModelName, Needs};
+use wayword_local::{CachedModel, HubConfig, ModelFolder, ModelHub, ModelName, NeededFiles};
 use wayword_run::{
-    count::count,
+    count::count_phrase,
     download_bar::DownloadBar,
-    error::{Error, Exit},
-    output::Output,
+    error::{CommandError, Exit},
+    output::CommandOutput,
 };
 
 /// Digits of a commit that are shown.
 const SHOWN_DIGITS: usize = 12;
 
-pub fn run(args: &Models, output: &Output) -> Result<Exit, Error> {
+pub fn run_models(args: &ModelsArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
     let mut config = HubConfig::from_env()?;
     match &args.command {
         ModelsCommand::List => {
-            let hub = Hub::new(config)?;
-            let listed = Listed { models: hub.list()?, cache: hub.cache().to_owned() };
-            output.data(&listed, &listed);
+            let hub = ModelHub::new(config)?;
+            let listed = ListedModel { models: hub.list_models()?, cache: hub.cache_folder().to_owned() };
+            output.print_result(&listed, &listed);
         }
         ModelsCommand::Fetch { name, tokenizer } => {
             let name = ModelName::parse(name)?;
-            let folder = Hub::new(config)?.fetch(&name, &needs(&name, *tokenizer), &DownloadBar::new(output))?;
-            told(&name, folder, output);
+            let folder = ModelHub::new(config)?.fetch_model(
+                &name,
+                &model_needs(&name, *tokenizer),
+                &DownloadBar::new(output),
+            )?;
+            print_fetched(&name, folder, output);
         }
         ModelsCommand::Path { name, tokenizer } => {
             let name = ModelName::parse(name)?;
             config.offline = true;
-            told(&name, Hub::new(config)?.folder(&name, &needs(&name, *tokenizer), &())?, output);
+            print_fetched(
+                &name,
+                ModelHub::new(config)?.model_folder(&name, &model_needs(&name, *tokenizer), &())?,
+                output,
+            );
         }
     }
     Ok(Exit::Done)
 }
 
 /// The files to fetch or to look for.
-fn needs(name: &ModelName, tokenizer: bool) -> Needs {
-    if tokenizer { Needs::tokenizer() } else { Needs::of_any(name) }
+fn model_needs(name: &ModelName, tokenizer: bool) -> NeededFiles {
+    if tokenizer { NeededFiles::for_tokenizer() } else { NeededFiles::for_any_architecture(name) }
 }
 
 /// The place of a model's files.
 #[derive(Serialize)]
-struct Found {
+struct FetchedModel {
     name: String,
     path: PathBuf,
     /// The one file that was named, for GGUF.
@@ -53,28 +61,28 @@ struct Found {
     identity: String,
 }
 
-fn told(name: &ModelName, folder: ModelFolder, output: &Output) {
+fn print_fetched(name: &ModelName, folder: ModelFolder, output: &CommandOutput) {
     let ModelFolder { path, file, identity } = folder;
-    let found = Found { name: name.to_string(), path, file, identity };
-    output.data(&found, found.file.as_ref().unwrap_or(&found.path).display());
+    let found = FetchedModel { name: name.to_string(), path, file, identity };
+    output.print_result(&found, found.file.as_ref().unwrap_or(&found.path).display());
 }
 
 /// The models on this machine.
 #[derive(Serialize)]
-struct Listed {
+struct ListedModel {
     models: Vec<CachedModel>,
     cache: PathBuf,
 }
 
-impl fmt::Display for Listed {
+impl fmt::Display for ListedModel {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for model in &self.models {
             let commit = model.commit.get(..SHOWN_DIGITS).unwrap_or(&model.commit);
             let bytes = HumanBytes(model.bytes).to_string();
             let revisions = model.revisions.join(", ");
-            let files = count(model.files, "file");
+            let files = count_phrase(model.files, "file");
             writeln!(f, "{:<48} {commit:<12} {bytes:>12} in {files:>8}  {revisions}", model.name)?;
         }
-        write!(f, "{} in {}", count(self.models.len(), "model"), self.cache.display())
+        write!(f, "{} in {}", count_phrase(self.models.len(), "model"), self.cache.display())
     }
 }

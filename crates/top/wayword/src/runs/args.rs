@@ -13,7 +13,7 @@ Examples:
   wayword runs merge s3://bucket/big --to runs/big
   wayword runs retry runs/big --reason timeout
   wayword runs database wayword_db --sql --role workers | psql wayword_db")]
-pub struct Runs {
+pub struct RunsArgs {
     /// What to do.
     #[command(subcommand)]
     pub command: RunsCommand,

@@ -2,34 +2,34 @@
 
 use crate::runs::args::RunsDatabase;
 use wayword_run::{
-    error::{Error, Exit},
-    output::Output,
+    error::{CommandError, Exit},
+    output::CommandOutput,
 };
 
 #[cfg(feature = "queue")]
-pub fn run(args: &RunsDatabase, output: &Output) -> Result<Exit, Error> {
-    use wayword_database::{Database, Pool, prepare};
-    let database = Database::named(&args.database, args.password_env.as_deref())?;
-    let tables = [wayword_queue::TABLES, wayword_ledger::TABLES];
-    let sql: String = tables.iter().map(|tables| tables.sql(args.role.as_deref())).collect();
+pub fn run_database(args: &RunsDatabase, output: &CommandOutput) -> Result<Exit, CommandError> {
+    use wayword_database::{ConnectionPool, PostgresDatabase, prepare_tables};
+    let database = PostgresDatabase::from_name(&args.database, args.password_env.as_deref())?;
+    let tables = [wayword_queue::QUEUE_TABLES, wayword_ledger::LEDGER_TABLES];
+    let sql: String = tables.iter().map(|tables| tables.creation_sql(args.role.as_deref())).collect();
     if args.sql {
-        output.data(&serde_json::json!({ "sql": sql }), &sql);
+        output.print_result(&serde_json::json!({ "sql": sql }), &sql);
         return Ok(Exit::Done);
     }
-    let pool = Pool::new(database, 1);
+    let pool = ConnectionPool::new(database, 1);
     for tables in &tables {
-        prepare(&pool, tables)?;
+        prepare_tables(&pool, tables)?;
     }
     if let Some(role) = &args.role {
-        let grants: String = tables.iter().map(|tables| tables.granted(role)).collect();
-        pool.with("give the role its rights", |connection| connection.client().batch_execute(&grants))?;
+        let grants: String = tables.iter().map(|tables| tables.grants_sql(role)).collect();
+        pool.with_connection("give the role its rights", |connection| connection.client().batch_execute(&grants))?;
     }
-    let told = serde_json::json!({ "database": pool.database().shown(), "role": args.role });
-    output.data(&told, format_args!("{}: the tables are there", pool.database().shown()));
+    let told = serde_json::json!({ "database": pool.database().shown_name(), "role": args.role });
+    output.print_result(&told, format_args!("{}: the tables are there", pool.database().shown_name()));
     Ok(Exit::Done)
 }
 
 #[cfg(not(feature = "queue"))]
-pub fn run(_: &RunsDatabase, _: &Output) -> Result<Exit, Error> {
-    Err(Error::not_built("no database can be used: this build has no way to one"))
+pub fn run_database(_: &RunsDatabase, _: &CommandOutput) -> Result<Exit, CommandError> {
+    Err(CommandError::not_built("no database can be used: this build has no way to one"))
 }

@@ -9,20 +9,20 @@ use std::{
     io::{self, BufWriter, ErrorKind, Write},
     path::{Path, PathBuf},
 };
-use wayword_queue::{Done, Plan, chunk_folder, done_of};
+use wayword_queue::{ChunkPlan, ChunkRecord, chunk_folder, done_of};
 use wayword_run::{
-    count::count,
-    error::{Error, Exit},
-    output::Output,
+    count::count_phrase,
+    error::{CommandError, Exit},
+    output::CommandOutput,
     run_folder::{file, is_begun, write_whole},
     stores::{self, RunPlace},
 };
 
 /// The files of JSON lines, which are concatenated.
-const LINES: [&str; 4] = [file::WALKS, file::INSTRUCTIONS, file::REJECTED, file::ERRORS];
+const LINE_FILES: [&str; 4] = [file::WALKS, file::INSTRUCTIONS, file::REJECTED, file::ERRORS];
 
 #[derive(Serialize)]
-struct Merged {
+struct MergeSummary {
     run: String,
     chunks: usize,
     /// Chunks that are not finished.
@@ -32,89 +32,89 @@ struct Merged {
     failed: usize,
 }
 
-pub fn run(args: &RunsMerge, output: &Output) -> Result<Exit, Error> {
+pub fn run_merge(args: &RunsMerge, output: &CommandOutput) -> Result<Exit, CommandError> {
     let folder = args.to.as_ref().unwrap_or(&args.run);
     match &args.to {
-        Some(to) => RunPlace::fetch(&args.run, to, output)?,
+        Some(to) => RunPlace::fetch_run(&args.run, to, output)?,
         None => stores::refuse_address(
             &args.run,
             "a run is not merged in an object store",
             "name a folder of this machine, as in --to runs/big",
         )?,
     }
-    let plan = Plan::of(folder)?;
+    let plan = ChunkPlan::for_folder(folder)?;
     let mut done = Vec::new();
-    for chunk in 0..plan.chunks() {
+    for chunk in 0..plan.chunk_count() {
         done.extend(done_of(folder, chunk)?);
     }
-    let missing = plan.chunks() - done.len();
+    let missing = plan.chunk_count() - done.len();
     if missing > 0 && !args.partial {
-        return Err(Error::usage(
-            format!("{}: {missing} of {} not finished", folder.display(), count(plan.chunks(), "chunk")),
+        return Err(CommandError::usage(
+            format!("{}: {missing} of {} not finished", folder.display(), count_phrase(plan.chunk_count(), "chunk")),
             format!(
                 "see `wayword runs status {}`; or give --partial to put together what is there",
                 args.run.display()
             ),
         ));
     }
-    let _held = wayword_run::run_folder::hold(folder)?;
+    let _held = wayword_run::run_folder::lock_folder(folder)?;
     let chunks: Vec<PathBuf> = done.iter().map(|done| chunk_folder(folder, done.chunk, done.epoch)).collect();
-    let bar = output.progress(chunks.len(), "chunks");
-    pictures(folder, &chunks, || bar.inc(1))?;
+    let bar = output.progress_bar(chunks.len(), "chunks");
+    merge_pictures(folder, &chunks, || bar.inc(1))?;
     bar.finish_and_clear();
-    for name in LINES {
-        lines(folder, &chunks, name)?;
+    for name in LINE_FILES {
+        merge_lines(folder, &chunks, name)?;
     }
-    data(folder, &chunks)?;
+    merge_data(folder, &chunks)?;
     // Written last, because a folder with this file counts as a run.
     if !is_begun(folder) {
         write_whole(&folder.join(file::CONFIG), &plan.config)?;
     }
-    let sum = |of: fn(&Done) -> usize| done.iter().map(of).sum();
-    let merged = Merged {
+    let sum = |of: fn(&ChunkRecord) -> usize| done.iter().map(of).sum();
+    let merged = MergeSummary {
         run: folder.display().to_string(),
         chunks: done.len(),
         missing,
         written: sum(|done| done.written),
         rejected: sum(|done| done.rejected),
-        failed: sum(Done::failures),
+        failed: sum(ChunkRecord::failed_items),
     };
-    output.data(&merged, &merged);
+    output.print_result(&merged, &merged);
     Ok(if missing > 0 || merged.failed > 0 { Exit::WithLoss } else { Exit::Done })
 }
 
 /// Concatenates one file of all chunks.
-fn lines(folder: &Path, chunks: &[PathBuf], name: &str) -> Result<(), Error> {
+fn merge_lines(folder: &Path, chunks: &[PathBuf], name: &str) -> Result<(), CommandError> {
     let (path, unfinished) = (folder.join(name), folder.join(format!("{name}.new")));
-    let failed = || Error::io(&unfinished, "write");
+    let failed = || CommandError::io(&unfinished, "write");
     let mut all = BufWriter::new(File::create(&unfinished).map_err(failed())?);
     for chunk in chunks {
         let part = chunk.join(name);
         match File::open(&part) {
             Ok(mut part) => io::copy(&mut part, &mut all).map(drop).map_err(failed())?,
-            Err(source) => return Err(Error::Io { path: part, doing: "read", source }),
+            Err(source) => return Err(CommandError::Io { path: part, doing: "read", source }),
         }
     }
     all.flush().map_err(failed())?;
     all.get_ref().sync_data().map_err(failed())?;
-    fs::rename(&unfinished, &path).map_err(Error::io(&path, "write"))
+    fs::rename(&unfinished, &path).map_err(CommandError::io(&path, "write"))
 }
 
 /// The hashes of the scenes of all chunks. A platform without files has no hashes.
-fn data(folder: &Path, chunks: &[PathBuf]) -> Result<(), Error> {
+fn merge_data(folder: &Path, chunks: &[PathBuf]) -> Result<(), CommandError> {
     let mut all: BTreeMap<String, String> = BTreeMap::new();
     for chunk in chunks {
         let path = chunk.join(file::DATA);
         if !path.exists() {
             continue;
         }
-        let text = wayword_run::text_file::read(&path, "read the hashes of the scenes")?;
+        let text = wayword_run::text_file::read_text_file(&path, "read the hashes of the scenes")?;
         let some: BTreeMap<String, String> = serde_json::from_str(&text).map_err(|error| {
-            Error::usage(format!("{}: {error}", path.display()), "it was changed by hand: retry its chunk")
+            CommandError::usage(format!("{}: {error}", path.display()), "it was changed by hand: retry its chunk")
         })?;
         for (scene, hash) in some {
             if all.insert(scene.clone(), hash.clone()).is_some_and(|other| other != hash) {
-                return Err(Error::ChangedScene { scene, record: path });
+                return Err(CommandError::ChangedScene { scene, record: path });
             }
         }
     }
@@ -125,23 +125,23 @@ fn data(folder: &Path, chunks: &[PathBuf]) -> Result<(), Error> {
 }
 
 /// The pictures of all chunks, as further names of the same files where the disk allows that.
-fn pictures(folder: &Path, chunks: &[PathBuf], is_done: impl Fn()) -> Result<(), Error> {
+fn merge_pictures(folder: &Path, chunks: &[PathBuf], is_done: impl Fn()) -> Result<(), CommandError> {
     let frames = folder.join(file::FRAMES);
     for chunk in chunks {
         let from = chunk.join(file::FRAMES);
         let entries = match fs::read_dir(&from) {
             Ok(entries) => entries,
             Err(error) if error.kind() == ErrorKind::NotFound => continue,
-            Err(source) => return Err(Error::Io { path: from, doing: "list", source }),
+            Err(source) => return Err(CommandError::Io { path: from, doing: "list", source }),
         };
-        fs::create_dir_all(&frames).map_err(Error::io(&frames, "make the folder"))?;
+        fs::create_dir_all(&frames).map_err(CommandError::io(&frames, "make the folder"))?;
         for entry in entries {
-            let entry = entry.map_err(Error::io(&from, "list"))?;
+            let entry = entry.map_err(CommandError::io(&from, "list"))?;
             let to = frames.join(entry.file_name());
             match fs::hard_link(entry.path(), &to) {
                 Ok(()) => {}
                 Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
-                Err(_) => fs::copy(entry.path(), &to).map(drop).map_err(Error::io(&to, "copy a picture to"))?,
+                Err(_) => fs::copy(entry.path(), &to).map(drop).map_err(CommandError::io(&to, "copy a picture to"))?,
             }
         }
         is_done();
@@ -149,17 +149,17 @@ fn pictures(folder: &Path, chunks: &[PathBuf], is_done: impl Fn()) -> Result<(),
     Ok(())
 }
 
-impl fmt::Display for Merged {
+impl fmt::Display for MergeSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { run, chunks, missing, written, rejected, failed } = self;
         write!(
             f,
             "{run}: {} put together: {written} written, {rejected} rejected, {failed} failed",
-            count(*chunks, "chunk")
+            count_phrase(*chunks, "chunk")
         )?;
         match missing {
             0 => Ok(()),
-            missing => write!(f, "; {} missing", count(*missing, "chunk")),
+            missing => write!(f, "; {} missing", count_phrase(*missing, "chunk")),
         }
     }
 }

@@ -7,17 +7,17 @@ mod prometheus;
 mod retry;
 mod status;
 
-use crate::runs::args::{Runs, RunsCommand};
+use crate::runs::args::{RunsArgs, RunsCommand};
 use wayword_run::{
-    error::{Error, Exit},
-    output::Output,
+    error::{CommandError, Exit},
+    output::CommandOutput,
 };
 
-pub fn run(args: &Runs, output: &Output) -> Result<Exit, Error> {
+pub fn run_runs(args: &RunsArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
     match &args.command {
-        RunsCommand::Status(args) => status::run(args, output),
-        RunsCommand::Merge(args) => merge::run(args, output),
-        RunsCommand::Retry(args) => retry::run(args, output),
-        RunsCommand::Database(args) => database::run(args, output),
+        RunsCommand::Status(args) => status::run_status(args, output),
+        RunsCommand::Merge(args) => merge::run_merge(args, output),
+        RunsCommand::Retry(args) => retry::run_retry(args, output),
+        RunsCommand::Database(args) => database::run_database(args, output),
     }
 }

@@ -1,19 +1,19 @@
 //! The status of a run in Prometheus' text format.
 //! See <https://prometheus.io/docs/instrumenting/exposition_formats/>.
 
-use super::status::Status;
+use super::status::RunStatus;
 use std::fmt::Write;
 
 /// A metric: name, type, help, and its values with their labels.
-type Metric<'a> = (&'a str, &'a str, &'a str, Vec<(Vec<(&'a str, String)>, f64)>);
+type PrometheusMetric<'a> = (&'a str, &'a str, &'a str, Vec<(Vec<(&'a str, String)>, f64)>);
 
-pub(super) fn text(status: &Status) -> String {
+pub(super) fn prometheus_text(status: &RunStatus) -> String {
     let plain = |value: f64| vec![(Vec::new(), value)];
     let states =
         [("done", status.done), ("running", status.running), ("open", status.open), ("dead", status.dead.len())];
     let texts = [("written", status.written), ("rejected", status.rejected)];
     let by = |label: &'static str, of: &str, value: usize| (vec![(label, of.to_owned())], value as f64);
-    let metrics: [Metric<'_>; 9] = [
+    let metrics: [PrometheusMetric<'_>; 9] = [
         ("wayword_items", "gauge", "Items of the run.", plain(status.items as f64)),
         ("wayword_items_done", "gauge", "Items of finished chunks.", plain(status.items_done as f64)),
         ("wayword_chunks", "gauge", "Chunks by state.", states.map(|(state, n)| by("state", state, n)).into()),
@@ -45,7 +45,7 @@ pub(super) fn text(status: &Status) -> String {
         for (labels, value) in values {
             let run = std::iter::once(("run", status.run.clone()));
             let labels: Vec<String> =
-                run.chain(labels).map(|(key, of)| format!("{key}=\"{}\"", escaped(&of))).collect();
+                run.chain(labels).map(|(key, of)| format!("{key}=\"{}\"", escape_label(&of))).collect();
             let _ = writeln!(text, "{name}{{{}}} {value}", labels.join(","));
         }
     }
@@ -53,7 +53,7 @@ pub(super) fn text(status: &Status) -> String {
 }
 
 /// Escapes the three characters that have a meaning in a label's value.
-fn escaped(value: &str) -> String {
+fn escape_label(value: &str) -> String {
     value.replace('\\', "\\\\").replace('"', "\\\"").replace('\n', "\\n")
 }
 
@@ -63,9 +63,9 @@ mod tests {
 
     #[test]
     fn text_writes_valid_lines_for_any_reason() {
-        let mut status = Status { run: "a\"b".into(), items: 3, ..Status::default() };
+        let mut status = RunStatus { run: "a\"b".into(), items: 3, ..RunStatus::default() };
         status.failed.insert("timed \"out\"\nhint: \\wait".into(), 2);
-        let text = text(&status);
+        let text = prometheus_text(&status);
         assert!(text.contains("wayword_items{run=\"a\\\"b\"} 3\n"), "{text}");
         assert!(text.contains("reason=\"timed \\\"out\\\"\\nhint: \\\\wait\"} 2\n"), "{text}");
         for line in text.lines().filter(|line| !line.starts_with('#')) {

@@ -3,38 +3,38 @@
 use super::status::queue_of;
 use crate::runs::args::RunsRetry;
 use serde::Serialize;
-use wayword_queue::{Plan, failing, reopen};
+use wayword_queue::{ChunkPlan, failing_chunks, reopen_chunks};
 use wayword_run::{
-    count::count,
-    error::{Error, Exit},
-    output::Output,
+    count::count_phrase,
+    error::{CommandError, Exit},
+    output::CommandOutput,
     stores::RunPlace,
 };
 
 #[derive(Serialize)]
-struct Opened {
+struct RetrySummary {
     run: String,
     chunks: Vec<usize>,
 }
 
-pub fn run(args: &RunsRetry, output: &Output) -> Result<Exit, Error> {
-    let place = RunPlace::of(&args.run)?;
-    let (folder, plan) = (place.folder(), Plan::of(place.folder())?);
+pub fn run_retry(args: &RunsRetry, output: &CommandOutput) -> Result<Exit, CommandError> {
+    let place = RunPlace::open_named(&args.run)?;
+    let (folder, plan) = (place.folder(), ChunkPlan::for_folder(place.folder())?);
     place.fetch_marks(&plan)?;
     let chunks = match queue_of(&place, &plan, &args.database)? {
         None => {
-            let chunks = failing(folder, &plan, &args.reason)?;
-            place.reopen(&chunks)?;
-            reopen(folder, &chunks)?;
+            let chunks = failing_chunks(folder, &plan, &args.reason)?;
+            place.reopen_chunks(&chunks)?;
+            reopen_chunks(folder, &chunks)?;
             chunks
         }
         #[cfg(feature = "queue")]
         Some(queue) => {
-            queue.mark()?;
-            let chunks = queue.failing(&plan, &args.reason)?;
+            queue.write_missing_marks()?;
+            let chunks = queue.failing_chunks(&plan, &args.reason)?;
             // If this ends here, the queue's workers send the marks again, and the chunks stay finished.
-            place.reopen(&chunks)?;
-            queue.reopen(&chunks)?;
+            place.reopen_chunks(&chunks)?;
+            queue.reopen_chunks(&chunks)?;
             chunks
         }
         #[cfg(not(feature = "queue"))]
@@ -42,8 +42,10 @@ pub fn run(args: &RunsRetry, output: &Output) -> Result<Exit, Error> {
     };
     let told = match chunks.len() {
         0 => format!("no chunk has a failure with the words {:?}", args.reason),
-        opened => format!("{} opened again: start workers with the same command as before", count(opened, "chunk")),
+        opened => {
+            format!("{} opened again: start workers with the same command as before", count_phrase(opened, "chunk"))
+        }
     };
-    output.data(&Opened { run: args.run.display().to_string(), chunks }, told);
+    output.print_result(&RetrySummary { run: args.run.display().to_string(), chunks }, told);
     Ok(Exit::Done)
 }

@@ -10,22 +10,22 @@ use std::{
     thread,
     time::{Duration, SystemTime, UNIX_EPOCH},
 };
-use wayword_queue::{Alive, Done, FRESH, Plan, beats, dead_of, done_of};
+use wayword_queue::{ChunkPlan, ChunkRecord, HEARTBEAT_LEASE, HeartbeatEntry, dead_of, done_of, read_heartbeats};
 use wayword_run::{
-    count::count,
-    error::{Error, Exit},
-    generate::Way,
+    count::count_phrase,
+    error::{CommandError, Exit},
+    generate::ChunkHandout,
     interrupt,
-    output::Output,
+    output::CommandOutput,
     stores::RunPlace,
 };
 
 /// How often the status is shown again.
-const EVERY: Duration = Duration::from_secs(5);
+const STATUS_INTERVAL: Duration = Duration::from_secs(5);
 /// The pace is measured over this many seconds before now.
 const WINDOW_S: u64 = 600;
 /// How many slow chunks and reasons are shown.
-const FEW: usize = 5;
+const MAX_SHOWN_ENTRIES: usize = 5;
 
 /// The queue of a build without one.
 #[cfg(not(feature = "queue"))]
@@ -35,35 +35,35 @@ pub(super) enum NoQueue {}
 #[cfg(feature = "queue")]
 pub(super) fn queue_of(
     place: &RunPlace,
-    plan: &Plan,
+    plan: &ChunkPlan,
     asked: &RunsQueue,
-) -> Result<Option<wayword_queue::Queue>, Error> {
-    let Some(Way::Queue(name)) = Way::of(place.folder())? else { return Ok(None) };
+) -> Result<Option<wayword_queue::ChunkQueue>, CommandError> {
+    let Some(ChunkHandout::Queue(name)) = ChunkHandout::from_folder(place.folder())? else { return Ok(None) };
     // The file in a store could be forged, and must not choose which server gets the user's password.
     if place.is_stored() && asked.queue.as_ref() != Some(&name) {
-        return Err(Error::usage(
-            format!("{}: its workers use the queue {name}", place.named().display()),
+        return Err(CommandError::usage(
+            format!("{}: its workers use the queue {name}", place.shown_path().display()),
             format!("if you know it, give --queue {name}"),
         ));
     }
-    let database = wayword_database::Database::named(&name, asked.password_env.as_deref())?;
-    Ok(Some(wayword_queue::Queue::open(database, place.folder(), plan)?))
+    let database = wayword_database::PostgresDatabase::from_name(&name, asked.password_env.as_deref())?;
+    Ok(Some(wayword_queue::ChunkQueue::open(database, place.folder(), plan)?))
 }
 
 /// As above, in a build without databases: a run with a queue is an error.
 #[cfg(not(feature = "queue"))]
-pub(super) fn queue_of(place: &RunPlace, _: &Plan, _: &RunsQueue) -> Result<Option<NoQueue>, Error> {
-    match Way::of(place.folder())? {
-        Some(Way::Queue(name)) => {
-            Err(Error::not_built(format!("the queue {name} cannot be used: this build has no way to a database")))
-        }
+pub(super) fn queue_of(place: &RunPlace, _: &ChunkPlan, _: &RunsQueue) -> Result<Option<NoQueue>, CommandError> {
+    match ChunkHandout::from_folder(place.folder())? {
+        Some(ChunkHandout::Queue(name)) => Err(CommandError::not_built(format!(
+            "the queue {name} cannot be used: this build has no way to a database"
+        ))),
         _ => Ok(None),
     }
 }
 
 /// How far a run is.
 #[derive(Debug, Default, Serialize)]
-pub(super) struct Status {
+pub(super) struct RunStatus {
     pub(super) run: String,
     pub(super) items: usize,
     /// Items of finished chunks.
@@ -102,59 +102,59 @@ pub(super) struct AtWork {
     pub(super) is_fresh: bool,
 }
 
-pub fn run(args: &RunsStatus, output: &Output) -> Result<Exit, Error> {
-    let place = RunPlace::of(&args.run)?;
-    let (folder, plan) = (place.folder(), Plan::of(place.folder())?);
+pub fn run_status(args: &RunsStatus, output: &CommandOutput) -> Result<Exit, CommandError> {
+    let place = RunPlace::open_named(&args.run)?;
+    let (folder, plan) = (place.folder(), ChunkPlan::for_folder(place.folder())?);
     let queue = queue_of(&place, &plan, &args.database)?;
     loop {
         place.fetch_marks(&plan)?;
-        let mut status = Status { run: args.run.display().to_string(), ..Status::of(folder, &plan)? };
+        let mut status = RunStatus { run: args.run.display().to_string(), ..RunStatus::from_folder(folder, &plan)? };
         #[cfg(feature = "queue")]
         if let Some(queue) = &queue {
-            status.add(queue.look()?);
+            status.add_worker(queue.read_status()?);
         }
         #[cfg(not(feature = "queue"))]
         let _ = &queue;
         status.workers.sort_by(|a, b| a.worker.cmp(&b.worker));
         if args.prometheus {
-            output.data(&status, prometheus::text(&status));
+            output.print_result(&status, prometheus::prometheus_text(&status));
         } else {
-            output.data(&status, &status);
+            output.print_result(&status, &status);
         }
         if !args.watch || status.open + status.running == 0 {
             return Ok(Exit::Done);
         }
-        thread::sleep(EVERY);
-        interrupt::check()?;
+        thread::sleep(STATUS_INTERVAL);
+        interrupt::check_interrupt()?;
     }
 }
 
-impl Status {
+impl RunStatus {
     /// The status according to the files in the folder.
-    fn of(folder: &Path, plan: &Plan) -> Result<Self, Error> {
-        let mut status = Self { items: plan.items.len(), chunks: plan.chunks(), ..Self::default() };
+    fn from_folder(folder: &Path, plan: &ChunkPlan) -> Result<Self, CommandError> {
+        let mut status = Self { items: plan.items.len(), chunks: plan.chunk_count(), ..Self::default() };
         let mut done = Vec::new();
-        for chunk in 0..plan.chunks() {
+        for chunk in 0..plan.chunk_count() {
             if let Some(one) = done_of(folder, chunk)? {
-                status.items_done += plan.range(chunk).len();
-                status.count(&one);
+                status.items_done += plan.chunk_range(chunk).len();
+                status.count_done(&one);
                 done.push(one);
             } else if let Some(reason) = dead_of(folder, chunk)? {
                 status.dead.insert(chunk, reason);
             }
         }
         status.done = done.len();
-        status.workers = beats(folder)?.into_iter().map(AtWork::from).collect();
+        status.workers = read_heartbeats(folder)?.into_iter().map(AtWork::from).collect();
         status.running = status.workers.iter().filter(|worker| worker.is_fresh).count();
         status.running = status.running.min(status.chunks - status.done - status.dead.len());
         status.open = status.chunks - status.done - status.running - status.dead.len();
-        status.pace(plan, &done);
+        status.fill_pace(plan, &done);
         done.sort_by(|a, b| b.seconds.total_cmp(&a.seconds));
-        status.slowest = done.iter().take(FEW).map(|one| (one.chunk, one.seconds)).collect();
+        status.slowest = done.iter().take(MAX_SHOWN_ENTRIES).map(|one| (one.chunk, one.seconds)).collect();
         Ok(status)
     }
 
-    fn count(&mut self, done: &Done) {
+    fn count_done(&mut self, done: &ChunkRecord) {
         self.written += done.written;
         self.rejected += done.rejected;
         self.usd += done.usd;
@@ -164,22 +164,22 @@ impl Status {
     }
 
     /// Items a minute over the last ten minutes, and how long the rest takes at that pace.
-    fn pace(&mut self, plan: &Plan, done: &[Done]) {
+    fn fill_pace(&mut self, plan: &ChunkPlan, done: &[ChunkRecord]) {
         let now = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
-        let recent: Vec<&Done> = done.iter().filter(|one| one.at_unix_s + WINDOW_S >= now).collect();
-        let begun = |one: &&Done| one.at_unix_s.saturating_sub(one.seconds as u64);
+        let recent: Vec<&ChunkRecord> = done.iter().filter(|one| one.at_unix_s + WINDOW_S >= now).collect();
+        let begun = |one: &&ChunkRecord| one.at_unix_s.saturating_sub(one.seconds as u64);
         let Some(first) = recent.iter().map(begun).min() else { return };
         let minutes = now.saturating_sub(first.max(now.saturating_sub(WINDOW_S))).max(1) as f64 / 60.0;
-        let items: usize = recent.iter().map(|one| plan.range(one.chunk).len()).sum();
+        let items: usize = recent.iter().map(|one| plan.chunk_range(one.chunk).len()).sum();
         self.items_per_minute = items as f64 / minutes;
-        let dead: usize = self.dead.keys().map(|chunk| plan.range(*chunk).len()).sum();
+        let dead: usize = self.dead.keys().map(|chunk| plan.chunk_range(*chunk).len()).sum();
         let left = self.items.saturating_sub(self.items_done + dead);
         self.minutes_left = (left > 0 && self.items_per_minute > 0.0).then(|| left as f64 / self.items_per_minute);
     }
 
     /// Adds the more exact numbers of the queue.
     #[cfg(feature = "queue")]
-    fn add(&mut self, seen: wayword_queue::Seen) {
+    fn add_worker(&mut self, seen: wayword_queue::QueueStatus) {
         (self.open, self.running, self.done) = (seen.open, seen.running, seen.done);
         self.dead = seen.dead.into_iter().collect();
         self.retries = seen.retries.into_iter().collect();
@@ -190,21 +190,21 @@ impl Status {
             ),
             worker: worker.worker,
             beat_s: worker.beat_s,
-            is_fresh: worker.beat_s < FRESH.as_secs_f64(),
+            is_fresh: worker.beat_s < HEARTBEAT_LEASE.as_secs_f64(),
         }));
     }
 }
 
-impl From<Alive> for AtWork {
-    fn from(Alive { beat, age, .. }: Alive) -> Self {
-        Self { worker: beat.worker, has: beat.part, beat_s: age.as_secs_f64(), is_fresh: age < FRESH }
+impl From<HeartbeatEntry> for AtWork {
+    fn from(HeartbeatEntry { beat, age, .. }: HeartbeatEntry) -> Self {
+        Self { worker: beat.worker, has: beat.part, beat_s: age.as_secs_f64(), is_fresh: age < HEARTBEAT_LEASE }
     }
 }
 
-impl fmt::Display for Status {
+impl fmt::Display for RunStatus {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let share = 100.0 * self.items_done as f64 / self.items.max(1) as f64;
-        writeln!(f, "{}: {} of {} ({share:.1} %)", self.run, self.items_done, count(self.items, "item"))?;
+        writeln!(f, "{}: {} of {} ({share:.1} %)", self.run, self.items_done, count_phrase(self.items, "item"))?;
         writeln!(
             f,
             "chunks   {} done, {} running, {} open, {} given up",
@@ -214,7 +214,13 @@ impl fmt::Display for Status {
             self.dead.len()
         )?;
         let failed: usize = self.failed.values().sum();
-        writeln!(f, "texts    {} written, {} rejected; {} failed", self.written, self.rejected, count(failed, "item"))?;
+        writeln!(
+            f,
+            "texts    {} written, {} rejected; {} failed",
+            self.written,
+            self.rejected,
+            count_phrase(failed, "item")
+        )?;
         write!(f, "pace     {:.1} items a minute", self.items_per_minute)?;
         match self.minutes_left {
             Some(minutes) => writeln!(f, ", about {minutes:.0} minutes left")?,
@@ -223,13 +229,13 @@ impl fmt::Display for Status {
         if self.usd > 0.0 {
             writeln!(f, "cost     ${:.4} for the finished chunks", self.usd)?;
         }
-        for (reason, times) in self.failed.iter().take(FEW) {
+        for (reason, times) in self.failed.iter().take(MAX_SHOWN_ENTRIES) {
             writeln!(f, "failed   {times} x {reason}")?;
         }
-        for (chunk, reason) in self.dead.iter().take(FEW) {
+        for (chunk, reason) in self.dead.iter().take(MAX_SHOWN_ENTRIES) {
             writeln!(f, "given up chunk {chunk}: {reason}")?;
         }
-        for (reason, times) in self.retries.iter().take(FEW) {
+        for (reason, times) in self.retries.iter().take(MAX_SHOWN_ENTRIES) {
             writeln!(f, "retried  {times} x {reason}")?;
         }
         let slowest: Vec<String> =

@@ -6,7 +6,7 @@ use crate::common::{Building, Ran};
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
 use wayword_checks::Evidence;
-use wayword_run::{pipeline::panoramas, platforms, run_folder::settings_of};
+use wayword_run::{pipeline::path_panoramas, platforms, run_folder::settings_of};
 use wayword_synthesis::style::built_in;
 use wayword_testkit::{SCAN, viewpoint_id};
 
@@ -369,14 +369,14 @@ fn a_wrong_colour_is_caught_in_a_house() {
         .wayword(&["generate", "--paths", "1", "--scan", "house2-3", "--seed", "3", "--style", "r2r", "--out", "run"]);
     assert_eq!(ran.code, Some(0), "{ran:?}");
     let record = building.records("run").remove(0);
-    let platform = platforms::open(&settings_of(&building.path("run")).unwrap()).unwrap();
-    let views = panoramas(platform.as_ref(), &record.path).unwrap();
+    let platform = platforms::open_platform(&settings_of(&building.path("run")).unwrap()).unwrap();
+    let views = path_panoramas(platform.as_ref(), &record.path).unwrap();
     let evidence = Evidence::from_labels(&record.path, &views).unwrap();
     let mut colours: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
     for thing in evidence.frames.iter().flat_map(|frame| &frame.things) {
         colours.entry(&thing.name).or_default().extend(thing.colour.as_deref());
     }
-    let of_one_word = |name: &str| !name.contains(' ') && wayword_language::lexicon::thing(name).is_some();
+    let of_one_word = |name: &str| !name.contains(' ') && wayword_language::lexicon::find_thing(name).is_some();
     let (name, known) = colours.iter().find(|(name, colours)| of_one_word(name) && colours.len() == 1).unwrap();
     let right = known.first().unwrap();
     let wrong = ["purple", "orange", "green", "yellow"].into_iter().find(|colour| !right.contains(colour)).unwrap();

@@ -141,7 +141,7 @@ fn the_program() {
     let Ok(role) = std::env::var("WAYWORD_TEST_ROLE") else { return };
     let start = || {
         let guard = Some(PathBuf::from(env!("CARGO_BIN_EXE_wayword")).into());
-        let options = ProcessOptions { guard, ..ProcessOptions::read(Path::new("world.json")).unwrap() };
+        let options = ProcessOptions { guard, ..ProcessOptions::read_world_file(Path::new("world.json")).unwrap() };
         ProcessPlatform::start(options, Arc::new(|_: &str| ()))
     };
     let platform = Arc::new(start().unwrap());
@@ -150,7 +150,7 @@ fn the_program() {
     }
     let asking = thread::spawn({
         let platform = Arc::clone(&platform);
-        move || platform.scenes()
+        move || platform.list_scenes()
     });
     wait_for(Path::new("hangs"));
     match role.as_str() {

@@ -23,15 +23,15 @@ fn the_help_of_every_command_has_examples_that_name_it() {
 #[test]
 fn the_examples_of_the_help_are_command_lines_that_can_be_read() {
     use clap::{CommandFactory, Parser};
-    use wayword::cli::Cli;
+    use wayword::cli::WaywordCli;
     for name in COMMANDS {
         // Unwrapped, because a narrow terminal would break the lines.
-        let told = Cli::command().find_subcommand(name).unwrap().get_after_long_help().unwrap().to_string();
+        let told = WaywordCli::command().find_subcommand(name).unwrap().get_after_long_help().unwrap().to_string();
         let lines: Vec<&str> = told.lines().map(str::trim).filter(|line| line.starts_with("wayword ")).collect();
         assert!(!lines.is_empty());
         for line in lines {
             let words = line.split("  ").next().unwrap().split(' ');
-            assert!(Cli::try_parse_from(words).is_ok(), "{line}");
+            assert!(WaywordCli::try_parse_from(words).is_ok(), "{line}");
         }
     }
 }

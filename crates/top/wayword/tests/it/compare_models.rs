@@ -5,13 +5,13 @@
 
 use crate::common::{Building, EPISODES, Ran, run};
 use std::{fs, path::Path};
-use wayword_testkit::provider::{Behaviour, Dialect, Heard, Provider, Script};
+use wayword_testkit::provider::{ModelScript, ProviderBehaviour, ProviderDialect, ScriptRequest, ScriptedProvider};
 
 /// Takes every instruction apart in the same way. The reply to an instruction with a pillow is useless.
 struct Splits;
 
-impl Script for Splits {
-    fn reply(&self, heard: &Heard) -> String {
+impl ModelScript for Splits {
+    fn reply(&self, heard: &ScriptRequest) -> String {
         if heard.prompt().contains("pillow") {
             return "I would rather not.".to_owned();
         }
@@ -27,8 +27,9 @@ fn compare(building: &Building, out: &str, args: &[&str]) -> Ran {
 
 #[test]
 fn a_model_takes_instructions_apart_and_each_is_paid_once() {
-    let (building, provider) = (Building::new(), Provider::start(Behaviour::of("words", Splits)).unwrap());
-    let base = provider.base_url(Dialect::OpenAi);
+    let (building, provider) =
+        (Building::new(), ScriptedProvider::start(ProviderBehaviour::for_model("words", Splits)).unwrap());
+    let base = provider.base_url(ProviderDialect::OpenAi);
     let args = ["--split", "server/words", "--base-url", &base];
     let ran = compare(&building, "first", &args);
     // The items with a pillow could not be taken apart: they are reported and left out.
@@ -41,11 +42,11 @@ fn a_model_takes_instructions_apart_and_each_is_paid_once() {
         assert_eq!(walk["directions"]["activity"], "wipe the mirror", "{walk}");
         assert_eq!(walk["directions"]["phrases"][1], "the bathroom", "{walk}");
     }
-    let paid = provider.requests();
+    let paid = provider.request_count();
     assert!(paid > 0);
     let again = compare(&building, "second", &args);
     assert_eq!(again.code, Some(3), "{again:?}");
-    let unreadable = provider.requests() - paid;
+    let unreadable = provider.request_count() - paid;
     assert!(unreadable < paid, "what was answered is not asked for again: {paid}, then {unreadable}");
     assert_eq!(building.lines("second/walks.jsonl"), walks);
     let comparison: serde_json::Value =
@@ -55,8 +56,9 @@ fn a_model_takes_instructions_apart_and_each_is_paid_once() {
 
 #[test]
 fn a_budget_stops_it_and_the_same_command_goes_on() {
-    let (building, provider) = (Building::new(), Provider::start(Behaviour::of("words", Splits)).unwrap());
-    let base = provider.base_url(Dialect::OpenAi);
+    let (building, provider) =
+        (Building::new(), ScriptedProvider::start(ProviderBehaviour::for_model("words", Splits)).unwrap());
+    let base = provider.base_url(ProviderDialect::OpenAi);
     let args = ["--split", "server/words", "--base-url", &base, "--concurrency", "1"];
     let stopped = compare(&building, "walked", &[&args[..], &["--max-calls", "6"]].concat());
     assert_eq!(stopped.code, Some(5), "{stopped:?}");

@@ -14,11 +14,11 @@ use crate::common::{Building, Ran, files, run};
 use rand::Rng;
 use serde_json::Value;
 use std::{env, fs, process::Stdio, thread, time::Duration};
-use wayword_core::{Heading, rng};
+use wayword_core::{Heading, seeded_rng};
 use wayword_formats::Episode;
 use wayword_testkit::provider::{
-    Behaviour, Dialect, Heard, Provider,
-    scripts::{Gait, MISCHIEF, Route, Walker},
+    ProviderBehaviour, ProviderDialect, ScriptRequest, ScriptedProvider,
+    scripts::{BROKEN_REPLIES, ScriptedRoute, ScriptedWalker, WalkerGait},
 };
 
 const R2R: &str = "data/r2r/R2R_val_seen.json";
@@ -27,25 +27,25 @@ const REVERIE: &str = "data/reverie/REVERIE_val_seen.json";
 /// A building, and a provider with models that walk through it: `route`, `random` and `broken`.
 struct Stage {
     building: Building,
-    provider: Provider,
+    provider: ScriptedProvider,
 }
 
 impl Stage {
     fn new(latency: Duration) -> Self {
         let building = Building::new();
-        let known = |gait| Walker::new(gait, 0, routes(&building));
-        let behaviour = Behaviour::of("route", known(Gait::Route))
-            .and("random", known(Gait::Random(10)))
-            .and("broken", known(Gait::Broken))
-            .and("names", Names(known(Gait::Route)))
-            .and("eye", |_: &Heard| "A plain room with a red door and a long grey bench.".to_owned());
-        let provider = Provider::start(Behaviour { latency, ..behaviour }).unwrap();
+        let known = |gait| ScriptedWalker::new(gait, 0, routes(&building));
+        let behaviour = ProviderBehaviour::for_model("route", known(WalkerGait::Route))
+            .and_model("random", known(WalkerGait::Random(10)))
+            .and_model("broken", known(WalkerGait::Broken))
+            .and_model("names", Names(known(WalkerGait::Route)))
+            .and_model("eye", |_: &ScriptRequest| "A plain room with a red door and a long grey bench.".to_owned());
+        let provider = ScriptedProvider::start(ProviderBehaviour { latency, ..behaviour }).unwrap();
         Self { building, provider }
     }
 
     /// The flags of a comparison with a model of the provider.
     fn flags(&self, model: &str, episodes: &str, out: &str) -> Vec<String> {
-        let base = self.provider.base_url(Dialect::OpenAi);
+        let base = self.provider.base_url(ProviderDialect::OpenAi);
         let flags = ["--agents", "tools", "--swaps", "none", "--resamples", "200", "--ledger", "ledger.db"];
         let all = ["compare", "--platform", "matterport", "--data", "data", "--episodes", episodes, "--out", out];
         let model = format!("server/{model}");
@@ -66,14 +66,16 @@ impl Stage {
 }
 
 /// The route of every instruction of the building's episodes. Their goals are the last viewpoints of their paths.
-fn routes(building: &Building) -> Vec<(String, Route)> {
-    let world = wayword_platforms::matterport::Matterport::open(&building.data()).unwrap();
+fn routes(building: &Building) -> Vec<(String, ScriptedRoute)> {
+    let world = wayword_platforms::matterport::MatterportPlatform::open(&building.data()).unwrap();
     let mut known = Vec::new();
     for file in [building.r2r(), building.reverie()] {
-        for Episode { scene, viewpoints, start_heading, instructions, .. } in wayword_formats::read(&file).unwrap() {
-            let graph = wayword_core::Platform::graph(&world, &scene).unwrap();
+        for Episode { scene, viewpoints, start_heading, instructions, .. } in
+            wayword_formats::read_any_format(&file).unwrap()
+        {
+            let graph = wayword_core::Platform::graph_for_scene(&world, &scene).unwrap();
             let way = graph.shortest_path(&viewpoints[0], viewpoints.last().unwrap()).unwrap().unwrap();
-            let route = Route::along(&graph, start_heading.unwrap_or(Heading::NORTH), &way.viewpoints);
+            let route = ScriptedRoute::along_graph(&graph, start_heading.unwrap_or(Heading::NORTH), &way.viewpoints);
             known.extend(instructions.into_iter().map(|text| (text, route.clone())));
         }
     }
@@ -81,10 +83,10 @@ fn routes(building: &Building) -> Vec<(String, Route)> {
 }
 
 /// Walks along the route, and names the first object that it is shown at the end.
-struct Names(Walker);
+struct Names(ScriptedWalker);
 
-impl wayword_testkit::provider::Script for Names {
-    fn reply(&self, heard: &Heard) -> String {
+impl wayword_testkit::provider::ModelScript for Names {
+    fn reply(&self, heard: &ScriptRequest) -> String {
         let reply = self.0.reply(heard);
         reply.replace("stop {", "stop {\"object\": 1, ")
     }
@@ -115,7 +117,7 @@ fn model_that_knows_the_way_always_arrives_and_the_table_has_its_cost() {
         .filter(|walk| walk["agent"] == "tools")
         .map(|walk| walk["effort"]["calls"].as_u64().unwrap())
         .sum();
-    assert_eq!(calls, stage.provider.requests());
+    assert_eq!(calls, stage.provider.request_count());
     assert_eq!(found["about"]["tools"], serde_json::json!(["server/route", "labels"]));
     for told in ["what a walk took", "what went wrong", "ground truth, not perception"] {
         assert!(ran.out.contains(told), "{told}: {}", ran.out);
@@ -144,7 +146,7 @@ fn a_model_that_breaks_is_counted_and_its_walks_are_scored() {
     let walks = stage.building.lines("walked/walks.jsonl");
     let ends: std::collections::BTreeSet<&str> =
         walks.iter().filter(|walk| walk["agent"] == "tools").map(|walk| walk["end"].as_str().unwrap()).collect();
-    assert!(ends.contains("no-use") && ends.len() > 1, "{ends:?} of {} ways to break", MISCHIEF.len());
+    assert!(ends.contains("no-use") && ends.len() > 1, "{ends:?} of {} ways to break", BROKEN_REPLIES.len());
     for walk in walks.iter().filter(|walk| walk["agent"] == "tools") {
         assert!(walk["effort"]["calls"].as_u64().unwrap() <= 60 && walk["steps"].as_array().unwrap().len() <= 25);
     }
@@ -154,7 +156,9 @@ fn a_model_that_breaks_is_counted_and_its_walks_are_scored() {
 #[test]
 fn a_model_that_never_calls_a_tool_ends_the_comparison() {
     let building = Building::new();
-    let provider = Provider::start(Behaviour::of("talks", |_: &Heard| "Let us see.".to_owned())).unwrap();
+    let provider =
+        ScriptedProvider::start(ProviderBehaviour::for_model("talks", |_: &ScriptRequest| "Let us see.".to_owned()))
+            .unwrap();
     let stage = Stage { building, provider };
     let ran = stage.compare("talks", R2R, "walked", &[]);
     assert_eq!(ran.code, Some(1), "{ran:?}");
@@ -163,10 +167,10 @@ fn a_model_that_never_calls_a_tool_ends_the_comparison() {
 }
 
 /// Walks by its route where it is asked about the first instruction alone, and refuses all others.
-struct Refuses(Walker);
+struct Refuses(ScriptedWalker);
 
-impl wayword_testkit::provider::Script for Refuses {
-    fn reply(&self, heard: &Heard) -> String {
+impl wayword_testkit::provider::ModelScript for Refuses {
+    fn reply(&self, heard: &ScriptRequest) -> String {
         if heard.prompt().contains("Leave the entryway") { self.0.reply(heard) } else { String::new() }
     }
 }
@@ -175,8 +179,8 @@ impl wayword_testkit::provider::Script for Refuses {
 #[test]
 fn a_walk_without_a_single_answer_is_an_item_that_failed() {
     let building = Building::new();
-    let walker = Walker::new(Gait::Route, 0, routes(&building));
-    let provider = Provider::start(Behaviour::of("refuses", Refuses(walker))).unwrap();
+    let walker = ScriptedWalker::new(WalkerGait::Route, 0, routes(&building));
+    let provider = ScriptedProvider::start(ProviderBehaviour::for_model("refuses", Refuses(walker))).unwrap();
     let stage = Stage { building, provider };
     let ran = stage.compare("refuses", R2R, "walked", &[]);
     assert_eq!(ran.code, Some(1), "{ran:?}");
@@ -239,12 +243,12 @@ fn a_dry_run_estimates_and_asks_nothing() {
     let ran = stage.compare("route", R2R, "walked", &flags);
     assert_eq!(ran.code, Some(0), "{ran:?}");
     assert!(ran.out.contains("server/route (walks):") && ran.out.contains("price not known"), "{}", ran.out);
-    assert_eq!(stage.provider.requests(), 0);
+    assert_eq!(stage.provider.request_count(), 0);
     assert!(!stage.building.path("walked").exists());
     let json = stage.compare("route", R2R, "walked", &["--dry-run", "--json"]).json();
     let estimated = json["models"][0]["calls"].as_u64().unwrap();
     stage.compare("route", R2R, "walked", &[]);
-    let made = stage.provider.requests();
+    let made = stage.provider.request_count();
     // The script does not look around at the start.
     assert!(estimated >= made && estimated <= made * 3 / 2, "{estimated} were estimated, {made} made");
     assert!(json["most_tokens_in"].as_u64().unwrap() > 500, "{json}");
@@ -266,7 +270,7 @@ fn flags_that_do_not_fit_together_are_refused() {
     stage.building.write("limits.toml", "[tools]\nmax_hop = 3\n");
     let wrong = stage.compare("route", R2R, "walked", &["--parameters", "limits.toml"]);
     assert!(wrong.refused().contains("max_hop"), "{wrong:?}");
-    assert_eq!(stage.provider.requests(), 0);
+    assert_eq!(stage.provider.request_count(), 0);
 }
 
 /// Killed at seeded moments, and continued by the same command.
@@ -288,12 +292,12 @@ fn a_comparison_that_is_killed_ends_the_same_and_pays_once() {
     };
     assert_eq!(run(&mut begin(&whole)).code, Some(0));
     let calls = whole.provider.log().answered;
-    let mut rng = rng(19, &["kills"]);
+    let mut rng = seeded_rng(19, &["kills"]);
     let mut moments: Vec<u64> = (0..kills).map(|_| rng.random_range(1..calls * 19 / 20)).collect();
     moments.sort_unstable();
     for moment in moments {
         let mut child = begin(&killed).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
-        while killed.provider.requests() < moment && child.try_wait().unwrap().is_none() {
+        while killed.provider.request_count() < moment && child.try_wait().unwrap().is_none() {
             thread::sleep(Duration::from_millis(1));
         }
         child.kill().unwrap();

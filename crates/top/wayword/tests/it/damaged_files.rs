@@ -11,14 +11,14 @@ use std::{
     fs,
     path::{Path, PathBuf},
 };
-use wayword_core::rng;
+use wayword_core::seeded_rng;
 use wayword_run::{
-    check::{How, check_file},
-    error::Error,
+    check::{CheckOptions, check_file},
+    error::CommandError,
     generate::generate_into,
-    output::Output,
+    output::CommandOutput,
     run_folder::{Journal, RunFolder, WalkRecord, read_lines, settings_of},
-    settings::{Asked, AskedPlatform, Draw, Job, Providers, Service, Settings, Walks, Writing},
+    settings::{AskedPlatform, AskedSettings, Draw, ProviderTables, RunJob, RunSettings, Service, Walks, Writing},
     styles,
 };
 
@@ -108,7 +108,7 @@ fn with_another_value(text: &str, rng: &mut ChaCha8Rng) -> String {
 }
 
 /// Asserts that an error has the file's name, so that it helps the user.
-fn assert_names(error: &Error, name: &str, input: &[u8]) {
+fn assert_names(error: &CommandError, name: &str, input: &[u8]) {
     let told = error.to_string();
     assert!(told.contains(name), "{told}\nfor {}", String::from_utf8_lossy(&input[..input.len().min(2000)]));
 }
@@ -121,7 +121,7 @@ struct Counts {
 /// Writes each damaged text to `file` and passes it to `used`, which returns whether it could be used.
 fn for_each_damaged(file: &Path, text: &str, mut used: impl FnMut(usize, &[u8]) -> bool) -> Counts {
     let mut counts = Counts { used: 0, refused: 0 };
-    let mut rng = rng(1, &["hostile", text]);
+    let mut rng = seeded_rng(1, &["hostile", text]);
     for number in 0..MUTATIONS {
         let bytes = damaged(text, &mut rng);
         fs::write(file, &bytes).unwrap();
@@ -135,8 +135,8 @@ fn for_each_damaged(file: &Path, text: &str, mut used: impl FnMut(usize, &[u8]) 
 }
 
 /// Settings of a run over one episode of the building.
-fn settings(building: &Building, style: &Path) -> Settings {
-    let asked = Asked {
+fn settings(building: &Building, style: &Path) -> RunSettings {
+    let asked = AskedSettings {
         platform: AskedPlatform {
             platform: Some("matterport".into()),
             data: Some(building.data()),
@@ -145,7 +145,7 @@ fn settings(building: &Building, style: &Path) -> Settings {
         walks: Walks { episodes: Some(building.reverie()), ..Walks::default() },
         writing: Writing { style: Some(vec![style.display().to_string()]), ..Writing::default() },
         draw: Draw { limit: Some(1), ..Draw::default() },
-        ..Asked::default()
+        ..AskedSettings::default()
     };
     asked.resolve().unwrap()
 }
@@ -154,17 +154,17 @@ fn settings(building: &Building, style: &Path) -> Settings {
 fn damaged_styles_are_used_or_refused() {
     let building = Building::new();
     let file = building.path("mine.toml");
-    let job = Job {
+    let job = RunJob {
         settings: settings(&building, &file),
         service: Service::default(),
-        providers: Providers::new(),
-        keeping: wayword_run::calls::Keeping::Machine,
+        providers: ProviderTables::new(),
+        keeping: wayword_run::calls::CallKeeping::Machine,
     };
     let settings = &job.settings;
-    let quiet = Output::new(true, true);
+    let quiet = CommandOutput::new(true, true);
     for style in [STYLE, COARSE_STYLE] {
         let counts = for_each_damaged(&file, style, |number, bytes| {
-            match styles::find(&settings.style) {
+            match styles::find_styles(&settings.style) {
                 Err(error) => {
                     assert_names(&error, "mine", bytes);
                     false
@@ -220,12 +220,12 @@ fn damaged_settings_files_are_used_or_refused() {
     let text = "platform = \"matterport\"\ndata = \"data\"\npaths = 3\nhops = \"2..3\"\nmetres = \"4..9.5\"\nscan = [\"a\"]\n\
         style = [\"r2r\", \"reverie\"]\nframes = \"panoramic\"\nperception = \"fixed\"\nquestions = 3\ntarget = \"free\"\n\
         repairs = 2\nseed = 5\nlimit = 7\n";
-    let mut rng = rng(2, &["hostile settings"]);
+    let mut rng = seeded_rng(2, &["hostile settings"]);
     let (mut used, mut refused) = (0, 0);
     for _ in 0..MUTATIONS {
         let bytes = damaged(text, &mut rng);
         let Ok(text) = String::from_utf8(bytes) else { continue };
-        match toml::from_str::<Asked>(&text).map_err(|_| ()).and_then(|asked| asked.resolve().map_err(|_| ())) {
+        match toml::from_str::<AskedSettings>(&text).map_err(|_| ()).and_then(|asked| asked.resolve().map_err(|_| ())) {
             Ok(settings) => {
                 assert!(settings.paths <= 1_000_000 && settings.request.hops.start() <= settings.request.hops.end());
                 assert!(settings.request.length_m.start() <= settings.request.length_m.end());
@@ -270,14 +270,14 @@ fn first_line(file: &Path) -> String {
     fs::read_to_string(file).unwrap().lines().next().unwrap().to_owned() + "\n"
 }
 
-fn check_damaged_records(file: &Path, settings: &Settings, line: &str, count: usize) {
-    let quiet = Output::new(true, true);
-    let mut rng = rng(3, &["hostile records", &settings.platform]);
+fn check_damaged_records(file: &Path, settings: &RunSettings, line: &str, count: usize) {
+    let quiet = CommandOutput::new(true, true);
+    let mut rng = seeded_rng(3, &["hostile records", &settings.platform]);
     let (mut used, mut refused) = (0, 0);
     for _ in 0..count {
         let bytes = damaged_line(line, &mut rng);
         fs::write(file, &bytes).unwrap();
-        match check_file(file, settings, How { style: Some("reverie"), ..How::default() }, &quiet) {
+        match check_file(file, settings, CheckOptions { style: Some("reverie"), ..CheckOptions::default() }, &quiet) {
             Ok(report) => used += report.passed + report.unverified + report.failed,
             Err(error) => {
                 // The error about a path that does not fit its scene names the scene; that about an unreadable line
@@ -330,7 +330,7 @@ fn a_house_is_not_looked_at_from_nowhere() {
         *changed.pointer_mut(pointer).unwrap() = value.clone();
         fs::write(&file, format!("{changed}\n")).unwrap();
         // The line may be refused, or checked without a result; the command only has to end.
-        if let Err(error) = check_file(&file, &settings, How::default(), &Output::new(true, true)) {
+        if let Err(error) = check_file(&file, &settings, CheckOptions::default(), &CommandOutput::new(true, true)) {
             let told = error.to_string();
             assert!(told.contains("told.jsonl") || told.contains("scene"), "{pointer} = {value}: {told}");
         }
@@ -344,7 +344,7 @@ fn damaged_lines_of_a_run_are_refused_with_file_and_line() {
     let (walks, report) = (building.path("run/walks.jsonl"), building.path("report.html"));
     let whole = fs::read(&walks).unwrap();
     let line = first_line(&walks);
-    let mut rng = rng(4, &["hostile walks"]);
+    let mut rng = seeded_rng(4, &["hostile walks"]);
     let mut refused = 0;
     for number in 0..MUTATIONS {
         let bytes = damaged_line(&line, &mut rng);
@@ -360,14 +360,14 @@ fn damaged_lines_of_a_run_are_refused_with_file_and_line() {
         // Drawing a page takes longer than reading a line.
         if number % 10 == 0 && read.is_ok_and(|walks| !walks.is_empty()) {
             fs::write(&walks, &bytes).unwrap();
-            if let Err(error) = wayword_report::pages::write(&building.path("run"), &report, 1) {
+            if let Err(error) = wayword_report::pages::write_report(&building.path("run"), &report, 1) {
                 assert_names(&error, "run", &bytes);
             }
         }
     }
     assert!(refused > 300, "{refused} refused");
     fs::write(&walks, whole).unwrap();
-    wayword_report::pages::write(&building.path("run"), &report, 1).unwrap();
+    wayword_report::pages::write_report(&building.path("run"), &report, 1).unwrap();
 }
 
 #[test]
@@ -375,8 +375,8 @@ fn a_style_or_settings_file_that_is_no_file_is_refused() {
     let building = Building::new();
     let folder: PathBuf = building.path("folder.toml");
     fs::create_dir(&folder).unwrap();
-    assert_names(&styles::find(&[folder.display().to_string()]).unwrap_err(), "folder.toml", b"");
+    assert_names(&styles::find_styles(&[folder.display().to_string()]).unwrap_err(), "folder.toml", b"");
     let huge = building.path("huge.toml");
     fs::File::create(&huge).unwrap().set_len(1 << 40).unwrap();
-    assert_names(&styles::find(&[huge.display().to_string()]).unwrap_err(), "huge.toml", b"");
+    assert_names(&styles::find_styles(&[huge.display().to_string()]).unwrap_err(), "huge.toml", b"");
 }

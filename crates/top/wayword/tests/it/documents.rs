@@ -5,8 +5,8 @@
 
 use clap::{CommandFactory, Parser};
 use std::{collections::BTreeSet, path::Path};
-use wayword::cli::Cli;
-use wayword_testkit::documents::{self, Documented};
+use wayword::cli::WaywordCli;
+use wayword_testkit::documents::{self, DocumentedCommand};
 
 /// Commands that a test cannot run: a word by which to recognise them, and what they need. The test runs all others.
 const NEEDS: [(&str, &str); 13] = [
@@ -39,20 +39,20 @@ const AT_MOST: [(&str, u32); 3] = [("--paths", 1), ("--views", 5), ("--smooth", 
 /// The exit codes that a documented command may end with: done, or done with loss.
 const GOOD: [Option<i32>; 2] = [Some(0), Some(3)];
 
-fn documented() -> Vec<Documented> {
+fn documented() -> Vec<DocumentedCommand> {
     let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../..").canonicalize().unwrap();
-    let mut commands = documents::commands(&repository).unwrap();
+    let mut commands = documents::documented_commands(&repository).unwrap();
     commands.retain(|command| command.program == "wayword");
     assert!(commands.len() > 20, "{} commands", commands.len());
     commands
 }
 
 /// The reason why a test cannot run a command; `None` for a command that the test runs.
-fn needs(command: &Documented) -> Option<&'static (&'static str, &'static str)> {
+fn needs(command: &DocumentedCommand) -> Option<&'static (&'static str, &'static str)> {
     let line = format!("{} ", command.args.join(" "));
     NEEDS.iter().find(|(word, _)| line.contains(word)).or_else(|| {
         // Only the subcommand counts, because `--ledger FILE` is a flag of many commands.
-        let known = Cli::command();
+        let known = WaywordCli::command();
         let subcommand = command.args.iter().find(|word| known.find_subcommand(word).is_some())?;
         COMMANDS_NEED.iter().find(|(name, _)| name == subcommand)
     })
@@ -60,8 +60,8 @@ fn needs(command: &Documented) -> Option<&'static (&'static str, &'static str)> 
 
 /// Whether this is only a command's name within the text, as in "`wayword ledger export` writes", and not a command to
 /// type.
-fn is_a_name(command: &Documented) -> bool {
-    let mut known = Cli::command();
+fn is_a_name(command: &DocumentedCommand) -> bool {
+    let mut known = WaywordCli::command();
     for word in &command.args {
         let Some(inner) = known.find_subcommand(word) else { return false };
         known = inner.clone();
@@ -71,7 +71,7 @@ fn is_a_name(command: &Documented) -> bool {
 
 fn unreadable<'a>(words: impl IntoIterator<Item = &'a str>) -> Option<String> {
     use clap::error::ErrorKind::{DisplayHelp, DisplayVersion};
-    let error = Cli::try_parse_from(words).err()?;
+    let error = WaywordCli::try_parse_from(words).err()?;
     (!matches!(error.kind(), DisplayHelp | DisplayVersion)).then(|| error.to_string())
 }
 
@@ -89,7 +89,7 @@ fn every_command_of_the_documents_is_read_by_the_command_line() {
 
 #[test]
 fn every_example_of_the_help_is_read_by_the_command_line() {
-    let mut left = vec![Cli::command()];
+    let mut left = vec![WaywordCli::command()];
     let mut examples = 0;
     while let Some(command) = left.pop() {
         left.extend(command.get_subcommands().cloned());

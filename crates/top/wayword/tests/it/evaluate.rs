@@ -192,7 +192,8 @@ fn gzip_and_bare_viewpoints_are_read() {
         item.as_object_mut().unwrap().shift_remove("predObjId");
     }
     let plain = building.write("plain.json", Value::from(submitted).to_string());
-    submission::write(&building.path("submission.json.gz"), &submission::read(&plain).submitted).unwrap();
+    submission::write_submission(&building.path("submission.json.gz"), &submission::read_submission(&plain).submitted)
+        .unwrap();
     assert!(fs::read(building.path("submission.json.gz")).unwrap().starts_with(&[0x1f, 0x8b]));
     let bare = report(&evaluate_file(&building, "plain.json", R2R, &["--json"]));
     let found = report(&evaluate_file(&building, "submission.json.gz", R2R, &["--json"]));

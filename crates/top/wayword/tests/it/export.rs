@@ -5,8 +5,8 @@
 use crate::common::{Building, files};
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
-use wayword_core::{DVec3, Frame, Heading, Motion, Path, Pose, ViewpointId};
-use wayword_formats::{Format, jsonl, jsonl::Split};
+use wayword_core::{DVec3, Frame, Heading, Path, PathMotion, Pose, ViewpointId};
+use wayword_formats::{DatasetFormat, jsonl, jsonl::DatasetSplit};
 use wayword_testkit::{SCAN, viewpoint_id};
 
 fn export(building: &Building, format: &str, out: &str) -> Value {
@@ -25,19 +25,19 @@ fn each_format_is_read_back_with_the_same_texts_and_paths() {
     let building = Building::new();
     let mut records = building.run_over_episodes("run");
     records.retain(|record| record.instruction.style == "reverie");
-    for format in Format::ALL {
+    for format in DatasetFormat::ALL {
         let out = format!("out.{format}.json");
         let written = export(&building, format.name(), &out);
         assert_eq!(written["instructions"], 10, "{written}");
-        let episodes = format.read(&building.path(&out)).unwrap();
-        assert_eq!(wayword_formats::detect(&building.path(&out)).unwrap(), format);
+        let episodes = format.read_file(&building.path(&out)).unwrap();
+        assert_eq!(wayword_formats::detect_format(&building.path(&out)).unwrap(), format);
         assert_eq!(episodes.len(), records.len());
         for (episode, record) in episodes.iter().zip(&records) {
             let path = &record.path;
             assert_eq!((&episode.scene, &episode.instructions), (&path.scene, &vec![record.instruction.text.clone()]));
             let start: Heading = path.frames[0].pose.heading;
             assert!(start.turn_to(episode.start_heading.unwrap()).abs() < 1e-6, "{format}");
-            if format == Format::Vlnce {
+            if format == DatasetFormat::Vlnce {
                 let off = |(floor, frame): (&wayword_core::DVec3, &wayword_core::Frame)| {
                     floor.truncate().distance(frame.pose.position.truncate())
                 };
@@ -46,7 +46,7 @@ fn each_format_is_read_back_with_the_same_texts_and_paths() {
             } else {
                 assert_eq!(episode.viewpoints, viewpoints(path), "{format}");
             }
-            if matches!(format, Format::Reverie | Format::Wayword) {
+            if matches!(format, DatasetFormat::Reverie | DatasetFormat::Wayword) {
                 assert_eq!(episode.target_object.as_ref(), path.target.as_ref().map(|target| &target.object));
             }
         }
@@ -60,7 +60,7 @@ fn provenance_is_in_the_file_or_next_to_it() {
     for format in ["reverie", "rxr"] {
         let out = format!("within.{format}");
         assert!(export(&building, format, &out).get("provenance").is_none());
-        let episodes = wayword_formats::read(&building.path(&out)).unwrap();
+        let episodes = wayword_formats::read_any_format(&building.path(&out)).unwrap();
         assert!(
             episodes.iter().all(|episode| episode.extra["wayword"][0]["provenance"]["answerer"] == "labels"),
             "{format}"
@@ -72,7 +72,7 @@ fn provenance_is_in_the_file_or_next_to_it() {
         let beside = export(&building, format, &out)["provenance"].as_str().unwrap().to_owned();
         let lines = building.lines(&beside);
         let texts: BTreeSet<String> = lines.iter().map(|line| line["text"].as_str().unwrap().to_owned()).collect();
-        let episodes = wayword_formats::read(&building.path(&out)).unwrap();
+        let episodes = wayword_formats::read_any_format(&building.path(&out)).unwrap();
         assert_eq!(texts, episodes.into_iter().flat_map(|episode| episode.instructions).collect(), "{format}");
         assert!(lines.iter().all(|line| line["wayword"]["provenance"]["writer"] == "rules"), "{format}");
     }
@@ -84,7 +84,7 @@ fn what_is_exported_as_reverie_keeps_the_ids_of_its_episodes() {
     building.run_over_episodes("run");
     export(&building, "reverie", "out.json");
     let ids = |file: &str| -> Vec<(String, String)> {
-        let episodes = Format::Reverie.read(&building.path(file)).unwrap();
+        let episodes = DatasetFormat::Reverie.read_file(&building.path(file)).unwrap();
         episodes.into_iter().map(|episode| (episode.id, episode.path_id)).collect()
     };
     assert_eq!(ids("out.json"), ids(crate::common::EPISODES));
@@ -109,18 +109,18 @@ fn runs_merge_and_no_scene_is_in_both_splits() {
         let more = ["--val-share", "0.5", "--seed", seed, "--out", out];
         let ran = building.wayword(&[&arguments[..], &more[..]].concat());
         assert_eq!(ran.code, Some(0), "{ran:?}");
-        jsonl::read(&building.path(out)).unwrap()
+        jsonl::read_records(&building.path(out)).unwrap()
     };
     let merged = merge("merged.jsonl", "0");
     assert_eq!(merged.len(), 20 + 2 + 2);
-    let mut splits: BTreeMap<(&str, &str), BTreeSet<Split>> = BTreeMap::new();
+    let mut splits: BTreeMap<(&str, &str), BTreeSet<DatasetSplit>> = BTreeMap::new();
     for record in &merged {
         let scene = (record.platform.as_str(), record.path.scene.as_str());
         splits.entry(scene).or_default().insert(record.split.unwrap());
     }
     assert_eq!(splits.len(), 3);
     assert!(splits.values().all(|of_scene| of_scene.len() == 1), "{splits:?}");
-    let of_houses: BTreeSet<&Split> =
+    let of_houses: BTreeSet<&DatasetSplit> =
         splits.iter().filter(|((platform, _), _)| *platform == "house").flat_map(|(_, split)| split).collect();
     assert_eq!(of_houses.len(), 2, "each split has a house: {splits:?}");
     assert!(merge("again.jsonl", "0") == merged);
@@ -128,7 +128,7 @@ fn runs_merge_and_no_scene_is_in_both_splits() {
         let merged = merge("seeded.jsonl", &seed.to_string());
         merged
             .into_iter()
-            .find(|record| record.split == Some(Split::Val) && record.platform == "house")
+            .find(|record| record.split == Some(DatasetSplit::Val) && record.platform == "house")
             .unwrap()
             .path
             .scene
@@ -155,9 +155,10 @@ fn vlnce_names_the_command_that_gives_habitat_a_generated_house() {
     );
     assert_eq!(episode["info"]["geodesic_distance_over"], "frames");
     let houses = wayword_run::platforms::open_named("house", None, None, None).unwrap();
-    let (episodes, records) = (Format::Vlnce.read(&building.path("a.json")).unwrap(), building.records("a"));
+    let (episodes, records) =
+        (DatasetFormat::Vlnce.read_file(&building.path("a.json")).unwrap(), building.records("a"));
     let standing = |floor: DVec3| Frame {
-        pose: Pose::level(floor + DVec3::Z * 1.5, Heading::NORTH),
+        pose: Pose::looking_level(floor + DVec3::Z * 1.5, Heading::NORTH),
         viewpoint: None,
         level: None,
     };
@@ -165,7 +166,7 @@ fn vlnce_names_the_command_that_gives_habitat_a_generated_house() {
     for (episode, record) in episodes.iter().zip(&records) {
         corners += episode.floor_positions.len() - record.path.frames.len();
         for hop in episode.floor_positions.windows(2) {
-            let way = houses.way(&record.path.scene, &standing(hop[0]), &standing(hop[1])).unwrap().unwrap();
+            let way = houses.ground_route(&record.path.scene, &standing(hop[0]), &standing(hop[1])).unwrap().unwrap();
             assert!(way.length_m <= hop[0].distance(hop[1]) + 0.08, "{hop:?} is no straight walk");
         }
     }
@@ -193,7 +194,7 @@ fn vlnce_names_the_ground_of_distances_and_the_gaps_of_a_recording() {
     for record in &mut records {
         record.platform = "recording".to_owned();
     }
-    jsonl::write(&building.path("run/instructions.jsonl"), &records).unwrap();
+    jsonl::write_records(&building.path("run/instructions.jsonl"), &records).unwrap();
     let (said, episode) = export("recording.json");
     assert_eq!(episode["scene_id"], format!("recording/{scan}/{scan}.glb"));
     let needs = episode["info"]["scene_needs"].as_str().unwrap();
@@ -290,15 +291,17 @@ fn a_recording_without_poses_is_exported_as_records_alone() {
     let building = Building::new();
     let mut records = building.run_over_episodes("run");
     for record in &mut records {
-        record.path.motion = Motion::Unknown;
+        record.path.motion = PathMotion::Unknown;
     }
-    jsonl::write(&building.path("run/instructions.jsonl"), &records).unwrap();
-    for format in Format::ALL {
+    jsonl::write_records(&building.path("run/instructions.jsonl"), &records).unwrap();
+    for format in DatasetFormat::ALL {
         let ran =
             building.wayword(&["export", "--run", "run", "--style", "r2r", "--format", format.name(), "--out", "o"]);
-        if format == Format::Wayword {
+        if format == DatasetFormat::Wayword {
             assert_eq!(ran.code, Some(0), "{ran:?}");
-            assert!(jsonl::read(&building.path("o")).unwrap().iter().all(|record| !record.path.motion.is_known()));
+            assert!(
+                jsonl::read_records(&building.path("o")).unwrap().iter().all(|record| !record.path.motion.is_known())
+            );
         } else {
             let error = ran.refused();
             assert!(error.contains("needs poses") && error.contains("--format wayword"), "{error}");

@@ -95,7 +95,7 @@ mod built {
         records[1].path = first.path;
         records[1].extra = first.extra;
         records[1].instruction.mentions.clear();
-        wayword_formats::jsonl::write(&building.path("run/instructions.jsonl"), &records).unwrap();
+        wayword_formats::jsonl::write_records(&building.path("run/instructions.jsonl"), &records).unwrap();
         let bert = tokenizer(&building, "[CLS]", "[SEP]");
         for (dataset, name) in [("r2r", "R2R_mine_enc.json"), ("reverie", "REVERIE_mine_enc.json")] {
             let ran =

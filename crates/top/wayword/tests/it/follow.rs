@@ -6,7 +6,7 @@
 use crate::common::{Building, EPISODES, Ran};
 use serde_json::{Value, json};
 use std::path::Path;
-use wayword_core::{MentionKind, Side, Turn};
+use wayword_core::{MentionKind, Side, TurnKind};
 use wayword_testkit::{SCAN, viewpoint_id};
 
 /// From the refrigerator through the kitchen and the hallway to the entryway, and right into the living room.
@@ -137,8 +137,8 @@ fn records_carry_what_check_finds_of_their_ambiguity() {
     let building = Building::new();
     let records = building.run_over_episodes("run");
     let checked = check_file(&building, "run/instructions.jsonl", &[]).json();
-    let ambiguous = |record: &&wayword_formats::jsonl::Record| {
-        record.instruction.ambiguity.as_ref().is_some_and(wayword_core::Ambiguity::is_ambiguous)
+    let ambiguous = |record: &&wayword_formats::jsonl::InstructionRecord| {
+        record.instruction.ambiguity.as_ref().is_some_and(wayword_core::TextAmbiguity::is_ambiguous)
     };
     let number = records.iter().filter(ambiguous).count();
     assert!(number > 0 && number < records.len(), "{number}");
@@ -222,8 +222,8 @@ fn texts_mention_turns_in_order_and_most_large_ones() {
         let real: Vec<Side> = moves
             .iter()
             .map(|step| step.turn())
-            .filter(|turn| matches!(turn, Turn::Left | Turn::Right))
-            .filter_map(Turn::side)
+            .filter(|turn| matches!(turn, TurnKind::Left | TurnKind::Right))
+            .filter_map(TurnKind::side)
             .collect();
         let count = |sides: &[Side], side| sides.iter().filter(|other| **other == side).count();
         told_turns +=

@@ -162,7 +162,7 @@ fn episodes_over_the_graphs_are_taken_under_either_name_of_a_scene() {
     // The scene has one name everywhere, so that it comes into one split.
     assert_eq!(scenes[..2], [NUMBERED, NUMBERED]);
     let numbered = SceneId::new(NUMBERED).unwrap();
-    assert_eq!(OfficialSplit::of(&numbered), Some(OfficialSplit::Val), "the number says which split it is in");
+    assert_eq!(OfficialSplit::for_scene(&numbered), Some(OfficialSplit::Val), "the number says which split it is in");
     assert!(ran.err.contains("left out: scene flat09: there is no scene flat09"), "{ran:?}");
     // The scene of the fourth is unknown, and the way of the third is not one of its scene, except by chance.
     assert!(ran.json()["errors"].as_u64().unwrap() >= 1, "{ran:?}");
@@ -179,8 +179,8 @@ fn walks_along_graphs_are_exported_in_single_steps() {
     let (walks, failed) = (told["walks"].as_u64().unwrap(), told["failed"].as_u64().unwrap());
     assert_eq!((walks + failed, walks > 0), (2, true), "{ran:?}");
     assert!(told["farthest_off_m"].as_f64().unwrap() <= 0.5, "{ran:?}");
-    let taken = wayword_formats::trajectories::read(&building.path("steps/trajectories.jsonl")).unwrap();
-    let shown = wayword_formats::trajectories::pictures(&building.path("steps"), &taken[0]).unwrap();
+    let taken = wayword_formats::trajectories::read_trajectories(&building.path("steps/trajectories.jsonl")).unwrap();
+    let shown = wayword_formats::trajectories::read_pictures(&building.path("steps"), &taken[0]).unwrap();
     assert_eq!(shown.len(), taken[0].actions.len());
 }
 

@@ -10,8 +10,8 @@ use std::{
     sync::Arc,
 };
 use wayword_core::{DVec3, Frame, Heading, Platform, Pose};
-use wayword_formats::Format;
-use wayword_habitat::{HabitatOptions, HabitatPlatform, NavMeshSettings, bake::bake, scene::Model};
+use wayword_formats::DatasetFormat;
+use wayword_habitat::{HabitatOptions, HabitatPlatform, NavMeshSettings, bake::bake_navmesh, scene::SceneModel};
 use wayword_render::Mesh;
 
 /// A house saved as a scene of Habitat: its stage.
@@ -35,15 +35,15 @@ fn vlnce_has_every_corner_of_the_way_and_the_distance_over_the_navmesh() {
     let options = HabitatOptions::default();
     let world =
         HabitatPlatform::open(&building.path(stage.to_str().unwrap()), options, Arc::new(|_: &str| {})).unwrap();
-    let scene = world.scenes().unwrap().remove(0);
+    let scene = world.list_scenes().unwrap().remove(0);
     let standing = |floor: DVec3| {
-        let pose = Pose::level(floor + DVec3::Z * 1.5, Heading::NORTH);
+        let pose = Pose::looking_level(floor + DVec3::Z * 1.5, Heading::NORTH);
         Frame { pose, viewpoint: None, level: None }
     };
     let length_m =
-        |from: DVec3, to: DVec3| world.way(&scene, &standing(from), &standing(to)).unwrap().unwrap().length_m;
+        |from: DVec3, to: DVec3| world.ground_route(&scene, &standing(from), &standing(to)).unwrap().unwrap().length_m;
     let dataset: Value = serde_json::from_slice(&std::fs::read(building.path("run.json")).unwrap()).unwrap();
-    let episodes = Format::Vlnce.read(&building.path("run.json")).unwrap();
+    let episodes = DatasetFormat::Vlnce.read_file(&building.path("run.json")).unwrap();
     let records = building.records("run");
     let mut corners = 0;
     for ((episode, written), record) in episodes.iter().zip(dataset["episodes"].as_array().unwrap()).zip(&records) {
@@ -78,7 +78,7 @@ fn vlnce_is_exported_over_the_frames_where_the_scenes_are_gone() {
     let [warning] = warnings[..] else { panic!("{ran:?}") };
     assert!(warning.contains("scenes") && warning.contains("corners and distances"), "{warning}");
     let dataset: Value = serde_json::from_slice(&std::fs::read(building.path("run.json")).unwrap()).unwrap();
-    let episodes = Format::Vlnce.read(&building.path("run.json")).unwrap();
+    let episodes = DatasetFormat::Vlnce.read_file(&building.path("run.json")).unwrap();
     let records = building.records("run");
     for ((episode, written), record) in episodes.iter().zip(dataset["episodes"].as_array().unwrap()).zip(&records) {
         assert_eq!(written["info"]["geodesic_distance_over"], "frames");
@@ -92,13 +92,14 @@ fn vlnce_is_exported_over_the_frames_where_the_scenes_are_gone() {
 fn roof(building: &Building, stage: &Path) {
     let stage = building.path(stage.to_str().unwrap());
     let world = HabitatPlatform::open(&stage, HabitatOptions::default(), Arc::new(|_: &str| {})).unwrap();
-    let graph = world.graph(&world.scenes().unwrap()[0]).unwrap();
-    let places = || graph.viewpoints().filter_map(|viewpoint| graph.position(viewpoint));
+    let graph = world.graph_for_scene(&world.list_scenes().unwrap()[0]).unwrap();
+    let places = || graph.viewpoints().filter_map(|viewpoint| graph.position_of(viewpoint));
     let (low, high) = (places().reduce(DVec3::min).unwrap(), places().reduce(DVec3::max).unwrap());
     let corner = |x: f64, y: f64| DVec3::new(x, y, 40.0).as_vec3();
     let positions = vec![corner(low.x, low.y), corner(high.x, low.y), corner(high.x, high.y), corner(low.x, high.y)];
     let sheet = Mesh { positions, triangles: vec![[0, 1, 2], [0, 2, 3]], ..Mesh::default() };
-    let mesh = bake(&Model { meshes: vec![sheet], ..Model::default() }, &NavMeshSettings::default()).unwrap();
+    let mesh = bake_navmesh(&SceneModel { meshes: vec![sheet], ..SceneModel::default() }, &NavMeshSettings::default())
+        .unwrap();
     std::fs::write(stage.with_file_name("house2-2.navmesh"), mesh.to_bytes()).unwrap();
 }
 

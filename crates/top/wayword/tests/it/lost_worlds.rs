@@ -20,7 +20,7 @@ use std::{
     thread,
     time::Duration,
 };
-use wayword_core::rng;
+use wayword_core::seeded_rng;
 use wayword_live::{tdw, virtualhome};
 
 fn deaths() -> usize {
@@ -106,7 +106,7 @@ fn a_child_that_dies_costs_nothing() {
     let whole = generate("whole");
     assert_eq!(whole.code, Some(0), "{whole:?}");
     let looks: u64 = fs::read_to_string(building.path("count")).unwrap().parse().unwrap();
-    let mut rng = rng(7, &["deaths of a child"]);
+    let mut rng = seeded_rng(7, &["deaths of a child"]);
     for death in 0..deaths() {
         fs::remove_file(building.path("count")).unwrap();
         let at = rng.random_range(1..=looks);
@@ -186,10 +186,10 @@ fn an_executable_that_dies_costs_nothing() {
     let at = format!("http://{address}");
     let world = ["generate", "--platform", "virtualhome", "--at", &at, "--scan", "home_0", "--style", "r2r"];
     let generate = |run: &str| building.wayword(&[&world[..], &["--paths", "4", "--out", run]].concat());
-    let mut executable = virtualhome::stand_in::StandIn::start(address).unwrap();
+    let mut executable = virtualhome::stand_in::VirtualHomeStandIn::start(address).unwrap();
     assert_eq!(generate("whole").code, Some(0));
     let size = fs::metadata(building.path("whole/walks.jsonl")).unwrap().len();
-    let mut rng = rng(8, &["deaths of an executable"]);
+    let mut rng = seeded_rng(8, &["deaths of an executable"]);
     for death in 0..deaths() {
         let run = format!("run{death}");
         let moment = rng.random_range(0..size * 3 / 4);
@@ -202,7 +202,7 @@ fn an_executable_that_dies_costs_nothing() {
         thread::sleep(Duration::from_millis(rng.random_range(0..40)));
         drop(executable);
         assert!(matches!(child.wait().unwrap().code(), Some(0 | 3 | 7)));
-        executable = virtualhome::stand_in::StandIn::start(address).unwrap();
+        executable = virtualhome::stand_in::VirtualHomeStandIn::start(address).unwrap();
         go_on(&building, &run, &generate);
         assert!(contents(&building.path(&run)) == contents(&building.path("whole")), "at {moment} bytes");
     }
@@ -214,15 +214,15 @@ fn a_build_that_breaks_costs_nothing() {
     let at = address.to_string();
     let world = ["generate", "--platform", "tdw", "--at", &at, "--scan", "floorplan_1a", "--style", "r2r"];
     let generate = |run: &str| building.wayword(&[&world[..], &["--paths", "4", "--out", run]].concat());
-    let build = tdw::stand_in::StandIn::start(address, tdw::stand_in::StandInOptions::default());
+    let build = tdw::stand_in::TdwStandIn::start(address, tdw::stand_in::StandInOptions::default());
     assert_eq!(generate("whole").code, Some(0));
     drop(build);
-    let mut rng = rng(9, &["deaths of a build"]);
+    let mut rng = seeded_rng(9, &["deaths of a build"]);
     for death in 0..deaths() {
         let run = format!("run{death}");
         let breaks_after = Some(rng.random_range(1..200));
         let options = tdw::stand_in::StandInOptions { breaks_after, ..Default::default() };
-        let _build = tdw::stand_in::StandIn::start(address, options);
+        let _build = tdw::stand_in::TdwStandIn::start(address, options);
         go_on(&building, &run, &generate);
         assert!(contents(&building.path(&run)) == contents(&building.path("whole")), "after {breaks_after:?} answers");
     }

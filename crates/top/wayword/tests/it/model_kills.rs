@@ -11,8 +11,8 @@ use crate::common::models as stage;
 use rand::Rng;
 use stage::{Stage, cast};
 use std::{env, process::Stdio, thread, time::Duration};
-use wayword_core::rng;
-use wayword_testkit::provider::Behaviour;
+use wayword_core::seeded_rng;
+use wayword_testkit::provider::ProviderBehaviour;
 
 const CONCURRENCY: u64 = 16;
 /// About 2,000 calls.
@@ -21,18 +21,18 @@ const RUN: [&str; 6] = ["--paths", "100", "--concurrency", "16", "--quiet", "--j
 #[test]
 fn a_run_that_is_killed_ends_the_same_and_pays_once() {
     let kills: usize = env::var("WAYWORD_KILLS").map_or(3, |kills| kills.parse().unwrap());
-    let behaviour = Behaviour { latency: Duration::from_millis(10), ..cast() };
+    let behaviour = ProviderBehaviour { latency: Duration::from_millis(10), ..cast() };
     let (whole, killed) = (Stage::new(behaviour.clone()), Stage::new(behaviour));
     whole.generate("run", &RUN);
     let calls = whole.provider.log().answered;
 
-    let mut rng = rng(3, &["kills"]);
+    let mut rng = seeded_rng(3, &["kills"]);
     let mut moments: Vec<u64> = (0..kills).map(|_| rng.random_range(1..calls * 19 / 20)).collect();
     moments.sort_unstable();
     let mut at_work = 0;
     for moment in moments {
         let mut child = killed.generating("run", &RUN).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
-        while killed.provider.requests() < moment && child.try_wait().unwrap().is_none() {
+        while killed.provider.request_count() < moment && child.try_wait().unwrap().is_none() {
             thread::sleep(Duration::from_millis(1));
         }
         // A process without a call so far is killed while it reads its files.
@@ -60,18 +60,18 @@ fn a_run_that_is_killed_ends_the_same_and_pays_once() {
 fn two_runs_on_one_ledger_pay_for_each_call_once() {
     const RUN: [&str; 6] = ["--paths", "40", "--concurrency", "16", "--quiet", "--json"];
     let kills: usize = env::var("WAYWORD_KILLS").map_or(3, |kills| kills.parse().unwrap());
-    let behaviour = Behaviour { latency: Duration::from_millis(20), ..cast() };
+    let behaviour = ProviderBehaviour { latency: Duration::from_millis(20), ..cast() };
     let (alone, shared) = (Stage::new(behaviour.clone()), Stage::new(behaviour));
     assert_eq!(alone.generate("one", &RUN).code, alone.generate("two", &RUN).code);
     let calls = alone.provider.log().answered;
 
     let begin = |out: &str| shared.generating(out, &RUN).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
-    let mut rng = rng(5, &["kills of one of two"]);
+    let mut rng = seeded_rng(5, &["kills of one of two"]);
     let mut moments: Vec<u64> = (0..kills).map(|_| rng.random_range(1..calls * 19 / 20)).collect();
     moments.sort_unstable();
     let (mut one, mut two) = (begin("one"), begin("two"));
     for moment in moments {
-        while shared.provider.requests() < moment {
+        while shared.provider.request_count() < moment {
             thread::sleep(Duration::from_millis(1));
         }
         let victim = if rng.random_bool(0.5) { (&mut one, "one") } else { (&mut two, "two") };

@@ -9,8 +9,8 @@ use serde_json::Value;
 use stage::{KEY, Stage, cast, holds_no_key};
 use std::fs;
 use wayword_testkit::provider::{
-    Behaviour, Fault, Faults, Gallery,
-    scripts::{Cast, FlawedEye},
+    FaultSchedule, PictureGallery, ProviderBehaviour, ServiceFault,
+    scripts::{FlawedEye, ScriptedCast},
 };
 
 #[test]
@@ -69,10 +69,10 @@ fn models_play_every_role_and_provenance_names_them() {
 fn ledger_answers_repeated_calls() {
     let stage = Stage::new(cast());
     assert_eq!(stage.generate("first", &["--paths", "6"]).code, Some(0));
-    let asked = stage.provider.requests();
+    let asked = stage.provider.request_count();
     let second = stage.generate("second", &["--paths", "6"]);
     assert_eq!(second.code, Some(0), "{second:?}");
-    assert_eq!(stage.provider.requests(), asked, "{}", second.out);
+    assert_eq!(stage.provider.request_count(), asked, "{}", second.out);
     // Neither the ledger's log nor its lock file is left behind.
     let names = fs::read_dir(stage.building.path("")).unwrap().map(|entry| entry.unwrap().file_name());
     let beside: Vec<_> = names.filter(|name| name.to_string_lossy().starts_with("ledger.db")).collect();
@@ -86,10 +86,11 @@ fn ledger_answers_repeated_calls() {
 
 #[test]
 fn a_storm_is_weathered_and_every_item_ends() {
-    let mut faults = Faults::storm(0.3).with(Fault::Filtered, 0.002).with(Fault::CutOff, 0.02);
+    let mut faults =
+        FaultSchedule::storm(0.3).with_fault(ServiceFault::Filtered, 0.002).with_fault(ServiceFault::CutOff, 0.02);
     faults.trickle = std::time::Duration::from_secs(2);
-    let behaviour = Behaviour { faults, ..cast() };
-    let stage = Stage::new(Behaviour { key: Some(KEY.into()), ..behaviour });
+    let behaviour = ProviderBehaviour { faults, ..cast() };
+    let stage = Stage::new(ProviderBehaviour { key: Some(KEY.into()), ..behaviour });
     let args = ["--paths", "12", "--concurrency", "16", "--timeout-s", "1", "--perception", "dialogue", "--json"];
     let ran = stage.generate("run", &args);
     let summary = ran.json();
@@ -107,8 +108,8 @@ fn a_storm_is_weathered_and_every_item_ends() {
 
 #[test]
 fn one_bad_frame_is_an_error_row_that_the_next_command_retries() {
-    let faults = Faults::default().first(&[Some(Fault::Filtered)]);
-    let stage = Stage::new(Behaviour { faults, ..cast() });
+    let faults = FaultSchedule::default().with_first_faults(&[Some(ServiceFault::Filtered)]);
+    let stage = Stage::new(ProviderBehaviour { faults, ..cast() });
     let args = ["--paths", "4", "--concurrency", "1", "--json"];
     let first = stage.generate("run", &args);
     assert_eq!((first.code, first.json()["errors"].as_u64()), (Some(3), Some(1)), "{first:?}");
@@ -125,13 +126,13 @@ fn one_bad_frame_is_an_error_row_that_the_next_command_retries() {
 #[test]
 fn a_refused_key_and_an_empty_account_stop_the_run_and_lose_nothing() {
     for is_quota in [false, true] {
-        let mut faults = Faults::default();
+        let mut faults = FaultSchedule::default();
         let after = if is_quota { &mut faults.quota_after } else { &mut faults.key_refused_after };
         *after = Some(40);
-        let stage = Stage::new(Behaviour { faults, key: Some(KEY.into()), ..cast() });
+        let stage = Stage::new(ProviderBehaviour { faults, key: Some(KEY.into()), ..cast() });
         let ran = stage.generate("run", &["--paths", "12", "--concurrency", "2", "--json"]);
         assert_eq!(ran.code, Some(5), "{ran:?}");
-        let requests = stage.provider.requests();
+        let requests = stage.provider.request_count();
         assert!(requests < 50, "{requests}: it goes on asking");
         assert!(ran.json()["stopped"].as_str().unwrap().contains("hint: "), "{ran:?}");
         let again = stage.generate("run", &["--paths", "12", "--concurrency", "2", "--json"]);
@@ -139,7 +140,7 @@ fn a_refused_key_and_an_empty_account_stop_the_run_and_lose_nothing() {
         assert_eq!(stage.provider.log().answered_again(), 0, "{again:?}");
         holds_no_key(&stage.building.path(""));
     }
-    let stage = Stage::new(Behaviour { key: Some(KEY.into()), ..cast() });
+    let stage = Stage::new(ProviderBehaviour { key: Some(KEY.into()), ..cast() });
     let without = run(stage.generating("run", &["--paths", "2"]).env_remove(stage::KEY_ENV));
     assert!(without.refused().contains(stage::KEY_ENV), "it names the variable: {without:?}");
     assert!(!stage.building.path("run").exists(), "it was known before a folder was made");
@@ -196,7 +197,7 @@ fn model_problems_are_reported_before_the_platform_is_opened() {
 #[test]
 fn a_service_that_is_gone_is_not_needed_for_what_the_ledger_has() {
     let Stage { building, provider } = Stage::new(cast());
-    let base = provider.base_url(wayword_testkit::provider::Dialect::OpenAi);
+    let base = provider.base_url(wayword_testkit::provider::ProviderDialect::OpenAi);
     let models = ["--llm", "server/words", "--see", "server/eye", "--base-url", &base, "--ledger", "ledger.db"];
     let generate = |out: &str, paths: &str| {
         let walks = ["--hops", "3..7", "--style", "r2r", "--evidence", "captions", "--paths", paths];
@@ -248,17 +249,17 @@ fn a_changed_answer_stops_the_run_and_is_dropped_by_name() {
     let at = bytes.windows(text.len()).enumerate().filter(|(_, found)| *found == text).map(|(at, _)| at);
     at.collect::<Vec<_>>().into_iter().for_each(|at| bytes[at] = b'X');
     fs::write(&ledger, bytes).unwrap();
-    let asked = stage.provider.requests();
+    let asked = stage.provider.request_count();
     let stopped = stage.generate("again", &["--paths", "2", "--json"]);
     let reason = stopped.json()["stopped"].as_str().unwrap().to_owned();
     assert_eq!(stopped.code, Some(5), "{stopped:?}");
     assert!(reason.contains("ledger.db") && reason.contains("ledger prune --changed"), "{reason}");
-    assert_eq!(stage.provider.requests(), asked, "nothing was asked anew without a word");
+    assert_eq!(stage.provider.request_count(), asked, "nothing was asked anew without a word");
     let dropped = stage.building.wayword(&["ledger", "prune", "--changed", "--ledger", "ledger.db", "--json"]);
     assert!(dropped.json()["rows"].as_u64().unwrap() > 0, "{dropped:?}");
     let whole = stage.generate("again", &["--paths", "2"]);
     assert_eq!(whole.code, Some(0), "{whole:?}");
-    assert!(stage.provider.requests() > asked);
+    assert!(stage.provider.request_count() > asked);
     let read = |run: &str| fs::read(stage.building.path(run).join("instructions.jsonl")).unwrap();
     assert!(read("run") == read("again"), "the answers are what they were");
 }
@@ -281,9 +282,9 @@ fn money_and_calls_are_bounded_over_all_commands_of_a_run() {
     assert!(spent(&first) <= 0.3 && spent(&first) > 0.2, "{first:?}");
     let second = bounded(&["--max-usd", "0.3"]);
     assert!(second.code == Some(5) && spent(&first) + spent(&second) <= 0.3, "{second:?}");
-    let asked = stage.provider.requests();
+    let asked = stage.provider.request_count();
     let third = bounded(&["--max-calls", &(asked + 10).to_string()]);
-    assert!(third.code == Some(5) && stage.provider.requests() <= asked + 10, "{third:?}");
+    assert!(third.code == Some(5) && stage.provider.request_count() <= asked + 10, "{third:?}");
     let last = bounded(&[]);
     assert_eq!(last.json()["stopped"], Value::Null, "{last:?}");
     let refused = stage.generate("other", &["--paths", "1", "--max-usd", "1"]);
@@ -298,7 +299,7 @@ fn money_and_calls_are_bounded_over_all_commands_of_a_run() {
 #[test]
 fn an_interrupt_finishes_what_is_in_flight_and_the_same_command_goes_on() {
     let latency = std::time::Duration::from_millis(20);
-    let stage = Stage::new(Behaviour { latency, ..cast() });
+    let stage = Stage::new(ProviderBehaviour { latency, ..cast() });
     let args = ["--paths", "40", "--concurrency", "8", "--json"];
     let child = stage
         .generating("run", &args)
@@ -306,7 +307,7 @@ fn an_interrupt_finishes_what_is_in_flight_and_the_same_command_goes_on() {
         .stderr(std::process::Stdio::piped())
         .spawn()
         .unwrap();
-    while stage.provider.requests() < 60 {
+    while stage.provider.request_count() < 60 {
         std::thread::yield_now();
     }
     std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
@@ -332,7 +333,7 @@ fn an_interrupt_ends_a_run_that_the_ledger_answers() {
     let stage = Stage::new(cast());
     assert_eq!(stage.generate("run", &["--paths", "16"]).code, Some(0));
     let args = ["--paths", "16", "--concurrency", "1", "--json"];
-    let asked = stage.provider.requests();
+    let asked = stage.provider.request_count();
     let child = stage
         .generating("again", &args)
         .stdout(std::process::Stdio::piped())
@@ -346,7 +347,7 @@ fn an_interrupt_ends_a_run_that_the_ledger_answers() {
     std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
     assert_eq!(child.wait_with_output().unwrap().status.code(), Some(6));
     let whole = stage.generate("again", &args);
-    assert_eq!((whole.code, stage.provider.requests()), (Some(0), asked), "{whole:?}");
+    assert_eq!((whole.code, stage.provider.request_count()), (Some(0), asked), "{whole:?}");
     for file in ["walks.jsonl", "instructions.jsonl"] {
         let read = |run: &str| fs::read(stage.building.path(run).join(file)).unwrap();
         assert!(read("run") == read("again"), "{file} differs");
@@ -355,8 +356,8 @@ fn an_interrupt_ends_a_run_that_the_ledger_answers() {
 
 #[test]
 fn summary_counts_the_texts_that_rules_finished() {
-    let careless = Cast::new(FlawedEye::new(Gallery::default(), 1, 0.15), 1, 1.0);
-    let stage = Stage::new(Behaviour::of("words", careless.clone()).and("eye", careless));
+    let careless = ScriptedCast::new(FlawedEye::new(PictureGallery::default(), 1, 0.15), 1, 1.0);
+    let stage = Stage::new(ProviderBehaviour::for_model("words", careless.clone()).and_model("eye", careless));
     let ran = stage.generate("run", &["--paths", "4", "--repairs", "0"]);
     let finished = stage.building.records("run").into_iter();
     let finished = finished.filter(|record| record.instruction.provenance.finished_for.is_some()).count();
@@ -402,19 +403,19 @@ fn a_dry_run_asks_nothing_and_counts_what_a_run_would_ask() {
     stage.building.write("prices.toml", PRICES);
     let args = ["--style", "r2r", "--hops", "3..7", "--paths", "6", "--prices", "prices.toml", "--dry-run", "--json"];
     let plan = run(&mut stage.command("generate", &args)).json();
-    assert_eq!(stage.provider.requests(), 0);
+    assert_eq!(stage.provider.request_count(), 0);
     let models = plan["models"].as_array().unwrap();
     assert!(models.iter().all(|model| model["usd"].as_f64().unwrap() > 0.0), "{plan}");
     let planned: u64 = models.iter().map(|model| model["calls"].as_u64().unwrap()).sum();
     stage.generate("run", &["--paths", "6"]);
-    let asked = stage.provider.requests();
+    let asked = stage.provider.request_count();
     // Repairs add to the planned calls, and dialogues that end early save some.
     assert!(planned >= asked * 9 / 10 && planned < 3 * asked, "{planned} planned, {asked} asked");
 }
 
 #[test]
 fn doctor_reports_working_models_and_hints_for_the_others() {
-    let stage = Stage::new(Behaviour { key: Some(KEY.into()), ..cast() });
+    let stage = Stage::new(ProviderBehaviour { key: Some(KEY.into()), ..cast() });
     let healthy = run(&mut stage.command("doctor", &[]));
     assert!(healthy.out.contains("server/words") && healthy.out.contains("has a picture and labels"), "{healthy:?}");
     let keyless = run(stage.command("doctor", &["--json"]).env_remove(stage::KEY_ENV));
@@ -423,7 +424,7 @@ fn doctor_reports_working_models_and_hints_for_the_others() {
     let problem =
         findings["findings"].as_array().unwrap().iter().find(|finding| finding["state"] == "problem").unwrap();
     assert!(problem["hint"].as_str().unwrap().contains(stage::KEY_ENV), "{findings}");
-    let base = stage.provider.base_url(wayword_testkit::provider::Dialect::Ollama);
+    let base = stage.provider.base_url(wayword_testkit::provider::ProviderDialect::Ollama);
     let settings = format!(
         "[roles]\nllm = \"lab/words\"\n[providers.lab]\ndialect = \"ollama\"\nbase_url = \"{base}\"\nkey_env = \"{}\"\n",
         stage::KEY_ENV
@@ -503,7 +504,7 @@ fn the_ledger_can_be_shown_exported_and_pruned() {
     assert_eq!(shown.json()["rows"].as_array().unwrap().len(), 3, "{shown:?}");
     let exported = ledger(&["export", "--out", "all.jsonl"]).json()["rows"].as_u64().unwrap();
     assert_eq!(stage.building.lines("all.jsonl").len() as u64, exported);
-    assert_eq!(exported, stage.provider.requests());
+    assert_eq!(exported, stage.provider.request_count());
     assert_eq!(ledger(&["prune"]).code, Some(1), "it does not empty the ledger by mistake");
     let old = ledger(&["prune", "--older-than-days", "213503982334602"]);
     assert_eq!(old.json()["rows"], 0, "nothing is as old as that: {old:?}");

@@ -52,14 +52,14 @@ fn missing_data_of_a_platform_is_reported() {
 #[test]
 fn a_build_that_connects_can_be_walked_through() {
     let (building, address) = (Building::new(), free_port());
-    let _build = tdw::stand_in::StandIn::start(address, tdw::stand_in::StandInOptions::default());
+    let _build = tdw::stand_in::TdwStandIn::start(address, tdw::stand_in::StandInOptions::default());
     generate(&building, "tdw", "floorplan_1a", &address.to_string());
 }
 
 #[test]
 fn an_executable_that_answers_can_be_walked_through() {
     let (building, address) = (Building::new(), free_port());
-    let _executable = virtualhome::stand_in::StandIn::start(address).unwrap();
+    let _executable = virtualhome::stand_in::VirtualHomeStandIn::start(address).unwrap();
     generate(&building, "virtualhome", "home_0", &format!("http://{address}"));
 }
 

@@ -10,7 +10,7 @@ use crate::common::{Ran, run};
 use image::{Rgb, RgbImage};
 use stage::{KEY, KEY_ENV, Stage, cast};
 use std::{fs, path::Path};
-use wayword_core::{Check, Verdict};
+use wayword_core::{CheckKind, Verdict};
 
 /// Nine pictures with a pattern each; with poses they are a metre apart, four to the north and four to the east.
 fn walk(stage: &Stage, poses: bool) {
@@ -58,7 +58,7 @@ fn a_walk_with_poses_becomes_instructions_with_turns_that_hold() {
     assert_eq!((ran.code, &ran.json()["rejected"]), (Some(0), &0.into()), "{ran:?}");
     let record = stage.building.records("run").remove(0);
     // Where the scripted eye is not sure, landmarks are unverified; the turns are measured.
-    let turns = record.instruction.findings.iter().filter(|finding| finding.check == Check::Turns);
+    let turns = record.instruction.findings.iter().filter(|finding| finding.check == CheckKind::Turns);
     assert!(turns.clone().count() > 0 && turns.into_iter().all(|finding| finding.verdict == Verdict::Pass));
     assert!(record.instruction.text.contains("right"), "{}", record.instruction.text);
     let page = stage.building.wayword(&["report", "--run", "run"]);

@@ -6,7 +6,7 @@
 use crate::common::Building;
 use rand::Rng;
 use std::{fs, os::unix::process::ExitStatusExt, path::Path, process::Stdio};
-use wayword_core::rng;
+use wayword_core::seeded_rng;
 
 const FILES: [&str; 4] = ["config.toml", "walks.jsonl", "instructions.jsonl", "rejected.jsonl"];
 /// Without repairs some texts are rejected, so that every file grows.
@@ -44,7 +44,7 @@ fn a_run_that_is_killed_twenty_times_ends_up_the_same() {
 
     // A moment is a length of the file and not a time, because machines differ in speed.
     let grown = building.path("killed/walks.jsonl");
-    let mut rng = rng(5, &["kills"]);
+    let mut rng = seeded_rng(5, &["kills"]);
     let mut moments: Vec<u64> = (0..KILLS).map(|_| rng.random_range(1..whole[1].len() as u64 * 19 / 20)).collect();
     moments.sort_unstable();
     let mut at_work = 0;
@@ -68,7 +68,7 @@ fn torn_last_lines_are_cut_off_and_written_again() {
     let run: &[&str] = &["--paths", "12", "--hops", "3..7", "--seed", "2"];
     building.generate("whole", run);
     let whole = contents(&building.path("whole"));
-    let mut rng = rng(6, &["tears"]);
+    let mut rng = seeded_rng(6, &["tears"]);
     for _ in 0..10 {
         // A process dies while it writes one file. An item's line in walks.jsonl is complete before its texts are
         // written.

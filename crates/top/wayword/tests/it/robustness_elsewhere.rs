@@ -6,7 +6,7 @@
 use crate::common::{Building, Ran, free_port};
 use serde_json::Value;
 use std::fs;
-use wayword_live::{Houses, tdw, virtualhome};
+use wayword_live::{StandInHouses, tdw, virtualhome};
 
 fn robustness(building: &Building, args: &[&str]) -> Ran {
     building.wayword(&[&["robustness", "--run", "run", "--out", "robust", "--resamples", "100"], args].concat())
@@ -14,7 +14,7 @@ fn robustness(building: &Building, args: &[&str]) -> Ran {
 
 /// A generated house with one storey, which the stand-ins of simulators show too: the first from a seed on.
 fn with_one_storey(seed: u64) -> u64 {
-    (seed..).find(|seed| wayword_house::generate(*seed).storeys == 1).unwrap()
+    (seed..).find(|seed| wayword_house::generate_house(*seed).storeys == 1).unwrap()
 }
 
 /// The texts of a run of two paths through a house, as another platform shows the same house.
@@ -51,7 +51,7 @@ fn told_elsewhere(building: &Building) {
 #[test]
 fn the_stand_in_for_virtualhome_shows_the_same_house() {
     let address = free_port();
-    let _executable = virtualhome::stand_in::StandIn::start(address).unwrap();
+    let _executable = virtualhome::stand_in::VirtualHomeStandIn::start(address).unwrap();
     let platform = format!("virtualhome@http://{address}");
     let (building, ran) = elsewhere(with_one_storey(1), &platform, "home_0");
     assert_eq!(ran.code, Some(0), "{ran:?}");
@@ -63,8 +63,9 @@ fn the_stand_in_for_virtualhome_shows_the_same_house() {
 #[test]
 fn the_stand_in_for_threedworld_shows_the_same_house() {
     let (address, seed) = (free_port(), with_one_storey(1));
-    let options = tdw::stand_in::StandInOptions { houses: Houses::with_one_storey(seed, 1), ..Default::default() };
-    let _build = tdw::stand_in::StandIn::start(address, options);
+    let options =
+        tdw::stand_in::StandInOptions { houses: StandInHouses::with_one_storey(seed, 1), ..Default::default() };
+    let _build = tdw::stand_in::TdwStandIn::start(address, options);
     let platform = format!("tdw@{address}");
     let (building, ran) = elsewhere(seed, &platform, "floorplan_1a");
     assert_eq!(ran.code, Some(0), "{ran:?}");

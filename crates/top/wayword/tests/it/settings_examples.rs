@@ -3,8 +3,8 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
-use wayword_remote::Prices;
-use wayword_run::{calls::Calls, settings::Asked};
+use wayword_remote::PriceTable;
+use wayword_run::{calls::ModelCalls, settings::AskedSettings};
 
 /// The blocks of TOML in a document.
 fn blocks(document: &str) -> Vec<String> {
@@ -21,12 +21,12 @@ fn the_settings_and_prices_of_the_documents_are_read() {
     for block in blocks("MODELS.md") {
         let (name, _) = block.split_once('\n').unwrap();
         if name == "# prices.toml" {
-            Prices::read(&block).unwrap();
+            PriceTable::from_toml(&block).unwrap();
             prices += 1;
         } else {
-            let asked: Asked = toml::from_str(&block).unwrap_or_else(|error| panic!("{block}\n{error}"));
-            let job = asked.job().unwrap_or_else(|error| panic!("{block}\n{error}"));
-            Calls::rehearse(&job).unwrap_or_else(|error| panic!("{block}\n{error}"));
+            let asked: AskedSettings = toml::from_str(&block).unwrap_or_else(|error| panic!("{block}\n{error}"));
+            let job = asked.into_job().unwrap_or_else(|error| panic!("{block}\n{error}"));
+            ModelCalls::rehearse_job(&job).unwrap_or_else(|error| panic!("{block}\n{error}"));
             settings += 1;
         }
     }

@@ -31,7 +31,7 @@ mod with_clip {
     use std::{fs, path::Path};
     use tempfile::TempDir;
     use wayword_core::Image;
-    use wayword_local::{Clip, Device, Precision};
+    use wayword_local::{ClipModel, ModelDevice, WeightPrecision};
 
     /// The path of a fixture of `wayword-local`.
     fn fixture(name: &str) -> String {
@@ -82,7 +82,7 @@ mod with_clip {
     }
 
     /// The vectors of a run's pictures of an item.
-    fn pictures(clip: &Clip, folder: &Path, item: &str) -> Vec<Vec<f32>> {
+    fn pictures(clip: &ClipModel, folder: &Path, item: &str) -> Vec<Vec<f32>> {
         let file = |frame: usize| folder.join(format!("{item}_{frame}.jpg"));
         let frames = (0..).map(file).take_while(|file| file.exists());
         let decoded = frames.map(|file| image::open(file).unwrap().into_rgb8());
@@ -93,7 +93,7 @@ mod with_clip {
     }
 
     /// By CLIPScore's formula, of each picture.
-    fn scores(clip: &Clip, pictures: &[Vec<f32>], text: &str) -> Vec<f64> {
+    fn scores(clip: &ClipModel, pictures: &[Vec<f32>], text: &str) -> Vec<f64> {
         let text = &clip.text_features(&[&format!("A photo depicts {text}")]).unwrap()[0];
         let cosine = |picture: &Vec<f32>| -> f32 { picture.iter().zip(text).map(|(a, b)| a * b).sum() };
         pictures.iter().map(|picture| 2.5 * f64::from(cosine(picture)).max(0.0)).collect()
@@ -117,7 +117,7 @@ mod with_clip {
         assert_eq!(ran.code, Some(0), "{ran:?}");
         let found = &ran.json()["pictures"];
 
-        let model = Clip::load("hf/x/clip", turned.0.path(), &Device::cpu(), Precision::F32).unwrap();
+        let model = ClipModel::load("hf/x/clip", turned.0.path(), &ModelDevice::cpu(), WeightPrecision::F32).unwrap();
         let (mut of_parts, mut of_whole) = (Vec::new(), Vec::new());
         let records = building.records("run");
         let mut ids: Vec<&str> = records.iter().map(|record| record.path.id.as_str()).collect();

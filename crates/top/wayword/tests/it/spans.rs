@@ -9,7 +9,7 @@ use crate::common::{Building, EPISODES, run};
 use serde_json::Value;
 use stage::{KEY, KEY_ENV, Stage, cast, holds_no_key};
 use std::{collections::BTreeSet, fs, path::Path};
-use wayword_testkit::provider::{Behaviour, Dialect, Fault, Faults};
+use wayword_testkit::provider::{FaultSchedule, ProviderBehaviour, ProviderDialect, ServiceFault};
 
 /// The spans of a folder, as the lines of its files. Each has an id of its own, and its parent is among them.
 fn spans(folder: &Path) -> Vec<Value> {
@@ -90,7 +90,7 @@ fn holds_no_words(stage: &Stage, calls: &[&Value]) {
 #[test]
 fn a_shard_leaves_a_file_with_its_name_and_its_chunks() {
     let stage = Stage::new(cast());
-    let base = stage.provider.base_url(Dialect::OpenAi);
+    let base = stage.provider.base_url(ProviderDialect::OpenAi);
     let models = ["--llm", "server/words", "--see", "server/eye", "--base-url", &base, "--key-env", KEY_ENV];
     let rest = ["--paths", "5", "--chunk", "2", "--style", "r2r", "--hops", "3..7", "--evidence", "captions"];
     for part in ["0/2", "1/2"] {
@@ -117,13 +117,13 @@ fn a_shard_leaves_a_file_with_its_name_and_its_chunks() {
 }
 
 /// Some answers are filtered, and some requests fail at first.
-fn faults() -> Faults {
-    Faults::default().with(Fault::Filtered, 0.04).with(Fault::EchoesKey, 0.2)
+fn faults() -> FaultSchedule {
+    FaultSchedule::default().with_fault(ServiceFault::Filtered, 0.04).with_fault(ServiceFault::EchoesKey, 0.2)
 }
 
 #[test]
 fn spans_of_failed_items_name_the_kind_of_failure() {
-    let stage = Stage::new(Behaviour { faults: faults(), ..cast() });
+    let stage = Stage::new(ProviderBehaviour { faults: faults(), ..cast() });
     let ran = stage.generate("run", &["--paths", "12", "--concurrency", "8", "--spans", "spans"]);
     assert!(matches!(ran.code, Some(0 | 3 | 7)), "{ran:?}");
     let all = spans(&stage.building.path("spans"));
@@ -212,7 +212,7 @@ mod to_a_collector {
 
     #[test]
     fn a_failed_item_is_marked_as_an_error() {
-        let (stage, collector) = (Stage::new(Behaviour { faults: faults(), ..cast() }), Collector::start());
+        let (stage, collector) = (Stage::new(ProviderBehaviour { faults: faults(), ..cast() }), Collector::start());
         let mut command = stage.generating("run", &["--paths", "12"]);
         run(command.env(ENDPOINT, collector.endpoint()));
         let is_error = |name: &str| {

@@ -6,13 +6,13 @@
 use crate::common::{Building, Ran};
 use serde_json::{Value, json};
 use std::{collections::BTreeMap, fs};
-use wayword_core::{Action, DVec3};
+use wayword_core::{AgentAction, DVec3};
 use wayword_formats::{
-    Format,
-    trajectories::{Place, Trajectory, pictures, read},
-    vlnce_actions::{self, Acted},
+    DatasetFormat,
+    trajectories::{ActionTrajectory, PictureLocation, read_pictures, read_trajectories},
+    vlnce_actions::{self, EpisodeActions},
 };
-use wayword_report::export::replayed;
+use wayword_report::export::replay_export;
 
 /// A run of three walks through a house with one storey, in two styles.
 fn run(building: &Building) {
@@ -26,8 +26,8 @@ fn export(building: &Building, out: &str, more: &[&str]) -> Ran {
     building.wayword(&[&steps[..], more].concat())
 }
 
-fn trajectories(building: &Building, out: &str) -> Vec<Trajectory> {
-    read(&building.path(out).join("trajectories.jsonl")).unwrap()
+fn trajectories(building: &Building, out: &str) -> Vec<ActionTrajectory> {
+    read_trajectories(&building.path(out).join("trajectories.jsonl")).unwrap()
 }
 
 /// Every file of a folder with its bytes, except its lock files.
@@ -57,7 +57,7 @@ fn walks_end_where_they_should_and_pictures_are_those_of_their_poses() {
     assert_eq!(ran.code, Some(0), "{ran:?}");
     let told = ran.json();
     assert_eq!((&told["walks"], &told["instructions"], &told["failed"]), (&json!(3), &json!(6), &json!(0)));
-    let again = replayed(&building.path("steps"), &building.path("run"), 1).unwrap();
+    let again = replay_export(&building.path("steps"), &building.path("run"), 1).unwrap();
     assert_eq!((again.walks, again.astray, again.others), (3, 0, 0));
     assert!(again.farthest_off_m <= 0.5 && json!(again.pictures) == told["pictures"], "{again:?}");
     let ends: BTreeMap<String, DVec3> = building
@@ -71,7 +71,7 @@ fn walks_end_where_they_should_and_pictures_are_those_of_their_poses() {
         let steps = trajectory.positions.windows(2).zip(&trajectory.actions);
         for (pair, action) in steps {
             let gone_m = (pair[1] - pair[0]).truncate().length();
-            let expected_m = if *action == Action::Forward { 0.25 } else { 0.0 };
+            let expected_m = if *action == AgentAction::Forward { 0.25 } else { 0.0 };
             assert!((gone_m - expected_m).abs() < 1e-3, "{action:?}: {gone_m}");
         }
         let styles: Vec<&str> = trajectory.instructions.iter().map(|told| told.style.as_str()).collect();
@@ -79,7 +79,7 @@ fn walks_end_where_they_should_and_pictures_are_those_of_their_poses() {
         let parts = &trajectory.instructions[0].sub_instructions;
         assert!(parts.len() > 1 && parts[0].steps[0] == 0);
         assert!(parts.windows(2).all(|pair| pair[0].steps[1] == pair[1].steps[0]), "{parts:?}");
-        let shown = pictures(&building.path("steps"), &trajectory).unwrap();
+        let shown = read_pictures(&building.path("steps"), &trajectory).unwrap();
         let size = image::load_from_memory(&shown[0]).unwrap().into_rgb8().dimensions();
         assert_eq!((shown.len(), size), (trajectory.actions.len(), (48, 48)));
     }
@@ -90,14 +90,17 @@ fn vlnce_files_agree_with_the_steps() {
     let building = Building::new();
     run(&building);
     assert_eq!(export(&building, "steps", &["--split", "val_seen"]).code, Some(0));
-    let episodes = Format::Vlnce.read(&building.path("steps/val_seen.json.gz")).unwrap();
-    let acted = vlnce_actions::read(&building.path("steps/val_seen_gt.json.gz")).unwrap();
+    let episodes = DatasetFormat::Vlnce.read_file(&building.path("steps/val_seen.json.gz")).unwrap();
+    let acted = vlnce_actions::read_actions(&building.path("steps/val_seen_gt.json.gz")).unwrap();
     let mut told = BTreeMap::new();
     for trajectory in trajectories(&building, "steps") {
         assert_eq!(trajectory.split, "val_seen");
         for instruction in &trajectory.instructions {
             told.insert(instruction.episode_id.clone(), instruction.text.clone());
-            assert_eq!(acted[&instruction.episode_id], Acted::of(&trajectory.actions, &trajectory.positions));
+            assert_eq!(
+                acted[&instruction.episode_id],
+                EpisodeActions::from_positions(&trajectory.actions, &trajectory.positions)
+            );
         }
     }
     let written: BTreeMap<String, String> =
@@ -122,7 +125,7 @@ fn an_export_that_was_stopped_goes_on_and_gives_the_same_bytes() {
             fs::remove_file(building.path(out).join(made)).unwrap();
         }
         let last = trajectories_of(&lines).last().unwrap().clone();
-        if let Place::Folder(images) = &last.pictures {
+        if let PictureLocation::Folder(images) = &last.pictures {
             let images = building.path(out).join(images);
             fs::rename(&images, images.with_file_name(format!(".{}.part", last.id))).unwrap();
         }
@@ -133,11 +136,11 @@ fn an_export_that_was_stopped_goes_on_and_gives_the_same_bytes() {
     }
 }
 
-fn trajectories_of(lines: &str) -> Vec<Trajectory> {
+fn trajectories_of(lines: &str) -> Vec<ActionTrajectory> {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("t.jsonl");
     fs::write(&file, lines).unwrap();
-    read(&file).unwrap()
+    read_trajectories(&file).unwrap()
 }
 
 #[test]
@@ -148,9 +151,9 @@ fn tar_shards_have_the_same_content_as_folders() {
     assert_eq!(export(&building, "shards", &["--shard", "2"]).code, Some(0));
     let (apart, packed) = (trajectories(&building, "folders"), trajectories(&building, "shards"));
     for (apart, packed) in apart.iter().zip(&packed) {
-        let all = |out: &str, trajectory| pictures(&building.path(out), trajectory).unwrap();
+        let all = |out: &str, trajectory| read_pictures(&building.path(out), trajectory).unwrap();
         assert!(all("folders", apart) == all("shards", packed));
-        assert_eq!(apart, &Trajectory { pictures: apart.pictures.clone(), ..packed.clone() });
+        assert_eq!(apart, &ActionTrajectory { pictures: apart.pictures.clone(), ..packed.clone() });
     }
     let shards: Vec<String> = files(&building, "shards").into_keys().filter(|name| name.ends_with(".tar")).collect();
     assert_eq!(shards, ["shards/000000.tar", "shards/000001.tar"]);
@@ -200,8 +203,8 @@ fn houses_are_a_set_of_scenes_for_habitat_with_episodes_that_can_be_walked() {
         assert!(file.is_file(), "{named}: {}", file.display());
     }
     assert_eq!(json_of("set/houses.scene_dataset_config.json")["stages"]["paths"][".json"], json!(["house2-*"]));
-    let episodes = Format::Vlnce.read(&building.path("set/episodes/train.json.gz")).unwrap();
-    let acted = vlnce_actions::read(&building.path("set/episodes/train_gt.json.gz")).unwrap();
+    let episodes = DatasetFormat::Vlnce.read_file(&building.path("set/episodes/train.json.gz")).unwrap();
+    let acted = vlnce_actions::read_actions(&building.path("set/episodes/train_gt.json.gz")).unwrap();
     assert_eq!((episodes.len(), acted.len()), (3, 3));
     for episode in &episodes {
         let acted = &acted[&episode.id];

@@ -234,10 +234,10 @@ fn named(svg: &str) -> BTreeSet<String> {
 fn maps_of_all_levels_hold_every_viewpoint_and_the_storey_beneath() {
     let building = Building::new();
     let platform = HousePlatform::default();
-    let scene = platform.scenes().unwrap().into_iter().find(|scene| scene.as_str() == TALL).unwrap();
-    let graph = platform.graph(&scene).unwrap();
+    let scene = platform.list_scenes().unwrap().into_iter().find(|scene| scene.as_str() == TALL).unwrap();
+    let graph = platform.graph_for_scene(&scene).unwrap();
     let on_level = |level: u32| -> BTreeSet<String> {
-        graph.viewpoints().filter(|node| graph.level(node) == Some(level)).map(ToString::to_string).collect()
+        graph.viewpoints().filter(|node| graph.level_of(node) == Some(level)).map(ToString::to_string).collect()
     };
     for level in [1, 2] {
         let number = level.to_string();
@@ -256,7 +256,7 @@ fn a_map_shows_a_path_with_numbers_in_both_formats() {
     let walk = ["map", "--platform", "matterport", "--data", "data", "--episodes", EPISODES, "--out"];
     let drawn = view(&building, &[&walk[..], &["path.svg"]].concat());
     let svg = fs::read_to_string(building.path("path.svg")).unwrap();
-    let frames = wayword_formats::read(&building.reverie()).unwrap().remove(0).viewpoints.len();
+    let frames = wayword_formats::read_any_format(&building.reverie()).unwrap().remove(0).viewpoints.len();
     for number in 0..frames {
         assert!(svg.contains(&format!(">{number}</text>")), "{number}: {svg}");
     }

@@ -22,8 +22,8 @@ use std::{
     thread,
     time::Duration,
 };
-use wayword_core::rng;
-use wayword_testkit::provider::{Behaviour, Dialect};
+use wayword_core::seeded_rng;
+use wayword_testkit::provider::{ProviderBehaviour, ProviderDialect};
 
 const RUN: [&str; 6] = ["--episodes", EPISODES, "--style", "r2r", "--chunk", "2"];
 
@@ -165,7 +165,7 @@ fn with_models(stage: &Stage, out: &str, part: &[&str]) -> Command {
 
 /// `generate` with models, as a process.
 fn asking_models(stage: &Stage, out: &str, part: &[&str]) -> Command {
-    let base = stage.provider.base_url(Dialect::OpenAi);
+    let base = stage.provider.base_url(ProviderDialect::OpenAi);
     let models = ["--llm", "server/words", "--see", "server/eye", "--base-url", &base, "--key-env", KEY_ENV];
     let rest = ["--style", "r2r", "--hops", "3..7", "--evidence", "captions"];
     let mut args = vec!["generate", "--platform", "matterport", "--data", "data", "--out", out, "--concurrency", "8"];
@@ -177,7 +177,7 @@ fn asking_models(stage: &Stage, out: &str, part: &[&str]) -> Command {
 
 /// Starts workers, kills some of them and starts these again, until all have ended by themselves.
 fn kill_and_go_on(workers: &[Vec<String>], kills: usize, start: impl Fn(&[String]) -> Child) {
-    let mut rng = rng(11, &["kills of workers"]);
+    let mut rng = seeded_rng(11, &["kills of workers"]);
     let mut children: Vec<Option<Child>> = workers.iter().map(|worker| Some(start(worker))).collect();
     for _ in 0..kills {
         thread::sleep(Duration::from_millis(rng.random_range(200..900)));
@@ -222,7 +222,7 @@ const IN_FLIGHT: u64 = 16;
 #[test]
 fn shards_with_models_that_are_killed_pay_for_each_call_once() {
     let kills = 4;
-    let behaviour = Behaviour { latency: Duration::from_millis(10), ..cast() };
+    let behaviour = ProviderBehaviour { latency: Duration::from_millis(10), ..cast() };
     let (whole, killed) = (Stage::new(behaviour.clone()), Stage::new(behaviour));
     let one = with_models(&whole, "one", &["--shard", "0/1"]).status().unwrap();
     assert_eq!(one.code(), Some(0));

@@ -16,22 +16,23 @@ use std::{
     time::Duration,
 };
 use wayword_testkit::provider::{
-    Behaviour, Dialect, Gallery, Heard, Script,
-    scripts::{Cast, FlawedEye},
+    ModelScript, PictureGallery, ProviderBehaviour, ProviderDialect, ScriptRequest,
+    scripts::{FlawedEye, ScriptedCast},
 };
 
 /// A careful cast, and the number of pictures of each request to write.
-fn watched() -> (Behaviour, Arc<Mutex<Vec<usize>>>) {
+fn watched() -> (ProviderBehaviour, Arc<Mutex<Vec<usize>>>) {
     let shown = Arc::new(Mutex::new(Vec::new()));
-    let (noted, cast) = (Arc::clone(&shown), Cast::new(FlawedEye::new(Gallery::default(), 1, 0.0), 1, 0.0));
-    let words = move |heard: &Heard| {
+    let (noted, cast) =
+        (Arc::clone(&shown), ScriptedCast::new(FlawedEye::new(PictureGallery::default(), 1, 0.0), 1, 0.0));
+    let words = move |heard: &ScriptRequest| {
         if heard.prompt().contains("Frame 0:") {
             noted.lock().unwrap().push(heard.pictures.len());
         }
         cast.reply(heard)
     };
-    let eye = Cast::new(FlawedEye::new(Gallery::default(), 1, 0.0), 1, 0.0);
-    (Behaviour::of("words", words).and("eye", eye), shown)
+    let eye = ScriptedCast::new(FlawedEye::new(PictureGallery::default(), 1, 0.0), 1, 0.0);
+    (ProviderBehaviour::for_model("words", words).and_model("eye", eye), shown)
 }
 
 #[test]
@@ -57,15 +58,15 @@ fn write_sees_refuses_writers_without_sight_before_the_first_call() {
         assert!(stage.building.wayword(&args).refused().contains(told), "{args:?}");
         assert!(!stage.building.path("run").exists());
     }
-    assert_eq!(stage.provider.requests(), 0);
+    assert_eq!(stage.provider.request_count(), 0);
 }
 
 /// A stand-in for Ollama, which reports for each model whether it sees.
 #[test]
 fn a_model_of_ollama_that_does_not_see_is_refused_before_the_first_call() {
     let blind = ["words".to_owned()].into();
-    let stage = Stage::new(Behaviour { blind, ..watched().0 });
-    let base = stage.provider.base_url(Dialect::Ollama);
+    let stage = Stage::new(ProviderBehaviour { blind, ..watched().0 });
+    let base = stage.provider.base_url(ProviderDialect::Ollama);
     let generate = |models: &[&str]| {
         let args = ["generate", "--platform", "matterport", "--data", "data", "--paths", "1", "--hops", "3..7"];
         let rest = ["--style", "r2r", "--ledger", "ledger.db", "--out", "run", "--base-url", &base];
@@ -81,9 +82,9 @@ fn a_model_of_ollama_that_does_not_see_is_refused_before_the_first_call() {
         assert!(told.contains("ollama/words cannot be shown pictures") && told.contains("vision"), "{told}");
         assert!(!stage.building.path("run").exists());
     }
-    assert_eq!(stage.provider.requests(), 0);
+    assert_eq!(stage.provider.request_count(), 0);
     let sees = generate(&["--see", "ollama/eye", "--llm", "ollama/words"]);
-    assert!(matches!(sees.code, Some(0 | 3)) && stage.provider.requests() > 0, "{sees:?}");
+    assert!(matches!(sees.code, Some(0 | 3)) && stage.provider.request_count() > 0, "{sees:?}");
 }
 
 /// An adjective ("soft" in "a soft, blotchy pattern") must not become the object of a task, in any way of asking. Rules that
@@ -92,8 +93,10 @@ fn a_model_of_ollama_that_does_not_see_is_refused_before_the_first_call() {
 fn rules_never_finish_with_an_adjective_as_the_object() {
     let finished = |perception: &str, answer: &'static str| {
         let stage = Stage::new(
-            Behaviour::of("words", |_: &Heard| "I'm sorry, but I can't help with that.".to_owned())
-                .and("eye", move |_: &Heard| answer.to_owned()),
+            ProviderBehaviour::for_model("words", |_: &ScriptRequest| {
+                "I'm sorry, but I can't help with that.".to_owned()
+            })
+            .and_model("eye", move |_: &ScriptRequest| answer.to_owned()),
         );
         let args = ["--paths", "2", "--hops", "3..7", "--style", "reverie", "--target", "free", "--repairs", "1"];
         let rest = ["--evidence", "captions", "--finish", "rules", "--perception", perception, "--out", "run"];
@@ -142,7 +145,7 @@ fn each_path_gets_as_many_different_texts_as_asked_for() {
     for (style, format) in [("r2r", "r2r"), ("reverie", "reverie")] {
         let args = ["export", "--run", "run", "--format", format, "--style", style, "--out", "out.json"];
         assert_eq!(building.wayword(&args).code, Some(0), "{format}");
-        let episodes = wayword_formats::read(&building.path("out.json")).unwrap();
+        let episodes = wayword_formats::read_any_format(&building.path("out.json")).unwrap();
         let texts: usize = episodes.iter().map(|episode| episode.instructions.len()).sum();
         assert!(texts == 12 && episodes.len() <= 4, "{format}: {texts} texts of {} items", episodes.len());
     }
@@ -166,14 +169,14 @@ fn writer_prompt_has_the_earlier_texts_of_a_path() {
 fn the_views_of_one_path_are_asked_about_at_the_same_time() {
     const LATENCY: Duration = Duration::from_millis(300);
     let asked = |concurrency: &str| {
-        let stage = Stage::new(Behaviour { latency: LATENCY, ..watched().0 });
+        let stage = Stage::new(ProviderBehaviour { latency: LATENCY, ..watched().0 });
         let args = ["--paths", "1", "--frames", "panoramic", "--perception", "single", "--concurrency", concurrency];
         let ran = stage.generate("run", &args);
         assert_eq!(ran.code, Some(0), "{ran:?}");
         stage
     };
     let (one, eight) = (asked("1"), asked("8"));
-    let calls = eight.provider.requests();
+    let calls = eight.provider.request_count();
     assert!(calls >= 12 && eight.provider.log().most_at_once > 4, "{calls} calls");
     assert!(eight.provider.log().most_at_once <= 8);
     let rounds = [&one, &eight].map(|stage| stage.provider.log().rounds);
@@ -206,9 +209,9 @@ fn a_plan_counts_the_texts_and_pictures_of_a_run() {
 #[test]
 fn a_path_of_twelve_views_takes_three_rounds_of_calls_and_five_with_questions() {
     for (perception, most) in [("single", 3), ("structured", 3), ("follow-up", 5)] {
-        let eye = FlawedEye { misshapen_share: 0.0, ..FlawedEye::new(Gallery::default(), 1, 0.15) };
-        let behaviour = Behaviour { latency: Duration::from_millis(500), ..watched().0 };
-        let stage = Stage::new(behaviour.and("eye", Cast::new(eye, 1, 0.0)));
+        let eye = FlawedEye { misshapen_share: 0.0, ..FlawedEye::new(PictureGallery::default(), 1, 0.15) };
+        let behaviour = ProviderBehaviour { latency: Duration::from_millis(500), ..watched().0 };
+        let stage = Stage::new(behaviour.and_model("eye", ScriptedCast::new(eye, 1, 0.0)));
         let args = ["--paths", "1", "--hops", "2", "--metres", "0..100", "--frames", "panoramic", "--concurrency", "8"];
         let rest = ["--perception", perception, "--style", "r2r", "--repairs", "0", "--out", "run"];
         let ran = run(&mut stage.command("generate", &[&args[..], &rest].concat()));
@@ -233,7 +236,7 @@ fn a_path_of_twelve_views_takes_three_rounds_of_calls_and_five_with_questions() 
 /// Without a terminal a long run prints a line about its calls now and then.
 #[test]
 fn run_without_a_terminal_prints_lines_about_its_calls() {
-    let stage = Stage::new(Behaviour { latency: Duration::from_millis(400), ..watched().0 });
+    let stage = Stage::new(ProviderBehaviour { latency: Duration::from_millis(400), ..watched().0 });
     let args = ["--paths", "1", "--frames", "panoramic", "--perception", "single", "--concurrency", "1"];
     let ran = stage.generate("run", &args);
     assert_eq!(ran.code, Some(0), "{ran:?}");
@@ -243,7 +246,7 @@ fn run_without_a_terminal_prints_lines_about_its_calls() {
     assert!(line.starts_with("0/1 items, ") && line.contains(" of about ") && line.ends_with(" left"), "{line}");
     // It is known from the start how many calls there will be.
     let numbers: Vec<u64> = line.split(|c: char| !c.is_ascii_digit()).filter_map(|word| word.parse().ok()).collect();
-    let asked = stage.provider.requests();
+    let asked = stage.provider.request_count();
     assert!(numbers[3].abs_diff(asked) <= asked / 5 + 1, "{line}, and {asked} were asked");
     let quiet = stage.generate("again", &[&args[..], &["--quiet"]].concat());
     assert!(!quiet.err.contains(" calls"), "{quiet:?}");

@@ -3,7 +3,7 @@
 use crate::open::class_name;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use wayword_language::lexicon::{normal, thing};
+use wayword_language::lexicon::{find_thing, normalise_name};
 
 /// A detector's measured rates. They may come from an untrusted file, so every share is kept within bounds where it is
 /// used.
@@ -17,20 +17,20 @@ pub struct DetectorFigures {
     /// The score from which a box counts as a find.
     pub found_from: f32,
     /// Of all names.
-    pub all: Rates,
+    pub all: DetectorRates,
     /// Of classes of things, where enough was seen of one: beds are seen from more frames than vases.
     #[serde(default)]
-    pub classes: BTreeMap<String, Rates>,
+    pub classes: BTreeMap<String, DetectorRates>,
     /// Of single names in normal spelling, where enough was seen.
     #[serde(default)]
-    pub names: BTreeMap<String, Rates>,
+    pub names: BTreeMap<String, DetectorRates>,
 }
 
 /// How often things were found from frames that show them, and from frames that do not. A frame means all views
 /// from one place.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Rates {
+pub struct DetectorRates {
     /// Pairs of a frame and a name that it shows.
     pub shown: u32,
     /// Those among them that were found.
@@ -51,18 +51,18 @@ pub struct Rates {
 const LONGEST_RUN: usize = 8;
 
 /// A single name has rates of its own from this many frames that show it, and as many that do not.
-const ENOUGH: u32 = 30;
+const MIN_FRAMES_PER_NAME: u32 = 30;
 
 /// Added to both parts of every share: half a find and half a miss. It keeps shares of few measurements away from 0
 /// and 1.
-const PRIOR: f64 = 0.5;
+const PRIOR_COUNT: f64 = 0.5;
 
 impl DetectorFigures {
     /// Cautious figures for a detector that was never measured: it finds three of five things and is wrong about one
     /// in fifty, and a thing that it misses once it misses always. So a miss never makes a thing absent.
     #[must_use]
-    pub fn assumed(detector: &str, found_from: f32) -> Self {
-        let all = Rates {
+    pub fn for_unmeasured(detector: &str, found_from: f32) -> Self {
+        let all = DetectorRates {
             shown: 100,
             found: 60,
             absent: 100,
@@ -76,35 +76,36 @@ impl DetectorFigures {
 
     /// The rates of a name: its own where enough was seen of it, or else those of its class, or else those of all names.
     #[must_use]
-    pub fn of(&self, name: &str) -> &Rates {
+    pub fn rates_for(&self, name: &str) -> &DetectorRates {
         let of_class = || self.classes.get(&class_of(name)?);
-        self.names.get(&normal(name)).or_else(of_class).unwrap_or(&self.all)
+        self.names.get(&normalise_name(name)).or_else(of_class).unwrap_or(&self.all)
     }
 
     /// Counts one name along one path: for each frame, whether the labels show it, and whether the detector found it.
-    pub fn count(&mut self, name: &str, frames: &[(bool, bool)]) {
-        self.all.count(frames);
+    pub fn count_name(&mut self, name: &str, frames: &[(bool, bool)]) {
+        self.all.count_frames(frames);
         if let Some(class) = class_of(name) {
-            self.classes.entry(class).or_default().count(frames);
+            self.classes.entry(class).or_default().count_frames(frames);
         }
-        self.names.entry(normal(name)).or_default().count(frames);
+        self.names.entry(normalise_name(name)).or_default().count_frames(frames);
     }
 
     /// Drops names with too few measurements, and names that the lexicon does not have.
-    pub fn settle(&mut self) {
-        let is_enough = |rates: &Rates| rates.shown >= ENOUGH && rates.absent >= ENOUGH;
+    pub fn drop_rare_names(&mut self) {
+        let is_enough =
+            |rates: &DetectorRates| rates.shown >= MIN_FRAMES_PER_NAME && rates.absent >= MIN_FRAMES_PER_NAME;
         self.classes.retain(|_, rates| is_enough(rates));
-        self.names.retain(|name, rates| thing(name).is_some() && is_enough(rates));
+        self.names.retain(|name, rates| find_thing(name).is_some() && is_enough(rates));
     }
 }
 
 /// The class of a name that the lexicon has.
 fn class_of(name: &str) -> Option<String> {
-    thing(name).map(|thing| class_name(thing.class))
+    find_thing(name).map(|thing| class_name(thing.class))
 }
 
-impl Rates {
-    fn count(&mut self, frames: &[(bool, bool)]) {
+impl DetectorRates {
+    fn count_frames(&mut self, frames: &[(bool, bool)]) {
         for (shown, found) in frames {
             let (all, hits) = match shown {
                 true => (&mut self.shown, &mut self.found),
@@ -127,20 +128,20 @@ impl Rates {
     /// Of the things that a frame shows, the share that is found.
     #[must_use]
     pub fn recall(&self) -> f64 {
-        share(self.found, self.shown)
+        measured_share(self.found, self.shown)
     }
 
     /// Of the things that a frame does not show, the share that is found all the same.
     #[must_use]
     pub fn alarm(&self) -> f64 {
-        share(self.alarms, self.absent)
+        measured_share(self.alarms, self.absent)
     }
 
     /// The share of things to which the detector is blind: it misses them from every frame. Repeated misses beyond
     /// those that independent misses would give are attributed to it.
     #[must_use]
-    pub fn blind(&self) -> f64 {
-        let (miss, again) = (1.0 - self.recall(), share(self.missed_again, self.missed_before));
+    pub fn blind_share(&self) -> f64 {
+        let (miss, again) = (1.0 - self.recall(), measured_share(self.missed_again, self.missed_before));
         if self.missed_before == 0 || miss >= 1.0 {
             return miss;
         }
@@ -152,7 +153,7 @@ impl Rates {
 
     /// The share of names of a path that are shown by a run of that many frames, for runs of 1, 2, ... at most `most`. Longer
     /// runs count as the longest.
-    pub(super) fn runs(&self, most: usize) -> Vec<f64> {
+    pub(super) fn run_shares(&self, most: usize) -> Vec<f64> {
         let mut runs = vec![0.0; most];
         let all: u64 = self.runs.iter().map(|count| u64::from(*count)).sum();
         if all == 0 {
@@ -167,6 +168,6 @@ impl Rates {
 }
 
 /// A share that is neither 0 nor 1, because no measurement is certain.
-fn share(part: u32, whole: u32) -> f64 {
-    (f64::from(part.min(whole)) + PRIOR) / (f64::from(whole) + 2.0 * PRIOR)
+fn measured_share(part: u32, whole: u32) -> f64 {
+    (f64::from(part.min(whole)) + PRIOR_COUNT) / (f64::from(whole) + 2.0 * PRIOR_COUNT)
 }

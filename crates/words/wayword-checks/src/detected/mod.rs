@@ -9,5 +9,5 @@ mod odds;
 #[cfg(test)]
 mod tests;
 
-pub use figures::{DetectorFigures, Rates};
-pub use odds::{Judged, judge};
+pub use figures::{DetectorFigures, DetectorRates};
+pub use odds::{DetectionVerdict, judge_finds};

@@ -1,11 +1,11 @@
 //! Bayes' rule for finds along a path: how probable it is that a thing is there, after the detector looked from every
 //! frame.
 
-use super::Rates;
+use super::DetectorRates;
 
 /// The conclusion from the finds of a name along a path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Judged {
+pub enum DetectionVerdict {
     /// It is there.
     There,
     /// It is nowhere along the path.
@@ -16,42 +16,42 @@ pub enum Judged {
 
 /// The probability from which a thing is taken to be there: nine of ten such conclusions are right. A thing is absent
 /// only if it would have been found with the same probability, and its finds are as much likelier without it.
-const SURE: f64 = 0.9;
+const SURE_PROBABILITY: f64 = 0.9;
 
 /// Whether a thing is there, by the frames of a path in which it was found. `before` is the probability before the
 /// detector looked; an absence does not depend on it.
 #[must_use]
-pub fn judge(rates: &Rates, found: &[bool], before: f64) -> Judged {
+pub fn judge_finds(rates: &DetectorRates, found: &[bool], before: f64) -> DetectionVerdict {
     if found.is_empty() {
-        return Judged::Open;
+        return DetectionVerdict::Open;
     }
     let (there, absent) = (if_there(rates, found), if_absent(rates, found));
     let after = before * there / (before * there + (1.0 - before) * absent);
-    let would_be_found = 1.0 - if_there(&silent(rates), &vec![false; found.len()]);
-    if after >= SURE {
-        Judged::There
-    } else if there <= absent * (1.0 - SURE) && would_be_found >= SURE {
-        Judged::Absent
+    let would_be_found = 1.0 - if_there(&without_alarms(rates), &vec![false; found.len()]);
+    if after >= SURE_PROBABILITY {
+        DetectionVerdict::There
+    } else if there <= absent * (1.0 - SURE_PROBABILITY) && would_be_found >= SURE_PROBABILITY {
+        DetectionVerdict::Absent
     } else {
-        Judged::Open
+        DetectionVerdict::Open
     }
 }
 
 /// The same detector without false alarms: every find of it is real.
-fn silent(rates: &Rates) -> Rates {
-    Rates { alarms: 0, absent: u32::MAX, ..rates.clone() }
+fn without_alarms(rates: &DetectorRates) -> DetectorRates {
+    DetectorRates { alarms: 0, absent: u32::MAX, ..rates.clone() }
 }
 
 /// How probable the finds are where the thing is nowhere.
-fn if_absent(rates: &Rates, found: &[bool]) -> f64 {
+fn if_absent(rates: &DetectorRates, found: &[bool]) -> f64 {
     let alarm = rates.alarm();
     found.iter().map(|found| if *found { alarm } else { 1.0 - alarm }).product()
 }
 
 /// How probable the finds are where some run of frames shows the thing. Each run of a length is as probable as any other.
 /// A share of all things is never found, and the others are found independently from each frame that shows them.
-fn if_there(rates: &Rates, found: &[bool]) -> f64 {
-    let (alarm, blind) = (rates.alarm(), rates.blind());
+fn if_there(rates: &DetectorRates, found: &[bool]) -> f64 {
+    let (alarm, blind) = (rates.alarm(), rates.blind_share());
     let seeing = ((rates.recall() / (1.0 - blind).max(f64::EPSILON)).min(1.0), 1.0 - blind);
     // A thing in view may also be "found" by a false alarm.
     let hit = seeing.0 + (1.0 - seeing.0) * alarm;
@@ -61,7 +61,7 @@ fn if_there(rates: &Rates, found: &[bool]) -> f64 {
         (0..found.len()).map(of).product()
     };
     let seen: f64 = rates
-        .runs(found.len())
+        .run_shares(found.len())
         .iter()
         .enumerate()
         .map(|(at, share)| {

@@ -1,20 +1,20 @@
 //! The inventory of a building: its listed objects, sorted by name, and its viewpoints with their rooms.
 
-use super::Beyond;
+use super::EndSurroundings;
 use std::collections::{BTreeMap, BTreeSet};
-use wayword_core::{DVec3, Label, ObjectId, Path, Survey, ViewpointId, survey::Surveyed};
-use wayword_language::lexicon::{Class, kinds, room_name, thing};
+use wayword_core::{DVec3, ObjectId, ObjectLabel, Path, ViewpointId, ViewpointSurvey, survey::SurveyedViewpoint};
+use wayword_language::lexicon::{ThingClass, find_thing, kinds_of, room_name};
 
 /// An object belongs to the nearest viewpoint if that is no farther off, metres.
 const BESIDE_M: f64 = 4.0;
 
 /// The listed objects and rooms of a building: made once from a survey, for all paths of the building.
 #[derive(Debug, Clone, Default)]
-pub struct Building {
+pub struct BuildingInventory {
     /// The names of objects.
-    pub(super) names: Vec<Name>,
+    pub(super) names: Vec<InventoryName>,
     /// The viewpoints.
-    pub(super) viewpoints: Vec<Viewpoint>,
+    pub(super) viewpoints: Vec<InventoryViewpoint>,
     /// Their places in the list.
     pub(super) places: BTreeMap<ViewpointId, usize>,
     /// The number of viewpoints that list at least one object.
@@ -23,7 +23,7 @@ pub struct Building {
 
 /// A viewpoint of the building.
 #[derive(Debug, Clone)]
-pub(super) struct Viewpoint {
+pub(super) struct InventoryViewpoint {
     pub(super) position: DVec3,
     pub(super) floor_m: Option<f64>,
     pub(super) room: Option<String>,
@@ -32,51 +32,53 @@ pub(super) struct Viewpoint {
 
 /// A name that labels of the building have.
 #[derive(Debug, Clone)]
-pub(super) struct Name {
+pub(super) struct InventoryName {
     /// The kinds of thing that it means, the most specific first.
     pub(super) kinds: Vec<String>,
     /// Its class.
-    pub(super) class: Class,
+    pub(super) class: ThingClass,
     /// The objects of that name.
-    pub(super) spots: Vec<Spot>,
+    pub(super) spots: Vec<InventoryObject>,
     /// The rooms of the viewpoints next to them.
     pub(super) homes: BTreeSet<String>,
 }
 
 /// An object.
 #[derive(Debug, Clone)]
-pub(super) struct Spot {
+pub(super) struct InventoryObject {
     pub(super) position: DVec3,
     /// The viewpoints that list it, or else the nearest one.
     pub(super) beside: BTreeSet<usize>,
 }
 
-impl Building {
+impl BuildingInventory {
     /// Sorts a survey. An object that several viewpoints list is one object.
     #[must_use]
-    pub fn of(survey: &Survey) -> Self {
-        let mut spots: BTreeMap<&str, BTreeMap<&ObjectId, Spot>> = BTreeMap::new();
+    pub fn from_survey(survey: &ViewpointSurvey) -> Self {
+        let mut spots: BTreeMap<&str, BTreeMap<&ObjectId, InventoryObject>> = BTreeMap::new();
         for (at, viewpoint) in survey.viewpoints().iter().enumerate() {
             for label in viewpoint.known.things.iter().flatten() {
                 let of_name = spots.entry(&label.name).or_default();
-                let new = || Spot { position: position(viewpoint, label), beside: BTreeSet::new() };
+                let new = || InventoryObject { position: object_position(viewpoint, label), beside: BTreeSet::new() };
                 of_name.entry(&label.object).or_insert_with(new).beside.insert(at);
             }
         }
         for placed in survey.objects() {
-            let new = || Spot { position: placed.position, beside: nearest(survey, placed.position) };
+            let new =
+                || InventoryObject { position: placed.position, beside: nearest_viewpoint(survey, placed.position) };
             spots.entry(&placed.name).or_default().entry(&placed.object).or_insert_with(new);
         }
         let viewpoints = survey.viewpoints();
         let room = |at: &usize| viewpoints[*at].known.room.as_deref().map(|room| room_name(room).unwrap_or(room));
-        let name = |(name, spots): (&str, BTreeMap<&ObjectId, Spot>)| Name {
-            kinds: meanings(name),
-            class: thing(name).map_or(Class::Unknown, |thing| thing.class),
+        let name = |(name, spots): (&str, BTreeMap<&ObjectId, InventoryObject>)| InventoryName {
+            kinds: label_kinds(name),
+            class: find_thing(name).map_or(ThingClass::Unknown, |thing| thing.class),
             homes: spots.values().flat_map(|spot| &spot.beside).filter_map(room).map(str::to_owned).collect(),
             spots: spots.into_values().collect(),
         };
-        let lists = |viewpoint: &&Surveyed| viewpoint.known.things.as_ref().is_some_and(|things| !things.is_empty());
-        let viewpoint = |viewpoint: &Surveyed| Viewpoint {
+        let lists =
+            |viewpoint: &&SurveyedViewpoint| viewpoint.known.things.as_ref().is_some_and(|things| !things.is_empty());
+        let viewpoint = |viewpoint: &SurveyedViewpoint| InventoryViewpoint {
             position: viewpoint.position,
             floor_m: viewpoint.floor_m,
             room: viewpoint.known.room.clone(),
@@ -92,9 +94,9 @@ impl Building {
 
     /// Rooms and things around the end of a path that its frames need not show.
     #[must_use]
-    pub fn beyond(&self, path: &Path) -> Beyond {
+    pub fn beyond_end(&self, path: &Path) -> EndSurroundings {
         let last = path.frames.last().and_then(|frame| self.places.get(frame.viewpoint.as_ref()?));
-        let Some(last) = last.copied() else { return Beyond::default() };
+        let Some(last) = last.copied() else { return EndSurroundings::default() };
         let (mut room, mut open, mut rooms) = (BTreeSet::from([last]), vec![last], BTreeSet::new());
         while let Some(at) = open.pop() {
             for other in &self.viewpoints[at].neighbours {
@@ -106,9 +108,9 @@ impl Building {
                 }
             }
         }
-        let is_there = |name: &&Name| name.spots.iter().any(|spot| !spot.beside.is_disjoint(&room));
+        let is_there = |name: &&InventoryName| name.spots.iter().any(|spot| !spot.beside.is_disjoint(&room));
         let things = self.names.iter().filter(is_there).filter_map(|name| name.kinds.first().cloned());
-        Beyond { rooms: rooms.into_iter().collect(), things: things.collect() }
+        EndSurroundings { rooms: rooms.into_iter().collect(), things: things.collect() }
     }
 
     /// Whether the platform lists neither objects nor rooms there.
@@ -120,12 +122,12 @@ impl Building {
 
 /// The kinds of thing that a label may mean, the most specific first. Annotators' compounds also mean their first
 /// words if these are of the same class: a "sofa chair" may be a sofa.
-fn meanings(name: &str) -> Vec<String> {
-    let mut meant = kinds(name);
-    let Some(whole) = thing(name) else { return meant };
+fn label_kinds(name: &str) -> Vec<String> {
+    let mut meant = kinds_of(name);
+    let Some(whole) = find_thing(name) else { return meant };
     let starts = name.match_indices(' ').map(|(at, _)| &name[..at]);
-    let alike = starts.filter(|start| thing(start).is_some_and(|thing| thing.class == whole.class));
-    for kind in alike.flat_map(kinds) {
+    let alike = starts.filter(|start| find_thing(start).is_some_and(|thing| thing.class == whole.class));
+    for kind in alike.flat_map(kinds_of) {
         if !meant.contains(&kind) {
             meant.push(kind);
         }
@@ -134,7 +136,7 @@ fn meanings(name: &str) -> Vec<String> {
 }
 
 /// The position of an object: its own, or else as far from the eye as its label's distance, or else at the eye.
-fn position(viewpoint: &Surveyed, label: &Label) -> DVec3 {
+fn object_position(viewpoint: &SurveyedViewpoint, label: &ObjectLabel) -> DVec3 {
     let ray = || {
         let flat_m = label.distance_m? * libm::cos(label.elevation_rad);
         let rad = label.heading.rad();
@@ -144,7 +146,7 @@ fn position(viewpoint: &Surveyed, label: &Label) -> DVec3 {
 }
 
 /// The viewpoint nearest to an object that no viewpoint shows.
-fn nearest(survey: &Survey, spot: DVec3) -> BTreeSet<usize> {
+fn nearest_viewpoint(survey: &ViewpointSurvey, spot: DVec3) -> BTreeSet<usize> {
     let near = survey.viewpoints().iter().map(|viewpoint| viewpoint.position.distance(spot)).enumerate();
     let near = near.filter(|(_, distance_m)| *distance_m <= BESIDE_M).min_by(|a, b| a.1.total_cmp(&b.1));
     near.into_iter().map(|(at, _)| at).collect()

@@ -1,64 +1,64 @@
 //! Makes evidence from captions: which rooms and objects witnesses saw, guessed or denied from each frame.
 
-use super::{Evidence, FrameEvidence, SeenThing, Source};
+use super::{Evidence, EvidenceSource, FrameEvidence, SeenThing};
 use std::collections::BTreeSet;
-use wayword_core::{Form, Look, Observation, Path, Sighting, Where, Witness};
-use wayword_language::lexicon::{agree, kinds, normal};
+use wayword_core::{CaptionedView, FormOutcome, FrameObservation, ObjectSighting, Path, ViewThird, WitnessAnswer};
+use wayword_language::lexicon::{kinds_of, names_agree, normalise_name};
 
 impl Evidence {
     /// Evidence from captions, one observation per frame of the path. `None` where no caption names a room or an
     /// object.
     #[must_use]
-    pub fn from_captions(path: &Path, observations: &[Observation]) -> Option<Self> {
+    pub fn from_captions(path: &Path, observations: &[FrameObservation]) -> Option<Self> {
         let mut frames: Vec<FrameEvidence> = path
             .frames
             .iter()
             .zip(observations)
             .map(|(frame, seen)| {
-                let off_rad = |look: &Look| frame.pose.heading.turn_to(look.gaze.heading);
+                let off_rad = |look: &CaptionedView| frame.pose.heading.turn_to(look.gaze.heading);
                 of_looks(&seen.looks, &off_rad)
             })
             .collect();
-        doubt(&mut frames);
+        move_doubtful_things(&mut frames);
         let is_known = |frame: &FrameEvidence| {
             let FrameEvidence { rooms, things, perhaps, denied, .. } = frame;
             !(rooms.is_empty() && things.is_empty() && perhaps.things.is_empty() && denied.is_empty())
         };
         let known = frames.iter().any(is_known);
-        known.then(|| Self::of(path, frames, Source::Captions))
+        known.then(|| Self::from_frames(path, frames, EvidenceSource::Captions))
     }
 
     /// Evidence from a detector's finds and misses alone: captions without words, one observation per frame. `None`
     /// where it looked for no names.
     #[must_use]
-    pub fn from_detector(path: &Path, observations: &[Observation]) -> Option<Self> {
-        Some(Self { source: Source::Detector, ..Self::from_captions(path, observations)? })
+    pub fn from_detector(path: &Path, observations: &[FrameObservation]) -> Option<Self> {
+        Some(Self { source: EvidenceSource::Detector, ..Self::from_captions(path, observations)? })
     }
 }
 
 /// Moves doubtful things to the guesses: a name of which witnesses were unsure at least as often as they were sure is
 /// only perhaps there, in every frame.
-fn doubt(frames: &mut [FrameEvidence]) {
+fn move_doubtful_things(frames: &mut [FrameEvidence]) {
     let count = |of: fn(&FrameEvidence) -> &Vec<SeenThing>, frames: &[FrameEvidence], name: &str| {
-        frames.iter().filter(|frame| of(frame).iter().any(|thing| normal(&thing.name) == name)).count()
+        frames.iter().filter(|frame| of(frame).iter().any(|thing| normalise_name(&thing.name) == name)).count()
     };
     let names: BTreeSet<String> =
-        frames.iter().flat_map(|frame| &frame.perhaps.things).map(|thing| normal(&thing.name)).collect();
+        frames.iter().flat_map(|frame| &frame.perhaps.things).map(|thing| normalise_name(&thing.name)).collect();
     let is_doubtful = |name: &String| {
         count(|frame| &frame.perhaps.things, frames, name) >= count(|frame| &frame.things, frames, name)
     };
     let doubtful: BTreeSet<String> = names.into_iter().filter(is_doubtful).collect();
     for frame in frames {
-        let (doubted, sure) = frame.things.drain(..).partition(|thing| doubtful.contains(&normal(&thing.name)));
+        let (doubted, sure) = frame.things.drain(..).partition(|thing| doubtful.contains(&normalise_name(&thing.name)));
         frame.things = sure;
         let mut doubted: Vec<SeenThing> = doubted;
         frame.perhaps.things.append(&mut doubted);
     }
 }
 
-fn of_looks(looks: &[Look], off_rad: &dyn Fn(&Look) -> f64) -> FrameEvidence {
+fn of_looks(looks: &[CaptionedView], off_rad: &dyn Fn(&CaptionedView) -> f64) -> FrameEvidence {
     // A caption with a room and no object comes from a witness that looked; a caption without both may not.
-    let has_looked = |look: &Look| look.caption.room.is_some() || !look.caption.sightings.is_empty();
+    let has_looked = |look: &CaptionedView| look.caption.room.is_some() || !look.caption.sightings.is_empty();
     let knows_things = !looks.is_empty() && looks.iter().all(has_looked);
     let mut evidence = FrameEvidence { knows_things, ..FrameEvidence::default() };
     evidence.lists_things = knows_things && looks.iter().all(is_list);
@@ -68,26 +68,26 @@ fn of_looks(looks: &[Look], off_rad: &dyn Fn(&Look) -> f64) -> FrameEvidence {
         evidence.perhaps.rooms.extend(look.caption.ways.iter().filter_map(|way| way.leads_to.clone()));
         for sighting in &look.caption.sightings {
             match sighting.witness {
-                Witness::Seen => evidence.things.push(seen_thing(sighting, look, off_rad(look))),
-                Witness::Unsure => evidence.perhaps.things.push(seen_thing(sighting, look, off_rad(look))),
-                Witness::Denied => evidence.denied.push(sighting.name.clone()),
+                WitnessAnswer::Seen => evidence.things.push(seen_thing(sighting, look, off_rad(look))),
+                WitnessAnswer::Unsure => evidence.perhaps.things.push(seen_thing(sighting, look, off_rad(look))),
+                WitnessAnswer::Denied => evidence.denied.push(sighting.name.clone()),
             }
         }
     }
     // A thing that one view of a frame shows is there, even if the caption of another view denies it.
     let FrameEvidence { things, perhaps, denied, .. } = &mut evidence;
-    let is_named = |name: &str| things.iter().chain(&perhaps.things).any(|thing| agree(&thing.name, name));
+    let is_named = |name: &str| things.iter().chain(&perhaps.things).any(|thing| names_agree(&thing.name, name));
     denied.retain(|name| !is_named(name));
     evidence
 }
 
 /// Whether a caption lists all that its view shows: it is made from an answer in the form that was asked for.
-fn is_list(look: &Look) -> bool {
-    look.caption.is_structured && look.caption.form != Some(Form::Broken)
+fn is_list(look: &CaptionedView) -> bool {
+    look.caption.is_structured && look.caption.form != Some(FormOutcome::Broken)
 }
 
-fn seen_thing(sighting: &Sighting, look: &Look, off_rad: f64) -> SeenThing {
-    let of_place = |place: Where| place.turn_rad(look.gaze.horizontal_fov_rad);
+fn seen_thing(sighting: &ObjectSighting, look: &CaptionedView, off_rad: f64) -> SeenThing {
+    let of_place = |place: ViewThird| place.turn_rad(look.gaze.horizontal_fov_rad);
     let within_rad = sighting.spot.map(|spot| spot.off_rad).or_else(|| sighting.place.map(of_place));
     SeenThing {
         name: sighting.name.clone(),
@@ -100,40 +100,43 @@ fn seen_thing(sighting: &Sighting, look: &Look, off_rad: f64) -> SeenThing {
 }
 
 /// Whether a denial of one name denies another: "no chair" denies a dining chair, but "no dining chair" no chair.
-pub(super) fn denies(denied: &str, name: &str) -> bool {
-    let general = kinds(denied);
-    normal(denied) == normal(name) || kinds(name).contains(&general[0])
+pub(super) fn denies_name(denied: &str, name: &str) -> bool {
+    let general = kinds_of(denied);
+    normalise_name(denied) == normalise_name(name) || kinds_of(name).contains(&general[0])
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Subject, check, check_own};
-    use wayword_core::{Caption, Check, DVec3, Gaze, Motion, SceneId, Style, Verdict, path::Stop};
+    use crate::{CheckSubject, check_own, check_text};
+    use wayword_core::{
+        Caption, CheckKind, DVec3, InstructionStyle, PathMotion, SceneId, Verdict, ViewGaze, path::PathStop,
+    };
 
     /// A path straight ahead, with these captions of its frames.
     fn evidence(captions: Vec<Caption>) -> Evidence {
-        let stop = |at: usize| Stop { position: DVec3::new(0.0, 2.0 * at as f64, 1.5), viewpoint: None, level: None };
+        let stop =
+            |at: usize| PathStop { position: DVec3::new(0.0, 2.0 * at as f64, 1.5), viewpoint: None, level: None };
         let frames = Path::frames_along((0..captions.len()).map(stop).collect(), None);
-        let seen = frames.iter().zip(captions).map(|(frame, caption)| Observation {
-            looks: vec![Look { gaze: Gaze::quarter(frame.pose.heading), caption }],
-            ..Observation::default()
+        let seen = frames.iter().zip(captions).map(|(frame, caption)| FrameObservation {
+            looks: vec![CaptionedView { gaze: ViewGaze::quarter_view(frame.pose.heading), caption }],
+            ..FrameObservation::default()
         });
-        let seen: Vec<Observation> = seen.collect();
+        let seen: Vec<FrameObservation> = seen.collect();
         let path =
-            Path { id: "p".into(), scene: SceneId::new("s").unwrap(), frames, motion: Motion::Known, target: None };
+            Path { id: "p".into(), scene: SceneId::new("s").unwrap(), frames, motion: PathMotion::Known, target: None };
         Evidence::from_captions(&path, &seen).unwrap()
     }
 
-    fn listed(room: &str, things: &[(&str, Witness)]) -> Caption {
-        let sighting = |(name, witness): &(&str, Witness)| Sighting::new(*name, *witness, "test");
+    fn listed(room: &str, things: &[(&str, WitnessAnswer)]) -> Caption {
+        let sighting = |(name, witness): &(&str, WitnessAnswer)| ObjectSighting::new(*name, *witness, "test");
         let sightings = things.iter().map(sighting).collect();
         Caption { room: Some(room.into()), sightings, is_structured: true, ..Caption::default() }
     }
 
     fn known() -> Evidence {
-        use Witness::{Denied, Seen, Unsure};
-        let cream = Sighting { colour: Some("cream".into()), ..Sighting::new("rug", Seen, "test") };
+        use WitnessAnswer::{Denied, Seen, Unsure};
+        let cream = ObjectSighting { colour: Some("cream".into()), ..ObjectSighting::new("rug", Seen, "test") };
         let mut hall = listed("hallway", &[("bench", Seen), ("lamp", Unsure), ("vase", Denied)]);
         hall.sightings.push(cream);
         evidence(vec![
@@ -144,11 +147,11 @@ mod tests {
     }
 
     fn places(text: &str, own: bool) -> Verdict {
-        let style = Style { name: "s".into(), ..Style::default() };
+        let style = InstructionStyle { name: "s".into(), ..InstructionStyle::default() };
         let evidence = known();
-        let subject = Subject::closed(&evidence, &style, None);
-        let checked = if own { check_own(text, subject) } else { check(text, subject) };
-        let of_places = checked.findings.iter().filter(|finding| finding.check == Check::Landmarks);
+        let subject = CheckSubject::closed_world(&evidence, &style, None);
+        let checked = if own { check_own(text, subject) } else { check_text(text, subject) };
+        let of_places = checked.findings.iter().filter(|finding| finding.check == CheckKind::Landmarks);
         of_places.map(|finding| finding.verdict).max().unwrap()
     }
 

@@ -1,7 +1,7 @@
 //! Makes evidence from the platform's own labels.
 
-use super::{Evidence, FrameEvidence, SeenThing, Source};
-use wayword_core::{DVec3, Label, Path, View};
+use super::{Evidence, EvidenceSource, FrameEvidence, SeenThing};
+use wayword_core::{DVec3, ObjectLabel, Path, View};
 
 impl Evidence {
     /// Evidence from ground truth: `panoramas` holds, for each frame, the views all around it. `None` where the
@@ -21,17 +21,17 @@ impl Evidence {
                     colour: label.colour.clone(),
                     turn_rad: Some(frame.pose.heading.turn_to(label.heading)),
                     distance_m: label.distance_m.or_else(|| Some(label.position?.distance(frame.pose.position))),
-                    position: label.position.or_else(|| placed(label, frame.pose.position)),
+                    position: label.position.or_else(|| label_position(label, frame.pose.position)),
                     ..SeenThing::default()
                 }));
             }
             evidence
         });
-        known.then(|| Self::of(path, frames.collect(), Source::Labels))
+        known.then(|| Self::from_frames(path, frames.collect(), EvidenceSource::Labels))
     }
 }
 
 /// Where a label's object is, from its direction and distance.
-fn placed(label: &Label, eye: DVec3) -> Option<DVec3> {
-    Some(eye + label.heading.raised(label.elevation_rad) * label.distance_m?)
+fn label_position(label: &ObjectLabel, eye: DVec3) -> Option<DVec3> {
+    Some(eye + label.heading.raised_vector(label.elevation_rad) * label.distance_m?)
 }

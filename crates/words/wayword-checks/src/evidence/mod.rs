@@ -6,13 +6,13 @@ mod from_captions;
 mod from_labels;
 mod surroundings;
 
-use from_captions::denies;
+use from_captions::denies_name;
 
-pub use building::Building;
-pub use surroundings::{Distance, NEAR_M, Surroundings};
+pub use building::BuildingInventory;
+pub use surroundings::{ListedDistance, NEAR_M, PathSurroundings};
 
-use wayword_core::{Climb, DVec3, Motion, Move, ObjectId, Path, motion};
-use wayword_language::lexicon::{Class, agree, is_fabric, room_name, same_room, thing};
+use wayword_core::{ClimbDirection, DVec3, ObjectId, Path, PathMotion, PathMove, motion};
+use wayword_language::lexicon::{ThingClass, find_thing, is_fabric, names_agree, room_name, same_room};
 
 /// Everything that is known of a path, frame by frame.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,19 +20,19 @@ pub struct Evidence {
     /// One per frame of the path.
     pub frames: Vec<FrameEvidence>,
     /// The moves between them; none where the motion is unknown.
-    pub moves: Vec<Move>,
+    pub moves: Vec<PathMove>,
     /// Whether the walker's motion is known. If not, `moves` is empty although the path may move.
-    pub motion: Motion,
+    pub motion: PathMotion,
     /// Its source.
-    pub source: Source,
+    pub source: EvidenceSource,
     /// Rooms and things around the end that no frame has to show.
-    pub beyond: Beyond,
+    pub beyond: EndSurroundings,
 }
 
 /// Rooms and things around the end of a path that its frames need not show. A text may use them to distinguish the
 /// room.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Beyond {
+pub struct EndSurroundings {
     /// The names of the rooms next to the one at the end.
     pub rooms: Vec<String>,
     /// The names of the things in it.
@@ -51,7 +51,7 @@ pub struct FrameEvidence {
     /// Whether the witness listed all that it noticed. If it only described the view, a missing object means little.
     pub lists_things: bool,
     /// Rooms and objects that the witnesses were not sure of.
-    pub perhaps: Perhaps,
+    pub perhaps: UnsureSightings,
     /// Names of objects that a witness declared absent.
     pub denied: Vec<String>,
     /// The storey, the lowest being 1.
@@ -60,7 +60,7 @@ pub struct FrameEvidence {
 
 /// Guesses of witnesses. They make no text right, and none wrong.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Perhaps {
+pub struct UnsureSightings {
     /// Rooms: guesses of the frame's own room, and rooms that are seen through openings.
     pub rooms: Vec<String>,
     /// Objects.
@@ -89,18 +89,18 @@ pub struct SeenThing {
 impl FrameEvidence {
     /// Whether its witness may have seen a thing of that name, without being sure.
     pub(crate) fn may_show(&self, name: &str) -> bool {
-        self.perhaps.things.iter().any(|thing| agree(&thing.name, name))
+        self.perhaps.things.iter().any(|thing| names_agree(&thing.name, name))
     }
 }
 
 /// Whether a thing of that name is too conspicuous to be overlooked.
 fn stands_out(name: &str) -> bool {
-    thing(name).is_some_and(|thing| thing.salience >= 3)
+    find_thing(name).is_some_and(|thing| thing.salience >= 3)
 }
 
 /// The source of evidence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Source {
+pub enum EvidenceSource {
     /// The platform's ground truth.
     Labels,
     /// Captions of the views.
@@ -111,7 +111,7 @@ pub enum Source {
     Nothing,
 }
 
-impl Source {
+impl EvidenceSource {
     /// Its name in provenance and on the screen.
     #[must_use]
     pub fn name(self) -> &'static str {
@@ -134,17 +134,17 @@ impl Source {
 const STEP_M: f64 = 0.1;
 
 impl Evidence {
-    fn of(path: &Path, mut frames: Vec<FrameEvidence>, source: Source) -> Self {
+    fn from_frames(path: &Path, mut frames: Vec<FrameEvidence>, source: EvidenceSource) -> Self {
         for (evidence, frame) in frames.iter_mut().zip(&path.frames) {
             evidence.level = frame.level.filter(|_| path.motion.is_known());
         }
-        Self { frames, moves: path.moves(), motion: path.motion, source, beyond: Beyond::default() }
+        Self { frames, moves: path.moves(), motion: path.motion, source, beyond: EndSurroundings::default() }
     }
 
     /// Evidence of a path without labels and captions: only turns and storeys can be checked.
     #[must_use]
     pub fn of_path_alone(path: &Path) -> Self {
-        Self::of(path, vec![FrameEvidence::default(); path.frames.len()], Source::Nothing)
+        Self::from_frames(path, vec![FrameEvidence::default(); path.frames.len()], EvidenceSource::Nothing)
     }
 
     /// For a thing that no frame shows: whether it is certainly nowhere along the path. That is so where the objects of
@@ -169,8 +169,8 @@ impl Evidence {
         let Some(last) = self.frames.last().filter(|last| last.knows_things && self.could_name(name)) else {
             return false;
         };
-        let listed = || last.lists_things && !self.may_show(name) && thing(name).is_some();
-        let denied = || last.denied.iter().any(|denied| denies(denied, name));
+        let listed = || last.lists_things && !self.may_show(name) && find_thing(name).is_some();
+        let denied = || last.denied.iter().any(|denied| denies_name(denied, name));
         !last.may_show(name) && (!self.source.leaves_out() || denied() || listed())
     }
 
@@ -182,17 +182,17 @@ impl Evidence {
 
     /// Whether some frame's witness denied a thing of that name.
     fn is_denied(&self, name: &str) -> bool {
-        self.frames.iter().flat_map(|frame| &frame.denied).any(|denied| denies(denied, name))
+        self.frames.iter().flat_map(|frame| &frame.denied).any(|denied| denies_name(denied, name))
     }
 
     /// Whether the witnesses could have named a thing of that name. Most leave out doors and walls: where they name
     /// none at all, that denies none.
     fn could_name(&self, name: &str) -> bool {
-        let class = thing(name).map(|thing| thing.class);
-        let left_out = is_fabric(name) || class == Some(Class::Door);
+        let class = find_thing(name).map(|thing| thing.class);
+        let left_out = is_fabric(name) || class == Some(ThingClass::Door);
         let mut things = self.frames.iter().flat_map(|frame| &frame.things);
-        self.source != Source::Nothing
-            && (!left_out || things.any(|seen| thing(&seen.name).map(|thing| thing.class) == class))
+        self.source != EvidenceSource::Nothing
+            && (!left_out || things.any(|seen| find_thing(&seen.name).map(|thing| thing.class) == class))
     }
 
     /// For a room in which no frame lies: whether it is certainly nowhere along the path. That is so where the room of
@@ -205,7 +205,7 @@ impl Evidence {
             Some("attic") => false,
             _ => {
                 let is_perhaps = |room: &String| same_room(room, name);
-                self.source != Source::Nothing
+                self.source != EvidenceSource::Nothing
                     && self.frames_without_room().is_empty()
                     && !self.frames.iter().flat_map(|frame| &frame.perhaps.rooms).any(is_perhaps)
             }
@@ -227,7 +227,7 @@ impl Evidence {
     /// The frames from which something of that name is seen.
     #[must_use]
     pub fn frames_with_thing(&self, name: &str) -> Vec<usize> {
-        self.frames_where(|frame| frame.things.iter().any(|thing| agree(&thing.name, name)))
+        self.frames_where(|frame| frame.things.iter().any(|thing| names_agree(&thing.name, name)))
     }
 
     /// The frames that lie in a room of that name.
@@ -242,22 +242,22 @@ impl Evidence {
 
     /// The frames at which a flight of stairs begins, up or down. Small rises add up.
     #[must_use]
-    pub fn frames_with_climb(&self, climb: Climb) -> Vec<usize> {
+    pub fn frames_with_climb(&self, climb: ClimbDirection) -> Vec<usize> {
         let climbs = |at: &usize| self.flight_from(*at, climb).is_some();
         (0..self.moves.len()).filter(climbs).collect()
     }
 
     /// Whether some move gains or loses the height of a step.
     #[must_use]
-    pub fn steps(&self, climb: Climb) -> bool {
-        let way = if climb == Climb::Down { -1.0 } else { 1.0 };
+    pub fn has_steps(&self, climb: ClimbDirection) -> bool {
+        let way = if climb == ClimbDirection::Down { -1.0 } else { 1.0 };
         self.moves.iter().any(|step| step.rise_m * way >= STEP_M)
     }
 
     /// The frames on a flight of stairs in either direction, with those at its foot and its head.
     #[must_use]
     pub fn frames_on_stairs(&self) -> Vec<usize> {
-        let flights = [Climb::Up, Climb::Down].into_iter().flat_map(|climb| {
+        let flights = [ClimbDirection::Up, ClimbDirection::Down].into_iter().flat_map(|climb| {
             self.frames_with_climb(climb).into_iter().filter_map(move |at| Some(at..=self.flight_from(at, climb)? + 1))
         });
         flights.flatten().collect()
@@ -265,8 +265,8 @@ impl Evidence {
 
     /// The last move of the flight of stairs that begins at a move; `None` where it does not climb enough in that
     /// direction.
-    fn flight_from(&self, first: usize, climb: Climb) -> Option<usize> {
-        motion::flight(&self.moves, first).filter(|(_, way)| *way == climb).map(|(last, _)| last)
+    fn flight_from(&self, first: usize, climb: ClimbDirection) -> Option<usize> {
+        motion::flight_from(&self.moves, first).filter(|(_, way)| *way == climb).map(|(last, _)| last)
     }
 
     /// The things that are seen from the last frame.

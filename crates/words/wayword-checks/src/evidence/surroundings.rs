@@ -1,13 +1,13 @@
 //! Distances from a path to everything that its building lists. An open world uses them to judge how much a missing
 //! label means.
 
-use super::building::{Building, Name, Spot};
+use super::building::{BuildingInventory, InventoryName, InventoryObject};
 use std::{
     collections::{BTreeMap, BTreeSet, VecDeque},
     sync::Arc,
 };
 use wayword_core::{DVec3, Frame, Path};
-use wayword_language::lexicon::{Class, kinds, room_name, same_room};
+use wayword_language::lexicon::{ThingClass, kinds_of, room_name, same_room};
 
 /// A thing this near to the path can be seen by a person who walks it, metres.
 pub const NEAR_M: f64 = 3.0;
@@ -18,16 +18,16 @@ const HEIGHT_WEIGHT: f64 = 3.0;
 
 /// The listed objects and rooms around a path, with their distances.
 #[derive(Debug, Clone)]
-pub struct Surroundings {
-    building: Arc<Building>,
+pub struct PathSurroundings {
+    building: Arc<BuildingInventory>,
     /// The eyes along the path.
     eyes: Vec<DVec3>,
     /// The heights of the floor along the path, metres; empty where one of them is not known.
     floors_m: Vec<f64>,
     /// For each name of the building, how far its objects are.
-    distances: Vec<Distance>,
+    distances: Vec<ListedDistance>,
     /// The rooms of the building, and how far they are.
-    rooms: Vec<(String, Distance)>,
+    rooms: Vec<(String, ListedDistance)>,
     /// The rooms within reach of the path.
     near_rooms: BTreeSet<String>,
     /// Whether a viewpoint near the path has no room.
@@ -40,7 +40,7 @@ pub struct Surroundings {
 
 /// How far something is; infinite where the building lists none.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Distance {
+pub struct ListedDistance {
     /// From the nearest point of the path, metres.
     pub path_m: f64,
     /// From its last frame, metres.
@@ -51,14 +51,14 @@ pub struct Distance {
     pub end_hops: usize,
 }
 
-impl Distance {
+impl ListedDistance {
     /// Listed nowhere in the building.
     pub const NOWHERE: Self =
         Self { path_m: f64::INFINITY, end_m: f64::INFINITY, path_hops: usize::MAX, end_hops: usize::MAX };
 
     /// The lesser of both in each respect.
     #[must_use]
-    pub fn nearer(self, other: Self) -> Self {
+    pub fn nearer_of(self, other: Self) -> Self {
         Self {
             path_m: self.path_m.min(other.path_m),
             end_m: self.end_m.min(other.end_m),
@@ -68,35 +68,41 @@ impl Distance {
     }
 }
 
-impl Surroundings {
+impl PathSurroundings {
     /// The listed objects and rooms around a path. `None` where the path's motion is unknown or the building lists
     /// none.
     #[must_use]
-    pub fn of(building: &Arc<Building>, path: &Path) -> Option<Self> {
+    pub fn around_path(building: &Arc<BuildingInventory>, path: &Path) -> Option<Self> {
         if !path.motion.is_known() || building.is_blank() || path.frames.is_empty() {
             return None;
         }
         let eyes: Vec<DVec3> = path.frames.iter().map(|frame| frame.pose.position).collect();
-        let starts: Vec<usize> = path.frames.iter().filter_map(|frame| place(building, frame)).collect();
+        let starts: Vec<usize> = path.frames.iter().filter_map(|frame| frame_viewpoint(building, frame)).collect();
         let floor_m = |frame: &Frame| building.viewpoints[*building.places.get(frame.viewpoint.as_ref()?)?].floor_m;
         let floors_m = path.frames.iter().map(floor_m).collect::<Option<_>>().unwrap_or_default();
-        let path_hops = hops(building, &starts);
-        let end_hops = hops(building, starts.last().map_or(&[], std::slice::from_ref));
-        let to_spot = |spot: &Spot| {
+        let path_hops = hops_from(building, &starts);
+        let end_hops = hops_from(building, starts.last().map_or(&[], std::slice::from_ref));
+        let to_spot = |spot: &InventoryObject| {
             let hops = |hops: &[usize]| spot.beside.iter().map(|at| hops[*at]).min().unwrap_or(usize::MAX);
-            Distance { path_hops: hops(&path_hops), end_hops: hops(&end_hops), ..distance(&eyes, spot.position) }
+            ListedDistance {
+                path_hops: hops(&path_hops),
+                end_hops: hops(&end_hops),
+                ..path_distance(&eyes, spot.position)
+            }
         };
-        let nearest = |name: &Name| name.spots.iter().map(to_spot).fold(Distance::NOWHERE, Distance::nearer);
-        let distances: Vec<Distance> = building.names.iter().map(nearest).collect();
-        let mut rooms: BTreeMap<&str, Distance> = BTreeMap::new();
+        let nearest = |name: &InventoryName| {
+            name.spots.iter().map(to_spot).fold(ListedDistance::NOWHERE, ListedDistance::nearer_of)
+        };
+        let distances: Vec<ListedDistance> = building.names.iter().map(nearest).collect();
+        let mut rooms: BTreeMap<&str, ListedDistance> = BTreeMap::new();
         let mut has_gap = false;
         for (at, viewpoint) in building.viewpoints.iter().enumerate() {
-            let to = distance(&eyes, viewpoint.position);
-            let to = Distance { path_hops: path_hops[at], end_hops: end_hops[at], ..to };
+            let to = path_distance(&eyes, viewpoint.position);
+            let to = ListedDistance { path_hops: path_hops[at], end_hops: end_hops[at], ..to };
             match &viewpoint.room {
                 Some(room) => {
-                    let nearest = rooms.entry(room).or_insert(Distance::NOWHERE);
-                    *nearest = nearest.nearer(to);
+                    let nearest = rooms.entry(room).or_insert(ListedDistance::NOWHERE);
+                    *nearest = nearest.nearer_of(to);
                 }
                 None => has_gap |= to.path_m <= NEAR_M,
             }
@@ -104,7 +110,8 @@ impl Surroundings {
         let near = rooms.iter().filter(|(_, distance)| distance.path_m <= NEAR_M);
         let near_rooms = near.map(|(name, _)| room_name(name).unwrap_or(name).to_owned()).collect();
         let rooms = rooms.into_iter().map(|(room, distance)| (room.to_owned(), distance)).collect();
-        let spots = || building.names.iter().flat_map(|name| &name.spots).map(|spot| distance(&eyes, spot.position));
+        let spots =
+            || building.names.iter().flat_map(|name| &name.spots).map(|spot| path_distance(&eyes, spot.position));
         let near_objects = spots().filter(|distance| distance.path_m <= NEAR_M).count();
         let end_objects = spots().filter(|distance| distance.end_m <= NEAR_M).count();
         let building = Arc::clone(building);
@@ -113,26 +120,26 @@ impl Surroundings {
 
     /// How far the nearest thing is that a name may mean.
     #[must_use]
-    pub fn thing(&self, name: &str) -> Distance {
-        let wanted = kinds(name);
-        let agreeing = self.building.names.iter().zip(&self.distances).filter(|(name, _)| agrees(name, &wanted));
-        agreeing.map(|(_, distance)| *distance).fold(Distance::NOWHERE, Distance::nearer)
+    pub fn thing_distance(&self, name: &str) -> ListedDistance {
+        let wanted = kinds_of(name);
+        let agreeing = self.building.names.iter().zip(&self.distances).filter(|(name, _)| name_agrees(name, &wanted));
+        agreeing.map(|(_, distance)| *distance).fold(ListedDistance::NOWHERE, ListedDistance::nearer_of)
     }
 
     /// How far the nearest viewpoint is in a room that a name may mean.
     #[must_use]
-    pub fn room(&self, name: &str) -> Distance {
+    pub fn room_distance(&self, name: &str) -> ListedDistance {
         let meant = self.rooms.iter().filter(|(room, _)| same_room(room, name));
-        meant.map(|(_, distance)| *distance).fold(Distance::NOWHERE, Distance::nearer)
+        meant.map(|(_, distance)| *distance).fold(ListedDistance::NOWHERE, ListedDistance::nearer_of)
     }
 
     /// Where the things are that a name may mean and that lie within some distance of the path.
     #[must_use]
-    pub fn spots(&self, name: &str, within_m: f64) -> Vec<DVec3> {
-        let wanted = kinds(name);
-        let agreeing = self.building.names.iter().filter(|name| agrees(name, &wanted));
+    pub fn thing_spots(&self, name: &str, within_m: f64) -> Vec<DVec3> {
+        let wanted = kinds_of(name);
+        let agreeing = self.building.names.iter().filter(|name| name_agrees(name, &wanted));
         let spots = agreeing.flat_map(|name| name.spots.iter().map(|spot| spot.position));
-        spots.filter(|spot| distance(&self.eyes, *spot).path_m <= within_m).collect()
+        spots.filter(|spot| path_distance(&self.eyes, *spot).path_m <= within_m).collect()
     }
 
     /// Where the viewpoints are that lie in a room that a name may mean, within some distance of the path.
@@ -141,7 +148,7 @@ impl Surroundings {
         let viewpoints = self.building.viewpoints.iter();
         let in_room = viewpoints.filter(|viewpoint| viewpoint.room.as_ref().is_some_and(|room| same_room(room, name)));
         let spots = in_room.map(|viewpoint| viewpoint.position);
-        spots.filter(|spot| distance(&self.eyes, *spot).path_m <= within_m).collect()
+        spots.filter(|spot| path_distance(&self.eyes, *spot).path_m <= within_m).collect()
     }
 
     /// The eyes along the path.
@@ -159,23 +166,23 @@ impl Surroundings {
     /// Whether the path comes near a room of a kind that contains a thing of that name somewhere in this building.
     #[must_use]
     pub fn passes_home_of(&self, name: &str) -> bool {
-        let wanted = kinds(name);
-        let mut agreeing = self.building.names.iter().filter(|name| agrees(name, &wanted));
+        let wanted = kinds_of(name);
+        let mut agreeing = self.building.names.iter().filter(|name| name_agrees(name, &wanted));
         agreeing.any(|name| !name.homes.is_disjoint(&self.near_rooms))
     }
 
     /// Whether an object of a class is listed near the path, or near its end.
     #[must_use]
-    pub fn has_kin(&self, class: Class, at_end: bool) -> bool {
+    pub fn has_kin(&self, class: ThingClass, at_end: bool) -> bool {
         let mut of_class = self.building.names.iter().zip(&self.distances).filter(|(name, _)| name.class == class);
         of_class.any(|(_, distance)| if at_end { distance.end_m <= NEAR_M } else { distance.path_m <= NEAR_M })
     }
 
     /// How many things that a name may mean the building lists.
     #[must_use]
-    pub fn count(&self, name: &str) -> usize {
-        let wanted = kinds(name);
-        self.building.names.iter().filter(|name| agrees(name, &wanted)).map(|name| name.spots.len()).sum()
+    pub fn count_things(&self, name: &str) -> usize {
+        let wanted = kinds_of(name);
+        self.building.names.iter().filter(|name| name_agrees(name, &wanted)).map(|name| name.spots.len()).sum()
     }
 
     /// The rooms within reach of the path, by their usual names.
@@ -215,19 +222,19 @@ impl Surroundings {
     }
 }
 
-fn agrees(name: &Name, wanted: &[String]) -> bool {
+fn name_agrees(name: &InventoryName, wanted: &[String]) -> bool {
     wanted.contains(&name.kinds[0]) || wanted.first().is_some_and(|kind| name.kinds.contains(kind))
 }
 
 /// The viewpoint of a frame: its own, or else the nearest one.
-fn place(building: &Building, frame: &Frame) -> Option<usize> {
+fn frame_viewpoint(building: &BuildingInventory, frame: &Frame) -> Option<usize> {
     let own = frame.viewpoint.as_ref().and_then(|id| building.places.get(id)).copied();
     let off_m = |at: &usize| building.viewpoints[*at].position.distance(frame.pose.position);
     own.or_else(|| (0..building.viewpoints.len()).min_by(|a, b| off_m(a).total_cmp(&off_m(b))))
 }
 
 /// The hops from the nearest of some viewpoints to each.
-fn hops(building: &Building, starts: &[usize]) -> Vec<usize> {
+fn hops_from(building: &BuildingInventory, starts: &[usize]) -> Vec<usize> {
     let mut hops = vec![usize::MAX; building.viewpoints.len()];
     let mut queue: VecDeque<usize> = starts.iter().copied().collect();
     starts.iter().for_each(|at| hops[*at] = 0);
@@ -244,17 +251,17 @@ fn hops(building: &Building, starts: &[usize]) -> Vec<usize> {
 
 /// How far a spot is from the path between these eyes. Only height beyond that of one storey counts, and it counts
 /// more.
-fn distance(eyes: &[DVec3], spot: DVec3) -> Distance {
-    let to_eye = |eye: &DVec3| off(spot - *eye);
+fn path_distance(eyes: &[DVec3], spot: DVec3) -> ListedDistance {
+    let to_eye = |eye: &DVec3| weighted_gap_m(spot - *eye);
     let to_hop = |hop: &[DVec3]| {
         let along = hop[1] - hop[0];
         let share = ((spot - hop[0]).dot(along) / along.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-        off(spot - (hop[0] + along * share))
+        weighted_gap_m(spot - (hop[0] + along * share))
     };
     let end_m = eyes.last().map_or(f64::INFINITY, to_eye);
-    Distance { path_m: eyes.windows(2).map(to_hop).fold(end_m, f64::min), end_m, ..Distance::NOWHERE }
+    ListedDistance { path_m: eyes.windows(2).map(to_hop).fold(end_m, f64::min), end_m, ..ListedDistance::NOWHERE }
 }
 
-fn off(gap: DVec3) -> f64 {
+fn weighted_gap_m(gap: DVec3) -> f64 {
     libm::hypot(gap.truncate().length(), (gap.z.abs() - STOREY_SLACK_M).max(0.0) * HEIGHT_WEIGHT)
 }

@@ -8,49 +8,49 @@ mod things;
 mod ways;
 
 pub(crate) use openings::frames_at_doors;
-pub use openings::{Opening, leads_through_a_door};
-pub use things::{Glimpse, Passed, Remembered};
-pub use ways::{Bend, Flight, Stay};
+pub use openings::{RoomOpening, leads_through_a_door};
+pub use things::{RememberedThing, ThingGlimpse, ThingPassing};
+pub use ways::{RoomStay, StairFlight, WalkBend};
 
 use crate::Evidence;
 use wayword_core::{DVec3, Heading, Path, Side};
-use wayword_language::lexicon::agree;
+use wayword_language::lexicon::names_agree;
 
 /// The memory of a walk.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Memory {
+pub struct WalkMemory {
     /// The things, in the order in which they are first seen.
-    pub things: Vec<Remembered>,
+    pub things: Vec<RememberedThing>,
     /// The rooms, in order. Frames without a known room belong to none.
-    pub stays: Vec<Stay>,
+    pub stays: Vec<RoomStay>,
     /// The turns, in order: several small turns to one side are one. None where the motion is unknown.
-    pub bends: Vec<Bend>,
+    pub bends: Vec<WalkBend>,
     /// The flights of stairs, in order.
-    pub flights: Vec<Flight>,
+    pub flights: Vec<StairFlight>,
     /// Where the room changes between two frames, in order.
-    pub openings: Vec<Opening>,
+    pub openings: Vec<RoomOpening>,
     /// The eye at each frame, metres; empty where the motion is unknown.
     eyes: Vec<DVec3>,
     /// The heading at each frame, before the turn of its move.
     headings: Vec<Heading>,
 }
 
-impl Memory {
+impl WalkMemory {
     /// The memory of a path, made from its evidence.
     #[must_use]
-    pub fn of(evidence: &Evidence, path: &Path) -> Self {
+    pub fn from_path(evidence: &Evidence, path: &Path) -> Self {
         let is_known = path.motion.is_known();
         let eyes: Vec<DVec3> = match is_known {
             true => path.frames.iter().map(|frame| frame.pose.position).collect(),
             false => Vec::new(),
         };
         let headings: Vec<Heading> = path.frames.iter().map(|frame| frame.pose.heading).collect();
-        let stays = ways::stays(evidence);
-        let openings = openings::openings(&stays, evidence);
+        let stays = ways::find_stays(evidence);
+        let openings = openings::find_openings(&stays, evidence);
         Self {
-            things: things::things(evidence, &eyes, &headings),
-            bends: ways::bends(&evidence.moves),
-            flights: ways::flights(evidence),
+            things: things::remember_things(evidence, &eyes, &headings),
+            bends: ways::find_bends(&evidence.moves),
+            flights: ways::find_flights(evidence),
             stays,
             openings,
             eyes,
@@ -60,26 +60,26 @@ impl Memory {
 
     /// The number of frames of the walk.
     #[must_use]
-    pub fn frames(&self) -> usize {
+    pub fn frame_count(&self) -> usize {
         self.headings.len()
     }
 
     /// The room in which a frame lies.
     #[must_use]
-    pub fn room(&self, frame: usize) -> Option<&str> {
-        self.stay(frame).map(|stay| stay.room.as_str())
+    pub fn room_at(&self, frame: usize) -> Option<&str> {
+        self.stay_at(frame).map(|stay| stay.room.as_str())
     }
 
     /// The stay to which a frame belongs.
     #[must_use]
-    pub fn stay(&self, frame: usize) -> Option<&Stay> {
+    pub fn stay_at(&self, frame: usize) -> Option<&RoomStay> {
         self.stays.iter().find(|stay| (stay.entered..=stay.left).contains(&frame))
     }
 
     /// The distance of a thing from a frame along the floor, metres, where it is known.
     #[must_use]
-    pub fn distance_m(&self, thing: &Remembered, frame: usize) -> Option<f64> {
-        let glimpsed = || thing.glimpse(frame).and_then(|glimpse| glimpse.distance_m);
+    pub fn distance_m(&self, thing: &RememberedThing, frame: usize) -> Option<f64> {
+        let glimpsed = || thing.glimpse_from(frame).and_then(|glimpse| glimpse.distance_m);
         match (thing.position, self.eyes.get(frame)) {
             (Some(position), Some(eye)) => Some((position - *eye).truncate().length()),
             _ => glimpsed(),
@@ -88,22 +88,22 @@ impl Memory {
 
     /// The side of a walker at a frame on which a thing lies, looking along the frame's heading.
     #[must_use]
-    pub fn side(&self, thing: &Remembered, frame: usize) -> Option<Side> {
+    pub fn side_at(&self, thing: &RememberedThing, frame: usize) -> Option<Side> {
         let (eye, heading) = (self.eyes.get(frame)?, self.headings.get(frame)?);
         match thing.position {
             Some(position) => Heading::towards(*eye, position).map(|to| heading.side_of(to)),
-            None => thing.glimpse(frame)?.turn_rad.map(|turn_rad| heading.side_of(heading.turned(turn_rad))),
+            None => thing.glimpse_from(frame)?.turn_rad.map(|turn_rad| heading.side_of(heading.turned_by(turn_rad))),
         }
     }
 
     /// Which one a thing is among those of its name that one passes on the same side in the same stay, the first being 1,
     /// and how many there are. `None` where one does not pass it, or the positions are not known.
     #[must_use]
-    pub fn ordinal(&self, thing: &Remembered) -> Option<(usize, usize)> {
+    pub fn ordinal_among_alike(&self, thing: &RememberedThing) -> Option<(usize, usize)> {
         let passed = thing.passed.filter(|_| thing.position.is_some())?;
-        let stay = self.stay(passed.frame)?;
-        let mut alike: Vec<(f64, &Remembered)> = Vec::new();
-        for other in self.things.iter().filter(|other| agree(&other.name, &thing.name)) {
+        let stay = self.stay_at(passed.frame)?;
+        let mut alike: Vec<(f64, &RememberedThing)> = Vec::new();
+        for other in self.things.iter().filter(|other| names_agree(&other.name, &thing.name)) {
             let by = other.passed?;
             other.position?;
             if by.side == passed.side && (stay.entered..=stay.left).contains(&by.frame) {
@@ -116,7 +116,7 @@ impl Memory {
     }
 
     /// The things that are seen from a frame.
-    pub fn seen_from(&self, frame: usize) -> impl Iterator<Item = &Remembered> {
-        self.things.iter().filter(move |thing| thing.glimpse(frame).is_some())
+    pub fn seen_from(&self, frame: usize) -> impl Iterator<Item = &RememberedThing> {
+        self.things.iter().filter(move |thing| thing.glimpse_from(frame).is_some())
     }
 }

@@ -1,12 +1,12 @@
 //! Finds the places where a walk goes from one room to another, and whether there is a door.
 
-use super::{Stay, ways};
+use super::{RoomStay, ways};
 use crate::Evidence;
-use wayword_language::lexicon::{Class, room_name, thing};
+use wayword_language::lexicon::{ThingClass, find_thing, room_name};
 
 /// A change of rooms between two frames in a row.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Opening {
+pub struct RoomOpening {
     /// The last frame before it.
     pub before: usize,
     /// The first frame behind it.
@@ -21,7 +21,7 @@ pub struct Opening {
 
 /// Rooms with a wall around them: one enters and leaves them through a door or doorway. Between the others a house may
 /// be open.
-const CLOSED: &[&str] = &[
+const WALLED_ROOMS: &[&str] = &[
     "bedroom",
     "bathroom",
     "toilet",
@@ -47,17 +47,17 @@ const CLOSED: &[&str] = &[
 pub fn leads_through_a_door(from: &str, to: &str) -> bool {
     let name = |room: &str| room_name(room).unwrap_or_default().to_owned();
     let (from, to) = (name(from), name(to));
-    let is_closed = |room: &String| CLOSED.contains(&room.as_str());
+    let is_closed = |room: &String| WALLED_ROOMS.contains(&room.as_str());
     let is_outside = |room: &String| matches!(room.as_str(), "porch" | "balcony" | "outdoor area");
     from != to && (is_closed(&from) || is_closed(&to)) && !(is_outside(&from) && is_outside(&to))
 }
 
 /// The openings between stays that follow one another without a frame between.
-pub(super) fn openings(stays: &[Stay], evidence: &Evidence) -> Vec<Opening> {
+pub(super) fn find_openings(stays: &[RoomStay], evidence: &Evidence) -> Vec<RoomOpening> {
     let next = stays.windows(2).filter(|pair| pair[0].left + 1 == pair[1].entered);
     next.map(|pair| {
         let (before, behind) = (pair[0].left, pair[1].entered);
-        Opening {
+        RoomOpening {
             before,
             behind,
             has_door: leads_through_a_door(&pair[0].room, &pair[1].room)
@@ -71,13 +71,13 @@ pub(super) fn openings(stays: &[Stay], evidence: &Evidence) -> Vec<Opening> {
 
 /// The frames on either side of a door or doorway through which the walk leads.
 pub(crate) fn frames_at_doors(evidence: &Evidence) -> Vec<usize> {
-    let through = openings(&ways::stays(evidence), evidence).into_iter().filter(|opening| opening.has_door);
+    let through = find_openings(&ways::find_stays(evidence), evidence).into_iter().filter(|opening| opening.has_door);
     through.flat_map(|opening| [opening.before, opening.behind]).collect()
 }
 
 /// Whether a door is seen from a frame, near where that is known.
 fn shows_door(evidence: &Evidence, frame: usize) -> bool {
-    let is_door = |name: &str| thing(name).is_some_and(|thing| thing.class == Class::Door);
+    let is_door = |name: &str| find_thing(name).is_some_and(|thing| thing.class == ThingClass::Door);
     let is_near = |distance_m: Option<f64>| distance_m.is_none_or(|distance_m| distance_m <= DOOR_M);
     let things = evidence.frames.get(frame).into_iter().flat_map(|frame| &frame.things);
     things.into_iter().any(|seen| is_door(&seen.name) && is_near(seen.distance_m))

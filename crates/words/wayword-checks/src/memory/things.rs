@@ -4,11 +4,11 @@
 use crate::{Evidence, SeenThing};
 use std::f64::consts::{FRAC_PI_3, FRAC_PI_4};
 use wayword_core::{DVec3, Heading, Side};
-use wayword_language::lexicon::{agree, normal};
+use wayword_language::lexicon::{names_agree, normalise_name};
 
 /// A thing that was seen along a walk.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Remembered {
+pub struct RememberedThing {
     /// Its name.
     pub name: String,
     /// Its id, where it comes from labels.
@@ -18,14 +18,14 @@ pub struct Remembered {
     /// Where it is, metres, world frame.
     pub position: Option<DVec3>,
     /// From which frames it is seen, ascending.
-    pub glimpses: Vec<Glimpse>,
+    pub glimpses: Vec<ThingGlimpse>,
     /// Where one passes it, if one does.
-    pub passed: Option<Passed>,
+    pub passed: Option<ThingPassing>,
 }
 
 /// A thing as it is seen from one frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Glimpse {
+pub struct ThingGlimpse {
     /// The frame.
     pub frame: usize,
     /// Its direction from the frame's heading, radians in (-π, π], positive right.
@@ -36,7 +36,7 @@ pub struct Glimpse {
 
 /// How one passes a thing.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Passed {
+pub struct ThingPassing {
     /// The frame nearest to where one passes it.
     pub frame: usize,
     /// The side on which it lies then: left or right.
@@ -45,7 +45,7 @@ pub struct Passed {
     pub along_m: f64,
 }
 
-impl Remembered {
+impl RememberedThing {
     /// The first frame from which it is seen.
     #[must_use]
     pub fn first_seen(&self) -> usize {
@@ -60,7 +60,7 @@ impl Remembered {
 
     /// How it is seen from a frame.
     #[must_use]
-    pub fn glimpse(&self, frame: usize) -> Option<&Glimpse> {
+    pub fn glimpse_from(&self, frame: usize) -> Option<&ThingGlimpse> {
         self.glimpses.iter().find(|glimpse| glimpse.frame == frame)
     }
 }
@@ -76,7 +76,7 @@ const CROSSING_RAD: f64 = 0.17;
 const FARTHEST_M: f64 = 8.0;
 
 /// A sighting with the eye that had it.
-struct Sighted<'a> {
+struct EyeSighting<'a> {
     frame: usize,
     thing: &'a SeenThing,
     /// Its direction, where poses are known.
@@ -84,25 +84,25 @@ struct Sighted<'a> {
     eye: Option<DVec3>,
 }
 
-impl Sighted<'_> {
+impl EyeSighting<'_> {
     /// How far away it is measured to be, metres, and where that is.
-    fn measured(&self) -> Option<(f64, DVec3)> {
+    fn measured_place(&self) -> Option<(f64, DVec3)> {
         let (far_m, eye, towards) = (self.thing.distance_m?, self.eye?, self.towards?);
-        Some((far_m, eye + towards.direction() * far_m))
+        Some((far_m, eye + towards.unit_vector() * far_m))
     }
 }
 
 /// The things of a walk. `eyes` is empty where the motion is unknown.
-pub(super) fn things(evidence: &Evidence, eyes: &[DVec3], headings: &[Heading]) -> Vec<Remembered> {
-    let mut groups: Vec<Vec<Sighted<'_>>> = Vec::new();
+pub(super) fn remember_things(evidence: &Evidence, eyes: &[DVec3], headings: &[Heading]) -> Vec<RememberedThing> {
+    let mut groups: Vec<Vec<EyeSighting<'_>>> = Vec::new();
     for (frame, seen) in evidence.frames.iter().enumerate() {
         let before = groups.len();
         for thing in &seen.things {
             let eye = eyes.get(frame).copied();
-            let turned = |turn_rad: f64| headings.get(frame).map(|heading| heading.turned(turn_rad));
-            let sighted = Sighted { frame, thing, eye, towards: eye.and(thing.turn_rad).and_then(turned) };
+            let turned = |turn_rad: f64| headings.get(frame).map(|heading| heading.turned_by(turn_rad));
+            let sighted = EyeSighting { frame, thing, eye, towards: eye.and(thing.turn_rad).and_then(turned) };
             // Of one frame, two sightings without ids are two things.
-            let joins = |(at, group): &(usize, &Vec<Sighted<'_>>)| match &thing.object {
+            let joins = |(at, group): &(usize, &Vec<EyeSighting<'_>>)| match &thing.object {
                 Some(id) => group[0].thing.object.as_ref() == Some(id),
                 None => *at < before && group.iter().all(|other| other.frame != frame) && is_same(group, &sighted),
             };
@@ -114,26 +114,26 @@ pub(super) fn things(evidence: &Evidence, eyes: &[DVec3], headings: &[Heading]) 
     }
     groups
         .into_iter()
-        .filter(|group| !normal(&group[0].thing.name).is_empty())
-        .map(|group| joined(&group, eyes))
+        .filter(|group| !normalise_name(&group[0].thing.name).is_empty())
+        .map(|group| join_sightings(&group, eyes))
         .collect()
 }
 
 /// Whether a sighting without an id is of the thing that earlier sightings are of: the names agree, no colour differs,
 /// and the directions can meet.
-fn is_same(group: &[Sighted<'_>], new: &Sighted<'_>) -> bool {
+fn is_same(group: &[EyeSighting<'_>], new: &EyeSighting<'_>) -> bool {
     let Some(last) = group.last() else { return false };
     let same_colour = match (&last.thing.colour, &new.thing.colour) {
         (Some(a), Some(b)) => a == b,
         _ => true,
     };
-    if group[0].thing.object.is_some() || !same_colour || !agree(&last.thing.name, &new.thing.name) {
+    if group[0].thing.object.is_some() || !same_colour || !names_agree(&last.thing.name, &new.thing.name) {
         return false;
     }
     if let (Some(a), Some(b)) = (last.thing.position, new.thing.position) {
         return a.distance(b) <= SAME_M;
     }
-    if let (Some(a), Some(b)) = (last.measured(), new.measured()) {
+    if let (Some(a), Some(b)) = (last.measured_place(), new.measured_place()) {
         return a.1.distance(b.1) <= SAME_FRONT_M;
     }
     match (last.eye.zip(last.towards), new.eye.zip(new.towards)) {
@@ -145,15 +145,15 @@ fn is_same(group: &[Sighted<'_>], new: &Sighted<'_>) -> bool {
 
 /// Whether two rays over the floor can show one thing: they cross ahead of both eyes, or run along one line.
 fn can_meet(a: (DVec3, Heading), b: (DVec3, Heading)) -> bool {
-    match crossing(a, b) {
+    match ray_crossing(a, b) {
         Some((_, far_a, far_b)) => far_a.min(far_b) > 0.0 && far_a.max(far_b) <= FARTHEST_M,
         None => a.1.turn_to(b.1).abs() < FRAC_PI_4,
     }
 }
 
 /// Where two rays cross over the floor, and how far from either eye.
-fn crossing(a: (DVec3, Heading), b: (DVec3, Heading)) -> Option<(DVec3, f64, f64)> {
-    let (along_a, along_b) = (a.1.direction().truncate(), b.1.direction().truncate());
+fn ray_crossing(a: (DVec3, Heading), b: (DVec3, Heading)) -> Option<(DVec3, f64, f64)> {
+    let (along_a, along_b) = (a.1.unit_vector().truncate(), b.1.unit_vector().truncate());
     let across = along_a.perp_dot(along_b);
     if across.abs() < libm::sin(CROSSING_RAD) {
         return None;
@@ -164,15 +164,15 @@ fn crossing(a: (DVec3, Heading), b: (DVec3, Heading)) -> Option<(DVec3, f64, f64
     Some((at.extend(a.0.z), far_a, far_b))
 }
 
-fn joined(group: &[Sighted<'_>], eyes: &[DVec3]) -> Remembered {
+fn join_sightings(group: &[EyeSighting<'_>], eyes: &[DVec3]) -> RememberedThing {
     let first = group[0].thing;
-    let position = position(group);
-    let mut glimpses: Vec<Glimpse> = Vec::new();
+    let position = thing_position(group);
+    let mut glimpses: Vec<ThingGlimpse> = Vec::new();
     for sighted in group {
         if glimpses.last().is_none_or(|last| last.frame != sighted.frame) {
             let by_place = || Some((position? - sighted.eye?).length());
             let distance_m = sighted.thing.distance_m.or_else(by_place);
-            glimpses.push(Glimpse { frame: sighted.frame, turn_rad: sighted.thing.turn_rad, distance_m });
+            glimpses.push(ThingGlimpse { frame: sighted.frame, turn_rad: sighted.thing.turn_rad, distance_m });
         }
     }
     let mut colours = group.iter().filter_map(|sighted| sighted.thing.colour.as_ref());
@@ -181,24 +181,24 @@ fn joined(group: &[Sighted<'_>], eyes: &[DVec3]) -> Remembered {
         Some(position) => passed_at(position, eyes),
         None => passed_by_glimpses(&glimpses),
     };
-    Remembered { name: first.name.clone(), object: first.object.clone(), colour, position, glimpses, passed }
+    RememberedThing { name: first.name.clone(), object: first.object.clone(), colour, position, glimpses, passed }
 }
 
 /// The position of a thing: that of its labels, or else by the distance from the nearest frame, or else where two of
 /// its directions cross.
-fn position(group: &[Sighted<'_>]) -> Option<DVec3> {
+fn thing_position(group: &[EyeSighting<'_>]) -> Option<DVec3> {
     let listed = group.iter().find_map(|sighted| sighted.thing.position);
     let rays: Vec<(DVec3, Heading)> = group.iter().filter_map(|sighted| sighted.eye.zip(sighted.towards)).collect();
     let crossed = || {
         let (first, last) = (rays.first()?, rays.last()?);
-        crossing(*first, *last).filter(|(_, a, b)| a.min(*b) > 0.0 && a.max(*b) <= FARTHEST_M).map(|(at, ..)| at)
+        ray_crossing(*first, *last).filter(|(_, a, b)| a.min(*b) > 0.0 && a.max(*b) <= FARTHEST_M).map(|(at, ..)| at)
     };
-    listed.or_else(|| nearest(group)).or_else(crossed)
+    listed.or_else(|| nearest_sighting(group)).or_else(crossed)
 }
 
 /// The place of the sighting from the least distance.
-fn nearest(group: &[Sighted<'_>]) -> Option<DVec3> {
-    let measured = group.iter().filter_map(Sighted::measured);
+fn nearest_sighting(group: &[EyeSighting<'_>]) -> Option<DVec3> {
+    let measured = group.iter().filter_map(EyeSighting::measured_place);
     measured.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, place)| place)
 }
 
@@ -210,8 +210,8 @@ const BESIDE_M: f64 = 4.0;
 /// A thing nearer to the line of the walk than this lies on neither side, metres.
 const IN_THE_WAY_M: f64 = 0.15;
 
-fn passed_at(position: DVec3, eyes: &[DVec3]) -> Option<Passed> {
-    let mut best: Option<(f64, Passed)> = None;
+fn passed_at(position: DVec3, eyes: &[DVec3]) -> Option<ThingPassing> {
+    let mut best: Option<(f64, ThingPassing)> = None;
     let mut walked_m = 0.0;
     for (at, hop) in eyes.windows(2).enumerate() {
         let (along, to) = ((hop[1] - hop[0]).truncate(), (position - hop[0]).truncate());
@@ -224,7 +224,7 @@ fn passed_at(position: DVec3, eyes: &[DVec3]) -> Option<Passed> {
             if beside && is_near && best.as_ref().is_none_or(|(nearest, _)| off_m.abs() < *nearest) {
                 let side = if off_m > 0.0 { Side::Left } else { Side::Right };
                 let frame = if along_m * 2.0 > length_m { at + 1 } else { at };
-                best = Some((off_m.abs(), Passed { frame, side, along_m: walked_m + along_m }));
+                best = Some((off_m.abs(), ThingPassing { frame, side, along_m: walked_m + along_m }));
             }
         }
         walked_m += length_m;
@@ -233,11 +233,11 @@ fn passed_at(position: DVec3, eyes: &[DVec3]) -> Option<Passed> {
 }
 
 /// For a thing without a position: one passes it if it is ahead first and then at one's side.
-fn passed_by_glimpses(glimpses: &[Glimpse]) -> Option<Passed> {
+fn passed_by_glimpses(glimpses: &[ThingGlimpse]) -> Option<ThingPassing> {
     glimpses.windows(2).find_map(|pair| {
         let (before, now) = (pair[0].turn_rad?, pair[1].turn_rad?);
         let side = if now < 0.0 { Side::Left } else { Side::Right };
         let passes = before.abs() < FRAC_PI_3 && now.abs() >= FRAC_PI_3 && now.abs() < 3.0 * FRAC_PI_4;
-        passes.then_some(Passed { frame: pair[1].frame, side, along_m: pair[1].frame as f64 })
+        passes.then_some(ThingPassing { frame: pair[1].frame, side, along_m: pair[1].frame as f64 })
     })
 }

@@ -2,12 +2,12 @@
 
 use crate::Evidence;
 use std::{cmp::Ordering, ops::Range};
-use wayword_core::{Climb, Move, Side, motion};
+use wayword_core::{ClimbDirection, PathMove, Side, motion};
 use wayword_language::lexicon::room_name;
 
 /// Frames in a row that lie in one room.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Stay {
+pub struct RoomStay {
     /// The room, as the evidence names it.
     pub room: String,
     /// Its first frame.
@@ -18,7 +18,7 @@ pub struct Stay {
 
 /// A turn, of one move or of several small ones to the same side.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Bend {
+pub struct WalkBend {
     /// Its first move; it begins at the frame of that number.
     pub first: usize,
     /// Its last move.
@@ -29,9 +29,9 @@ pub struct Bend {
 
 /// A flight of stairs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Flight {
+pub struct StairFlight {
     /// Up or down.
-    pub climb: Climb,
+    pub climb: ClimbDirection,
     /// The frame at which it begins.
     pub from: usize,
     /// The frame at which it ends.
@@ -40,7 +40,7 @@ pub struct Flight {
     pub to_level: Option<u32>,
 }
 
-impl Bend {
+impl WalkBend {
     /// The side to which it turns; `Behind` for a turn around.
     #[must_use]
     pub fn side(&self) -> Side {
@@ -59,14 +59,14 @@ impl Bend {
 }
 
 /// The rooms in order. A gap of frames without a room, between two of one name, belongs to that stay.
-pub(super) fn stays(evidence: &Evidence) -> Vec<Stay> {
-    let mut stays: Vec<Stay> = Vec::new();
+pub(super) fn find_stays(evidence: &Evidence) -> Vec<RoomStay> {
+    let mut stays: Vec<RoomStay> = Vec::new();
     for (frame, seen) in evidence.frames.iter().enumerate() {
         let Some(room) = seen.rooms.first() else { continue };
         let name = |room: &str| room_name(room).map_or_else(|| room.to_owned(), str::to_owned);
         match stays.last_mut() {
             Some(stay) if name(&stay.room) == name(room) => stay.left = frame,
-            _ => stays.push(Stay { room: room.clone(), entered: frame, left: frame }),
+            _ => stays.push(RoomStay { room: room.clone(), entered: frame, left: frame }),
         }
     }
     stays
@@ -82,24 +82,24 @@ const WINDING_M: f64 = 2.5;
 const ONE_BEND_DEG: f64 = 135.0;
 
 /// The turns of a walk that are worth a word; the same ones on the way back.
-pub(super) fn bends(moves: &[Move]) -> Vec<Bend> {
-    let mut bends: Vec<Bend> = Vec::new();
+pub(super) fn find_bends(moves: &[PathMove]) -> Vec<WalkBend> {
+    let mut bends: Vec<WalkBend> = Vec::new();
     // The opening turn is a turn of its own: the walker does not walk before it.
     let mut at = 0;
     while at < moves.len() {
         let run = if at == 0 { 1 } else { run_of_turns(moves, at) };
-        joined(moves, at..at + run, &mut bends);
+        join_bends(moves, at..at + run, &mut bends);
         at += run;
     }
-    unwound(bends, moves)
+    drop_winding(bends, moves)
 }
 
-fn turn_deg(moves: &[Move], at: usize) -> f64 {
+fn turn_deg(moves: &[PathMove], at: usize) -> f64 {
     moves[at].turn_rad.to_degrees()
 }
 
 /// How many moves from one on turn to its side.
-fn run_of_turns(moves: &[Move], first: usize) -> usize {
+fn run_of_turns(moves: &[PathMove], first: usize) -> usize {
     let sign = turn_deg(moves, first).signum();
     let same = (first + 1..moves.len()).take_while(|at| turn_deg(moves, *at) * sign >= motion::BEND_STEP_DEG);
     let turns = turn_deg(moves, first).abs() >= motion::BEND_STEP_DEG;
@@ -108,7 +108,7 @@ fn run_of_turns(moves: &[Move], first: usize) -> usize {
 
 /// The bends of moves that turn to one side, in order: where some of them are one bend, the longest part of that kind
 /// comes first, then the one that turns farthest.
-fn joined(moves: &[Move], run: Range<usize>, bends: &mut Vec<Bend>) {
+fn join_bends(moves: &[PathMove], run: Range<usize>, bends: &mut Vec<WalkBend>) {
     let total = |part: &Range<usize>| part.clone().map(|at| turn_deg(moves, at)).sum::<f64>().abs();
     let parts =
         run.clone().flat_map(|first| (first + 2..=run.end.min(first + motion::BEND_MOVES)).map(move |end| first..end));
@@ -122,20 +122,21 @@ fn joined(moves: &[Move], run: Range<usize>, bends: &mut Vec<Bend>) {
         .max_by(|a, b| far(a).partial_cmp(&far(b)).unwrap_or(Ordering::Equal));
     let Some(part) = best else {
         let worth_a_word = |at: &usize| turn_deg(moves, *at).abs() >= motion::SLIGHT_DEG;
-        bends.extend(run.filter(worth_a_word).map(|at| Bend { first: at, last: at, turn_rad: moves[at].turn_rad }));
+        bends.extend(run.filter(worth_a_word).map(|at| WalkBend { first: at, last: at, turn_rad: moves[at].turn_rad }));
         return;
     };
-    joined(moves, run.start..part.start, bends);
+    join_bends(moves, run.start..part.start, bends);
     let turn_rad = part.clone().map(|at| moves[at].turn_rad).sum();
-    bends.push(Bend { first: part.start, last: part.end - 1, turn_rad });
-    joined(moves, part.end..run.end, bends);
+    bends.push(WalkBend { first: part.start, last: part.end - 1, turn_rad });
+    join_bends(moves, part.end..run.end, bends);
 }
 
 /// The bends without pairs that cancel each other at once, as on a winding way. The nearest two go first. Only the
 /// turns count, because a walker in a door is in the room ahead, which is another one on the way back.
-fn unwound(mut bends: Vec<Bend>, moves: &[Move]) -> Vec<Bend> {
-    let between_m = |pair: &[Bend]| moves[pair[0].last..pair[1].first].iter().map(|step| step.distance_m).sum::<f64>();
-    let takes_back = |pair: &[Bend]| {
+fn drop_winding(mut bends: Vec<WalkBend>, moves: &[PathMove]) -> Vec<WalkBend> {
+    let between_m =
+        |pair: &[WalkBend]| moves[pair[0].last..pair[1].first].iter().map(|step| step.distance_m).sum::<f64>();
+    let takes_back = |pair: &[WalkBend]| {
         let small = pair.iter().all(|bend| bend.turn_rad.to_degrees().abs() < WINDING_EACH_DEG);
         let net_deg = (pair[0].turn_rad + pair[1].turn_rad).to_degrees().abs();
         pair[0].first > 0 && small && net_deg < WINDING_DEG && between_m(pair) < WINDING_M
@@ -151,16 +152,16 @@ fn unwound(mut bends: Vec<Bend>, moves: &[Move]) -> Vec<Bend> {
 const LANDING_M: f64 = 2.5;
 
 /// The flights of stairs, in order. Those that a landing joins are one.
-pub(super) fn flights(evidence: &Evidence) -> Vec<Flight> {
-    let (mut flights, mut at) = (Vec::<Flight>::new(), 0);
+pub(super) fn find_flights(evidence: &Evidence) -> Vec<StairFlight> {
+    let (mut flights, mut at) = (Vec::<StairFlight>::new(), 0);
     while at < evidence.moves.len() {
-        let Some((last, climb)) = motion::flight(&evidence.moves, at) else {
+        let Some((last, climb)) = motion::flight_from(&evidence.moves, at) else {
             at += 1;
             continue;
         };
         let level = |frame: usize| evidence.frames.get(frame).and_then(|frame| frame.level);
         let to_level = level(last + 1).filter(|level_after| level(at) != Some(*level_after));
-        let flight = Flight { climb, from: at, to: last + 1, to_level };
+        let flight = StairFlight { climb, from: at, to: last + 1, to_level };
         at = last + 1;
         match flights.last_mut().filter(|before| is_landing(before, &flight, &evidence.moves)) {
             Some(before) => (before.to, before.to_level) = (flight.to, flight.to_level.or(before.to_level)),
@@ -171,7 +172,7 @@ pub(super) fn flights(evidence: &Evidence) -> Vec<Flight> {
 }
 
 /// Whether only a landing lies between two flights.
-fn is_landing(before: &Flight, next: &Flight, moves: &[Move]) -> bool {
+fn is_landing(before: &StairFlight, next: &StairFlight, moves: &[PathMove]) -> bool {
     let between_m: f64 = moves[before.to..next.from].iter().map(|step| step.distance_m).sum();
     before.climb == next.climb && between_m <= LANDING_M
 }

@@ -1,10 +1,10 @@
 //! Corrections to the weights for single names of objects and rooms, fitted on the user's own dataset. People name
 //! some things more reliably than their class, and some less.
 
-use super::{claims::Claim, sight::Missed, weights::Weights};
+use super::{claims::PlaceClaim, sight::MissedClaim, weights::SilenceWeights};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use wayword_language::lexicon::{kinds, room_name};
+use wayword_language::lexicon::{kinds_of, room_name};
 
 /// An offset to the logarithm of a likelihood ratio, by the name of the claimed place.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -17,13 +17,13 @@ pub struct Calibration {
     /// How many texts that file has.
     pub texts: usize,
     /// By name.
-    pub names: BTreeMap<String, Offsets>,
+    pub names: BTreeMap<String, NameOffsets>,
 }
 
 /// The offsets of one name, by how far away the nearest listed one is.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Offsets {
+pub struct NameOffsets {
     /// Up to 8 m.
     pub close: f64,
     /// Farther.
@@ -34,11 +34,11 @@ pub struct Offsets {
 
 /// A claim that is not listed within reach, for a calibration.
 #[derive(Debug, Clone)]
-pub struct Observed<'a> {
+pub struct ClaimObservation<'a> {
     /// The claim.
-    pub claim: &'a Claim,
+    pub claim: &'a PlaceClaim,
     /// Its features in the evidence.
-    pub missed: &'a Missed,
+    pub missed: &'a MissedClaim,
     /// Whether the claim is wrong.
     pub wrong: bool,
     /// How much it counts.
@@ -46,24 +46,24 @@ pub struct Observed<'a> {
 }
 
 /// The logarithm of a claim's ratio by the general weights, whether it is wrong, and how much it counts.
-type Weighed = (f64, bool, f64);
+type WeighedClaim = (f64, bool, f64);
 
 /// The largest offset: a factor of 20. It also bounds the effect of an untrusted file.
-const MOST: f64 = 3.0;
+const MAX_OFFSET_LN: f64 = 3.0;
 /// As how many claims the general weights count against a name's own. It keeps rare names close to them.
-const RIDGE: f64 = 4.0;
-const STEPS: usize = 30;
+const RIDGE_CLAIMS: f64 = 4.0;
+const NEWTON_STEPS: usize = 30;
 /// From which offset on a name decides by itself: the odds double.
-const TELLING: f64 = std::f64::consts::LN_2;
+const TELLING_OFFSET_LN: f64 = std::f64::consts::LN_2;
 
 impl Calibration {
     /// Checks a calibration that comes from a file.
     ///
     /// # Errors
     /// When it holds a number that is not finite; the text names the entry.
-    pub fn check(&self) -> Result<(), String> {
+    pub fn check_numbers(&self) -> Result<(), String> {
         let is_finite =
-            |offsets: &Offsets| [offsets.close, offsets.far, offsets.nowhere].iter().all(|it| it.is_finite());
+            |offsets: &NameOffsets| [offsets.close, offsets.far, offsets.nowhere].iter().all(|it| it.is_finite());
         match self.names.iter().find(|(_, offsets)| !is_finite(offsets)) {
             Some((name, _)) => Err(format!("{name:?} has a number that is not finite")),
             None => Ok(()),
@@ -72,44 +72,44 @@ impl Calibration {
 
     /// The offset to the logarithm of a claim's likelihood ratio.
     #[must_use]
-    pub fn offset(&self, claim: &Claim, missed: &Missed) -> f64 {
-        let offsets = self.names.get(&name(claim));
-        offsets.map_or(0.0, |offsets| offsets.of(missed)).clamp(-MOST, MOST)
+    pub fn offset_for(&self, claim: &PlaceClaim, missed: &MissedClaim) -> f64 {
+        let offsets = self.names.get(&calibration_name(claim));
+        offsets.map_or(0.0, |offsets| offsets.for_missed(missed)).clamp(-MAX_OFFSET_LN, MAX_OFFSET_LN)
     }
 
     /// Whether a missing label leaves it open that a thing of this name is nearby, because people are often right
     /// about it there. `None` where the calibration knows the name too little.
     #[must_use]
     pub fn leaves_open(&self, name: &str) -> Option<bool> {
-        let close = kinds(name).into_iter().find_map(|kind| self.names.get(&kind))?.close;
-        (close.abs() >= TELLING).then_some(close < 0.0)
+        let close = kinds_of(name).into_iter().find_map(|kind| self.names.get(&kind))?.close;
+        (close.abs() >= TELLING_OFFSET_LN).then_some(close < 0.0)
     }
 
     /// Fits the offsets of single names to the general weights. Each name is fitted by itself.
     #[must_use]
-    pub fn fit(platform: &str, from: &str, texts: usize, observed: &[Observed<'_>]) -> Self {
-        let weights = Weights::shipped();
-        let mut cells: BTreeMap<(String, usize), Vec<Weighed>> = BTreeMap::new();
+    pub fn fit_names(platform: &str, from: &str, texts: usize, observed: &[ClaimObservation<'_>]) -> Self {
+        let weights = SilenceWeights::shipped();
+        let mut cells: BTreeMap<(String, usize), Vec<WeighedClaim>> = BTreeMap::new();
         for one in observed {
             let Some(ratio) = weights.log_ratio(one.missed) else { continue };
-            let cell = cells.entry((name(one.claim), cell(one.missed))).or_default();
+            let cell = cells.entry((calibration_name(one.claim), distance_cell(one.missed))).or_default();
             cell.push((ratio, one.wrong, one.weight));
         }
-        let mut names: BTreeMap<String, Offsets> = BTreeMap::new();
+        let mut names: BTreeMap<String, NameOffsets> = BTreeMap::new();
         for ((name, cell), observed) in cells {
-            let offset = (fitted(&observed) * 1e3).round() / 1e3;
-            *names.entry(name).or_default().cell(cell) = offset;
+            let offset = (fit_offset(&observed) * 1e3).round() / 1e3;
+            *names.entry(name).or_default().cell_mut(cell) = offset;
         }
         Self { platform: platform.to_owned(), from: from.to_owned(), texts, names }
     }
 }
 
-impl Offsets {
-    fn of(mut self, missed: &Missed) -> f64 {
-        *self.cell(cell(missed))
+impl NameOffsets {
+    fn for_missed(mut self, missed: &MissedClaim) -> f64 {
+        *self.cell_mut(distance_cell(missed))
     }
 
-    fn cell(&mut self, cell: usize) -> &mut f64 {
+    fn cell_mut(&mut self, cell: usize) -> &mut f64 {
         match cell {
             0 => &mut self.close,
             1 => &mut self.far,
@@ -118,7 +118,7 @@ impl Offsets {
     }
 }
 
-fn cell(missed: &Missed) -> usize {
+fn distance_cell(missed: &MissedClaim) -> usize {
     match missed.nearest_m {
         m if m <= 8.0 => 0,
         m if m.is_finite() => 1,
@@ -127,24 +127,24 @@ fn cell(missed: &Missed) -> usize {
 }
 
 /// The name under which a claim is counted.
-fn name(claim: &Claim) -> String {
+fn calibration_name(claim: &PlaceClaim) -> String {
     match room_name(&claim.name).filter(|_| claim.is_only_room()) {
         Some(room) => room.to_owned(),
-        None => kinds(&claim.name).swap_remove(0),
+        None => kinds_of(&claim.name).swap_remove(0),
     }
 }
 
 /// The offset at which the observed claims are likeliest, by Newton's method.
-fn fitted(observed: &[Weighed]) -> f64 {
+fn fit_offset(observed: &[WeighedClaim]) -> f64 {
     let mut offset = 0.0;
-    for _ in 0..STEPS {
-        let (mut slope, mut bend) = (-RIDGE * offset, RIDGE);
+    for _ in 0..NEWTON_STEPS {
+        let (mut slope, mut bend) = (-RIDGE_CLAIMS * offset, RIDGE_CLAIMS);
         for (ratio, wrong, weight) in observed {
             let chance = 1.0 / (1.0 + (-(ratio + offset)).exp());
             slope += (f64::from(u8::from(*wrong)) - chance) * weight;
             bend += chance * (1.0 - chance) * weight;
         }
-        offset = (offset + slope / bend).clamp(-MOST, MOST);
+        offset = (offset + slope / bend).clamp(-MAX_OFFSET_LN, MAX_OFFSET_LN);
     }
     offset
 }
@@ -157,9 +157,9 @@ mod tests {
     fn a_name_that_is_often_right_where_it_is_not_listed_is_believed_more() {
         let often_right: Vec<_> = (0..40).map(|at| (1.0, at % 4 == 0, 1.0)).collect();
         let often_wrong: Vec<_> = (0..40).map(|at| (1.0, at % 10 != 0, 1.0)).collect();
-        assert!(fitted(&often_right) < -0.5);
-        assert!(fitted(&often_wrong) > 0.5);
-        assert!(fitted(&often_wrong[..1]).abs() < 0.3, "one claim says little");
+        assert!(fit_offset(&often_right) < -0.5);
+        assert!(fit_offset(&often_wrong) > 0.5);
+        assert!(fit_offset(&often_wrong[..1]).abs() < 0.3, "one claim says little");
     }
 
     #[test]
@@ -167,10 +167,10 @@ mod tests {
         let head = "platform = \"matterport\"\nfrom = \"a.json\"\ntexts = 1\n";
         let read = |rest: &str| toml::from_str::<Calibration>(&format!("{head}{rest}"));
         let sound = read("[names.sofa]\nclose = 99.0\nfar = 1.0\nnowhere = 0.0").unwrap();
-        assert_eq!((sound.check(), sound.names["sofa"].close), (Ok(()), 99.0));
+        assert_eq!((sound.check_numbers(), sound.names["sofa"].close), (Ok(()), 99.0));
         for number in ["nan", "inf", "-inf"] {
             let odd = read(&format!("[names.sofa]\nclose = 1.0\nfar = {number}\nnowhere = 0.0")).unwrap();
-            assert!(odd.check().unwrap_err().contains("sofa"), "{number}");
+            assert!(odd.check_numbers().unwrap_err().contains("sofa"), "{number}");
         }
         assert!(read("words = 1\n[names]").is_err());
     }

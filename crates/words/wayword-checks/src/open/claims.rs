@@ -1,14 +1,14 @@
 //! Lists the places that a text claims, each with the walker's relation to it.
 
-use super::relation::{Relation, relations};
+use super::relation::{WalkerRelation, place_relations};
 use wayword_language::{
-    lexicon::{Class, thing},
-    reading::{Place, Reading, What},
+    lexicon::{ThingClass, find_thing},
+    reading::{EventContent, PlaceMention, TextReading},
 };
 
 /// A place that a text claims.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Claim {
+pub struct PlaceClaim {
     /// The event of the reading that names it.
     pub event: usize,
     /// Its byte range in the text.
@@ -20,15 +20,15 @@ pub struct Claim {
     /// Whether the name can be an object's.
     pub is_thing: bool,
     /// The class of the object that it can be.
-    pub class: Class,
+    pub class: ThingClass,
     /// The walker's relation to it.
-    pub relation: Relation,
+    pub relation: WalkerRelation,
 }
 
-impl Claim {
+impl PlaceClaim {
     /// The number of its clause.
     #[must_use]
-    pub fn clause(&self, reading: &Reading) -> usize {
+    pub fn clause_in(&self, reading: &TextReading) -> usize {
         reading.events[self.event].clause
     }
 
@@ -41,19 +41,19 @@ impl Claim {
 
 /// The places that a text claims, in its order.
 #[must_use]
-pub fn claims(reading: &Reading) -> Vec<Claim> {
-    let claim = |event: usize, span: [usize; 2], place: &Place, relation: Relation| Claim {
+pub fn read_claims(reading: &TextReading) -> Vec<PlaceClaim> {
+    let claim = |event: usize, span: [usize; 2], place: &PlaceMention, relation: WalkerRelation| PlaceClaim {
         event,
         span,
         name: place.name.clone(),
         is_room: place.is_room,
         is_thing: place.is_thing,
-        class: thing(&place.name).map_or(Class::Unknown, |thing| thing.class),
+        class: find_thing(&place.name).map_or(ThingClass::Unknown, |thing| thing.class),
         relation,
     };
-    let events = reading.events.iter().zip(relations(reading)).enumerate();
+    let events = reading.events.iter().zip(place_relations(reading)).enumerate();
     let places = events.filter_map(|(at, (event, relation))| match &event.what {
-        What::Place(place) => Some(claim(at, event.span, place, relation?)),
+        EventContent::Place(place) => Some(claim(at, event.span, place, relation?)),
         _ => None,
     });
     places.collect()

@@ -1,14 +1,14 @@
 //! Checks stairs and storeys in an open world, by the floor heights along the path.
 
-use super::phrase::phrase;
-use crate::{Subject, finding, floors};
-use wayword_core::{Check, Climb, Finding, Motion, Verdict};
+use super::phrase::motion_span;
+use crate::{CheckSubject, floors, new_finding};
+use wayword_core::{CheckFinding, CheckKind, ClimbDirection, PathMotion, Verdict};
 use wayword_language::{
     reading::{
-        Reading, What,
+        EventContent, TextReading,
         motion_words::{DESCRIBING, MOMENT},
     },
-    text::{Token, tokens},
+    text::{TextToken, split_tokens},
 };
 
 /// A path that nowhere gains or loses this much goes up or down no step, metres.
@@ -22,33 +22,34 @@ const SHARE_OF_BOTH: f64 = 0.15;
 const SHARE_OF_ONE: f64 = 0.45;
 
 /// The mistakes in the climbs and storeys of a text.
-pub(super) fn climbs(text: &str, reading: &Reading, subject: Subject<'_>) -> Vec<Finding> {
-    let tokens = tokens(text);
-    let heights = Heights::of(subject, if tells_both_ways(reading) { SHARE_OF_BOTH } else { SHARE_OF_ONE });
+pub(super) fn check_climbs(text: &str, reading: &TextReading, subject: CheckSubject<'_>) -> Vec<CheckFinding> {
+    let tokens = split_tokens(text);
+    let heights =
+        PathHeights::from_subject(subject, if tells_both_ways(reading) { SHARE_OF_BOTH } else { SHARE_OF_ONE });
     let mut found = Vec::new();
     for event in &reading.events {
-        let told = told(&tokens, event.span);
+        let told = climb_wording(&tokens, event.span);
         let (verdict, climb) = match event.what {
-            What::Climb(climb) => (heights.climbed(climb), climb),
-            What::Steps(climb) => (heights.stepped(climb), climb),
-            What::Storey(climb) => (heights.storey(climb), climb),
+            EventContent::Climb(climb) => (heights.verdict_on_climb(climb), climb),
+            EventContent::Steps(climb) => (heights.verdict_on_steps(climb), climb),
+            EventContent::Storey(climb) => (heights.verdict_on_storey(climb), climb),
             _ => continue,
         };
         // "Once you are up the stairs": the path may be level, but not go down instead.
-        let may_be = told == Told::Moment && !heights.goes_other_way(climb);
-        if told == Told::Described || may_be {
+        let may_be = told == ClimbWording::Moment && !heights.goes_other_way(climb);
+        if told == ClimbWording::Described || may_be {
             continue;
         }
-        let way = if climb == Climb::Up { "up" } else { "down" };
+        let way = if climb == ClimbDirection::Up { "up" } else { "down" };
         let reason = match verdict {
             Verdict::Pass => continue,
             Verdict::Fail => format!("the path nowhere goes {way}"),
             Verdict::Unverified => "the program cannot check whether the path goes up or down".to_owned(),
         };
-        found.push(finding(Check::Floors, verdict, reason, Some(phrase(&tokens, event.span, is_stairs))));
+        found.push(new_finding(CheckKind::Floors, verdict, reason, Some(motion_span(&tokens, event.span, is_stairs))));
     }
     // People count storeys from the street or from the cellar, so a number alone contradicts no path.
-    let numbers = floors::wrong_floors(reading, subject.evidence).map(|finding| Finding {
+    let numbers = floors::wrong_floors(reading, subject.evidence).map(|finding| CheckFinding {
         verdict: Verdict::Unverified,
         reason: "the program does not know from where the text counts storeys".into(),
         ..finding
@@ -59,7 +60,7 @@ pub(super) fn climbs(text: &str, reading: &Reading, subject: Subject<'_>) -> Vec
 
 /// The wording of a climb.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Told {
+enum ClimbWording {
     /// As a command.
     Command,
     /// As a moment, before which the path may end or after which it may begin: "once you are up the stairs", "begin to
@@ -70,7 +71,7 @@ enum Told {
     Described,
 }
 
-fn told(tokens: &[Token], span: [usize; 2]) -> Told {
+fn climb_wording(tokens: &[TextToken], span: [usize; 2]) -> ClimbWording {
     let at = tokens.partition_point(|token| token.span[0] < span[0]);
     let before = || tokens[..at].iter().rev().take_while(|token| token.is_word()).take(5);
     let has = |list: &[&str]| before().any(|token| list.contains(&token.word.as_str()));
@@ -78,21 +79,21 @@ fn told(tokens: &[Token], span: [usize; 2]) -> Told {
     let is_adjective = tokens.get(at).is_some_and(|token| token.word.ends_with("ing"))
         && before().next().is_some_and(|token| matches!(token.word.as_str(), "the" | "a"));
     match () {
-        () if is_adjective || has(&["before"]) || (has(&DESCRIBING) && !has(&MOMENT)) => Told::Described,
-        () if has(&MOMENT) || !names_stairs(tokens, at) => Told::Moment,
-        () => Told::Command,
+        () if is_adjective || has(&["before"]) || (has(&DESCRIBING) && !has(&MOMENT)) => ClimbWording::Described,
+        () if has(&MOMENT) || !names_stairs(tokens, at) => ClimbWording::Moment,
+        () => ClimbWording::Command,
     }
 }
 
 /// Whether a text has a climb up and a climb down.
-fn tells_both_ways(reading: &Reading) -> bool {
-    let tells = |way: Climb| {
+fn tells_both_ways(reading: &TextReading) -> bool {
+    let tells = |way: ClimbDirection| {
         reading.events.iter().any(|event| match event.what {
-            What::Climb(climb) | What::Steps(climb) => climb == way,
+            EventContent::Climb(climb) | EventContent::Steps(climb) => climb == way,
             _ => false,
         })
     };
-    tells(Climb::Up) && tells(Climb::Down)
+    tells(ClimbDirection::Up) && tells(ClimbDirection::Down)
 }
 
 fn is_stairs(word: &str) -> bool {
@@ -100,7 +101,7 @@ fn is_stairs(word: &str) -> bool {
 }
 
 /// Whether stairs or storeys are named near a climb.
-fn names_stairs(tokens: &[Token], at: usize) -> bool {
+fn names_stairs(tokens: &[TextToken], at: usize) -> bool {
     let near = tokens.iter().take(at + 8).skip(at.saturating_sub(5));
     let is_storey =
         |word: &str| matches!(word, "floor" | "floors" | "level" | "levels" | "storey" | "story" | "landing");
@@ -109,7 +110,7 @@ fn names_stairs(tokens: &[Token], at: usize) -> bool {
 }
 
 /// How a path goes up and down.
-struct Heights {
+struct PathHeights {
     is_known: bool,
     /// The heights that it gains and loses, metres: the most between any two of its frames.
     up_m: f64,
@@ -118,33 +119,33 @@ struct Heights {
     share: f64,
 }
 
-impl Heights {
-    fn of(subject: Subject<'_>, share: f64) -> Self {
+impl PathHeights {
+    fn from_subject(subject: CheckSubject<'_>, share: f64) -> Self {
         let moves = &subject.evidence.moves;
         let eyes: Vec<f64> = moves.iter().map(|step| step.rise_m).collect();
         // A camera may be lower over a step than elsewhere over the floor, and be moved up and down on one floor.
         let floors_m = subject.reach.surroundings.map_or(&[][..], |around| around.floors_m());
         let floors: Vec<f64> = floors_m.windows(2).map(|pair| pair[1] - pair[0]).collect();
         let rises = if floors.len() == eyes.len() { floors } else { eyes };
-        let most = |way: f64| most(&rises, way);
-        Self { is_known: subject.evidence.motion == Motion::Known, up_m: most(1.0), down_m: most(-1.0), share }
+        let most = |way: f64| most_gain_m(&rises, way);
+        Self { is_known: subject.evidence.motion == PathMotion::Known, up_m: most(1.0), down_m: most(-1.0), share }
     }
 
-    fn gains_m(&self, climb: Climb) -> f64 {
-        if climb == Climb::Down { self.down_m } else { self.up_m }
+    fn gains_m(&self, climb: ClimbDirection) -> f64 {
+        if climb == ClimbDirection::Down { self.down_m } else { self.up_m }
     }
 
-    fn loses_m(&self, climb: Climb) -> f64 {
-        if climb == Climb::Down { self.up_m } else { self.down_m }
+    fn loses_m(&self, climb: ClimbDirection) -> f64 {
+        if climb == ClimbDirection::Down { self.up_m } else { self.down_m }
     }
 
     /// Whether the path takes stairs the other way, and next to none this way.
-    fn goes_other_way(&self, climb: Climb) -> bool {
+    fn goes_other_way(&self, climb: ClimbDirection) -> bool {
         let away_m = self.loses_m(climb);
         away_m >= FLIGHT_M && self.gains_m(climb) < self.share * away_m
     }
 
-    fn climbed(&self, climb: Climb) -> Verdict {
+    fn verdict_on_climb(&self, climb: ClimbDirection) -> Verdict {
         match self.is_known {
             false => Verdict::Unverified,
             true if self.gains_m(climb) >= STEP_M && !self.goes_other_way(climb) => Verdict::Pass,
@@ -153,7 +154,7 @@ impl Heights {
     }
 
     /// A few steps count however many stairs there are the other way.
-    fn stepped(&self, climb: Climb) -> Verdict {
+    fn verdict_on_steps(&self, climb: ClimbDirection) -> Verdict {
         match self.is_known {
             false => Verdict::Unverified,
             true if self.gains_m(climb) >= STEP_M => Verdict::Pass,
@@ -163,7 +164,7 @@ impl Heights {
 
     /// "The bedroom upstairs" may lie on the storey on which the walker is already. It is wrong only if the path goes a
     /// storey the other way.
-    fn storey(&self, climb: Climb) -> Verdict {
+    fn verdict_on_storey(&self, climb: ClimbDirection) -> Verdict {
         match self.is_known {
             true if self.gains_m(climb) >= STEP_M => Verdict::Pass,
             true if self.loses_m(climb) >= STEP_M => Verdict::Fail,
@@ -173,7 +174,7 @@ impl Heights {
 }
 
 /// The most that these rises gain between any two points, in the direction of the sign, metres.
-fn most(rises: &[f64], way: f64) -> f64 {
+fn most_gain_m(rises: &[f64], way: f64) -> f64 {
     let (mut lowest, mut height, mut most) = (0.0_f64, 0.0, 0.0_f64);
     for rise_m in rises {
         height += rise_m * way;

@@ -1,27 +1,28 @@
 //! Checks the distances of a text by the path's length.
 
-use crate::{evidence::Evidence, finding};
-use wayword_core::{Check, Finding, Verdict};
-use wayword_language::reading::{Reading, What};
+use crate::{evidence::Evidence, new_finding};
+use wayword_core::{CheckFinding, CheckKind, Verdict};
+use wayword_language::reading::{EventContent, TextReading};
 
 /// People guess distances badly: one may be longer than the whole path by this factor, and by this many metres more.
-const FACTOR: f64 = 1.5;
+const LENGTH_FACTOR: f64 = 1.5;
 const SLACK_M: f64 = 3.0;
 
 /// The distances of a text that are longer than the whole path. A shorter one may be any stretch of it.
-pub(super) fn distances(reading: &Reading, evidence: &Evidence) -> Vec<Finding> {
+pub(super) fn check_distances(reading: &TextReading, evidence: &Evidence) -> Vec<CheckFinding> {
     let length_m: f64 = evidence.moves.iter().map(|step| step.distance_m).sum();
     let told = reading.events.iter().filter_map(|event| match event.what {
-        What::Distance { metres_low, .. } => Some((event.span, metres_low)),
+        EventContent::Distance { metres_low, .. } => Some((event.span, metres_low)),
         _ => None,
     });
     let judged = told.filter_map(|(span, metres_low)| {
         if !evidence.motion.is_known() {
             let reason = "the program cannot check how far the path goes";
-            return Some(finding(Check::Order, Verdict::Unverified, reason, Some(span)));
+            return Some(new_finding(CheckKind::Order, Verdict::Unverified, reason, Some(span)));
         }
         let reason = || format!("the whole path is {length_m:.0} m long");
-        (metres_low > length_m * FACTOR + SLACK_M).then(|| finding(Check::Order, Verdict::Fail, reason(), Some(span)))
+        (metres_low > length_m * LENGTH_FACTOR + SLACK_M)
+            .then(|| new_finding(CheckKind::Order, Verdict::Fail, reason(), Some(span)))
     });
     judged.collect()
 }

@@ -1,7 +1,7 @@
 //! Things that a room has although labels do not list them.
 
-use super::weights::Weights;
-use wayword_language::lexicon::{normal, room_name, thing};
+use super::weights::SilenceWeights;
+use wayword_language::lexicon::{find_thing, normalise_name, room_name};
 
 /// The salience of things that are seen from across a room.
 const SEEN_FROM_AFAR: u8 = 3;
@@ -11,10 +11,10 @@ const SEEN_FROM_AFAR: u8 = 3;
 /// with the thing: a dining room has a dining table.
 #[must_use]
 pub fn is_expected(name: &str, room: &str) -> bool {
-    let Some(thing) = thing(name).filter(|thing| thing.salience >= SEEN_FROM_AFAR) else { return false };
+    let Some(thing) = find_thing(name).filter(|thing| thing.salience >= SEEN_FROM_AFAR) else { return false };
     let room = room_name(room).unwrap_or(room);
-    let is_home = Weights::shipped().homes(thing.class).is_some_and(|homes| homes.contains(room));
-    let name = normal(name);
+    let is_home = SilenceWeights::shipped().homes_of(thing.class).is_some_and(|homes| homes.contains(room));
+    let name = normalise_name(name);
     is_home || (name.contains(' ') && name.split(' ').next() == room.split(' ').next())
 }
 

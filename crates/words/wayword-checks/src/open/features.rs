@@ -1,45 +1,52 @@
 //! Turns the evidence about a claimed place into features, the numbers that weights are fitted to.
 
 use super::{
-    claims::Claim,
-    relation::Relation,
-    sight::{Case, Missed, Sight, class_name},
-    weights::Weights,
+    claims::PlaceClaim,
+    relation::WalkerRelation,
+    sight::{ClaimCase, ClaimSight, MissedClaim, class_name},
+    weights::SilenceWeights,
 };
-use crate::evidence::{Distance, Evidence, NEAR_M, Surroundings};
-use wayword_language::lexicon::{Class, room_name, thing};
+use crate::evidence::{Evidence, ListedDistance, NEAR_M, PathSurroundings};
+use wayword_language::lexicon::{ThingClass, find_thing, room_name};
 
 /// Whether the evidence shows a claimed place, lacks it, or cannot decide.
 #[must_use]
-pub fn sight(claim: &Claim, evidence: &Evidence, around: Option<&Surroundings>, weights: &Weights) -> Sight {
-    let at_stop = claim.relation == Relation::Stop;
+pub fn sight_of_claim(
+    claim: &PlaceClaim,
+    evidence: &Evidence,
+    around: Option<&PathSurroundings>,
+    weights: &SilenceWeights,
+) -> ClaimSight {
+    let at_stop = claim.relation == WalkerRelation::Stop;
     if is_everywhere(claim) || shown_by_frames(claim, evidence, at_stop) {
-        return Sight::Shown;
+        return ClaimSight::Shown;
     }
-    let Some(around) = around else { return Sight::Unknown };
-    if claim.class == Class::Door && crosses_rooms(evidence) || is_doorway(claim) && crosses_rooms(evidence) {
-        return Sight::Shown;
+    let Some(around) = around else { return ClaimSight::Unknown };
+    if claim.class == ThingClass::Door && crosses_rooms(evidence) || is_doorway(claim) && crosses_rooms(evidence) {
+        return ClaimSight::Shown;
     }
-    let distance = distance(claim, around);
+    let distance = claim_distance(claim, around);
     let off_m = if at_stop { distance.end_m } else { distance.path_m };
     if off_m <= NEAR_M {
-        return Sight::Shown;
+        return ClaimSight::Shown;
     }
     match claim.is_only_room() {
-        true if room_is_unknown(claim, evidence, around) => Sight::Unknown,
-        true => Sight::Missed(room(claim, distance, around, weights)),
-        false if matches!(claim.class, Class::Unknown | Class::Fabric | Class::Door) => Sight::Unknown,
-        false => Sight::Missed(object(claim, distance, around, weights)),
+        true if room_is_unknown(claim, evidence, around) => ClaimSight::Unknown,
+        true => ClaimSight::Missed(missed_room(claim, distance, around, weights)),
+        false if matches!(claim.class, ThingClass::Unknown | ThingClass::Fabric | ThingClass::Door) => {
+            ClaimSight::Unknown
+        }
+        false => ClaimSight::Missed(missed_object(claim, distance, around, weights)),
     }
 }
 
 /// Walls, floors and corners are everywhere: naming them is no claim.
-fn is_everywhere(claim: &Claim) -> bool {
-    matches!(thing(&claim.name).map(|thing| thing.name), Some("wall" | "floor" | "ceiling" | "corner"))
+fn is_everywhere(claim: &PlaceClaim) -> bool {
+    matches!(find_thing(&claim.name).map(|thing| thing.name), Some("wall" | "floor" | "ceiling" | "corner"))
 }
 
-fn is_doorway(claim: &Claim) -> bool {
-    thing(&claim.name).is_some_and(|thing| thing.name == "doorway")
+fn is_doorway(claim: &PlaceClaim) -> bool {
+    find_thing(&claim.name).is_some_and(|thing| thing.name == "doorway")
 }
 
 /// A path from one room into another goes through some opening.
@@ -49,7 +56,7 @@ fn crosses_rooms(evidence: &Evidence) -> bool {
     rooms.any(|room| Some(room) != first)
 }
 
-fn shown_by_frames(claim: &Claim, evidence: &Evidence, at_stop: bool) -> bool {
+fn shown_by_frames(claim: &PlaceClaim, evidence: &Evidence, at_stop: bool) -> bool {
     let mut frames = Vec::new();
     if claim.is_room {
         frames.extend(evidence.frames_in_room(&claim.name));
@@ -57,21 +64,21 @@ fn shown_by_frames(claim: &Claim, evidence: &Evidence, at_stop: bool) -> bool {
     if claim.is_thing {
         frames.extend(evidence.frames_with_thing(&claim.name));
     }
-    if claim.class == Class::Stairs {
+    if claim.class == ThingClass::Stairs {
         frames.extend(evidence.frames_on_stairs());
     }
     let last = evidence.frames.len().saturating_sub(1);
     frames.iter().any(|frame| !at_stop || *frame == last)
 }
 
-fn distance(claim: &Claim, around: &Surroundings) -> Distance {
-    let room = if claim.is_room { around.room(&claim.name) } else { Distance::NOWHERE };
-    let thing = if claim.is_thing { around.thing(&claim.name) } else { Distance::NOWHERE };
-    room.nearer(thing)
+fn claim_distance(claim: &PlaceClaim, around: &PathSurroundings) -> ListedDistance {
+    let room = if claim.is_room { around.room_distance(&claim.name) } else { ListedDistance::NOWHERE };
+    let thing = if claim.is_thing { around.thing_distance(&claim.name) } else { ListedDistance::NOWHERE };
+    room.nearer_of(thing)
 }
 
 /// A room that may be where no room is known, or that is a storey.
-fn room_is_unknown(claim: &Claim, evidence: &Evidence, around: &Surroundings) -> bool {
+fn room_is_unknown(claim: &PlaceClaim, evidence: &Evidence, around: &PathSurroundings) -> bool {
     let known = room_name(&claim.name);
     let is_storey = matches!(known, None | Some("basement" | "attic"));
     is_storey || around.has_gap() || !around.knows_rooms() || !evidence.frames_without_room().is_empty()
@@ -90,7 +97,7 @@ fn hop_bin(hops: usize) -> &'static str {
 }
 
 /// Which of these bounds a distance lies under.
-fn bin(distance_m: f64) -> &'static str {
+fn distance_bin(distance_m: f64) -> &'static str {
     match distance_m {
         m if m <= NEAR_M => "near",
         m if m <= 5.0 => "3-5m",
@@ -102,7 +109,7 @@ fn bin(distance_m: f64) -> &'static str {
 }
 
 /// The same, coarser.
-fn reach(distance_m: f64) -> &'static str {
+fn reach_bin(distance_m: f64) -> &'static str {
     match distance_m {
         m if m <= NEAR_M => "near",
         m if m <= 8.0 => "close",
@@ -111,12 +118,17 @@ fn reach(distance_m: f64) -> &'static str {
     }
 }
 
-fn object(claim: &Claim, distance: Distance, around: &Surroundings, weights: &Weights) -> Missed {
-    let at_stop = claim.relation == Relation::Stop;
+fn missed_object(
+    claim: &PlaceClaim,
+    distance: ListedDistance,
+    around: &PathSurroundings,
+    weights: &SilenceWeights,
+) -> MissedClaim {
+    let at_stop = claim.relation == WalkerRelation::Stop;
     let nearest_m = if at_stop { distance.end_m } else { distance.path_m };
     let hops = hop_bin(if at_stop { distance.end_hops } else { distance.path_hops });
     let (class, relation) = (class_name(claim.class), claim.relation.name());
-    let (bin, reach) = (bin(nearest_m), reach(nearest_m));
+    let (bin, reach) = (distance_bin(nearest_m), reach_bin(nearest_m));
     let mut features: Vec<(String, f64)> = [
         "bias".to_owned(),
         format!("off {bin}"),
@@ -130,13 +142,13 @@ fn object(claim: &Claim, distance: Distance, around: &Surroundings, weights: &We
     .map(|name| (name, 1.0))
     .into();
     if at_stop {
-        features.push((format!("path {}", self::bin(distance.path_m)), 1.0));
+        features.push((format!("path {}", self::distance_bin(distance.path_m)), 1.0));
     }
     let listed = ((1 + if at_stop { around.objects_at_end() } else { 0 }) as f64).ln();
     let density = if at_stop { listed } else { around.objects_per_frame().ln_1p() };
     features.push(("listed nearby".into(), density));
     features.push((format!("listed nearby {reach}"), density));
-    let count = around.count(&claim.name);
+    let count = around.count_things(&claim.name);
     features.push(("listed in the building".into(), (count as f64).ln_1p()));
     if count > 0 {
         let home = if around.passes_home_of(&claim.name) { "passes its room" } else { "passes no room of it" };
@@ -149,7 +161,7 @@ fn object(claim: &Claim, distance: Distance, around: &Surroundings, weights: &We
         features.push((format!("kin {reach}"), 1.0));
         features.push((format!("kin {class}"), 1.0));
     }
-    if let Some(homes) = weights.homes(claim.class) {
+    if let Some(homes) = weights.homes_of(claim.class) {
         let passes = homes.iter().any(|home| around.near_rooms().contains(home));
         let home = if passes { "room of the class" } else { "no room of the class" };
         features.push((home.into(), 1.0));
@@ -157,20 +169,25 @@ fn object(claim: &Claim, distance: Distance, around: &Surroundings, weights: &We
         features.push((format!("{home} {reach}"), 1.0));
         features.push((format!("{home} {class} {reach}"), 1.0));
     }
-    if let Some(thing) = thing(&claim.name) {
+    if let Some(thing) = find_thing(&claim.name) {
         features.push((format!("salience {} {reach}", thing.salience), 1.0));
     }
-    let case = if at_stop { Case::ThingAtStop } else { Case::Thing };
-    Missed { case, features, nearest_m }
+    let case = if at_stop { ClaimCase::ThingAtStop } else { ClaimCase::Thing };
+    MissedClaim { case, features, nearest_m }
 }
 
-fn room(claim: &Claim, distance: Distance, around: &Surroundings, weights: &Weights) -> Missed {
-    let at_stop = claim.relation == Relation::Stop;
+fn missed_room(
+    claim: &PlaceClaim,
+    distance: ListedDistance,
+    around: &PathSurroundings,
+    weights: &SilenceWeights,
+) -> MissedClaim {
+    let at_stop = claim.relation == WalkerRelation::Stop;
     let nearest_m = if at_stop { distance.end_m } else { distance.path_m };
     let hops = hop_bin(if at_stop { distance.end_hops } else { distance.path_hops });
     let relation = claim.relation.name();
     let group = weights.room_group(&claim.name);
-    let (bin, reach) = (bin(nearest_m), reach(nearest_m));
+    let (bin, reach) = (distance_bin(nearest_m), reach_bin(nearest_m));
     let mut features: Vec<(String, f64)> = [
         "bias".to_owned(),
         format!("{group} {bin}"),
@@ -181,13 +198,13 @@ fn room(claim: &Claim, distance: Distance, around: &Surroundings, weights: &Weig
     .map(|name| (name, 1.0))
     .into();
     if at_stop {
-        features.push((format!("path {}", self::bin(distance.path_m)), 1.0));
+        features.push((format!("path {}", self::distance_bin(distance.path_m)), 1.0));
     }
     features.push(("rooms nearby".into(), around.near_rooms().len() as f64));
     let case = match (nearest_m.is_finite(), at_stop) {
-        (false, _) => Case::RoomLacking,
-        (true, true) => Case::RoomAtStop,
-        (true, false) => Case::Room,
+        (false, _) => ClaimCase::RoomLacking,
+        (true, true) => ClaimCase::RoomAtStop,
+        (true, false) => ClaimCase::Room,
     };
-    Missed { case, features, nearest_m }
+    MissedClaim { case, features, nearest_m }
 }

@@ -1,7 +1,7 @@
 //! Checks texts of other authors: an absence counts only if the evidence would have shown the thing.
 //!
 //! A claim fails where the evidence is many times likelier if the claim is wrong than if it is true. The weights for
-//! that likelihood were fitted on texts of people, by class of object and group of rooms ([`Weights`]); they hold no
+//! that likelihood were fitted on texts of people, by class of object and group of rooms ([`SilenceWeights`]); they hold no
 //! text and no rate by the name of an object or a building.
 
 mod calibration;
@@ -23,42 +23,48 @@ mod tests;
 mod unjudged;
 mod weights;
 
-use crate::{Subject, Turns};
-use wayword_core::{Check, Finding, Verdict};
-use wayword_language::reading::{Reading, What};
+use crate::{CheckSubject, TurnJudge};
+use wayword_core::{CheckFinding, CheckKind, Verdict};
+use wayword_language::reading::{EventContent, TextReading};
 
-pub use calibration::{Calibration, Observed, Offsets};
-pub use claims::{Claim, claims};
+pub use calibration::{Calibration, ClaimObservation, NameOffsets};
+pub use claims::{PlaceClaim, read_claims};
 pub use expected::is_expected;
-pub use features::sight;
-pub use relation::Relation;
-pub use sight::{Case, Missed, Sight, class_name};
-pub use weights::{Table, Weights};
+pub use features::sight_of_claim;
+pub use relation::WalkerRelation;
+pub use sight::{ClaimCase, ClaimSight, MissedClaim, class_name};
+pub use weights::{SilenceWeights, WeightTable};
 
 /// The mistakes in the places, the order, the turns and the storeys of another author's text. `whole` is the reading
 /// with its denied events, and `reading` the one without.
-pub(super) fn open(text: &str, whole: &Reading, reading: &Reading, subject: Subject<'_>) -> Vec<Finding> {
-    let mut findings = places::places(reading, subject);
-    findings.extend(climbs::climbs(text, reading, subject));
-    findings.extend(repeats::repeats(text, reading, subject));
-    findings.extend(distances::distances(reading, subject.evidence));
-    findings.extend(turns(reading, subject));
-    findings.extend(unjudged::unjudged(text, whole, subject));
-    for check in [Check::Landmarks, Check::Order, Check::Turns, Check::Floors] {
+pub(super) fn check_open(
+    text: &str,
+    whole: &TextReading,
+    reading: &TextReading,
+    subject: CheckSubject<'_>,
+) -> Vec<CheckFinding> {
+    let mut findings = places::check_places(reading, subject);
+    findings.extend(climbs::check_climbs(text, reading, subject));
+    findings.extend(repeats::check_repeats(text, reading, subject));
+    findings.extend(distances::check_distances(reading, subject.evidence));
+    findings.extend(unjudged_turns(reading, subject));
+    findings.extend(unjudged::find_unjudged(text, whole, subject));
+    for check in [CheckKind::Landmarks, CheckKind::Order, CheckKind::Turns, CheckKind::Floors] {
         if findings.iter().all(|finding| finding.check != check) {
-            findings.push(crate::pass(check));
+            findings.push(crate::pass_finding(check));
         }
     }
     findings
 }
 
 /// Turns are judged where whole walks are compared, and not here. If no walks are compared, each turn is unverified.
-fn turns(reading: &Reading, subject: Subject<'_>) -> Vec<Finding> {
+fn unjudged_turns(reading: &TextReading, subject: CheckSubject<'_>) -> Vec<CheckFinding> {
     let reason = match subject.turns {
         _ if !subject.evidence.motion.is_known() => "the program cannot check how the path turns".to_owned(),
-        Turns::NotJudged(why) => format!("the program cannot check how the path turns: {why}"),
-        Turns::JudgedElsewhere => return Vec::new(),
+        TurnJudge::NotJudged(why) => format!("the program cannot check how the path turns: {why}"),
+        TurnJudge::JudgedElsewhere => return Vec::new(),
     };
-    let told = reading.events.iter().filter(|event| matches!(event.what, What::Turn(_)));
-    told.map(|event| crate::finding(Check::Turns, Verdict::Unverified, reason.clone(), Some(event.span))).collect()
+    let told = reading.events.iter().filter(|event| matches!(event.what, EventContent::Turn(_)));
+    told.map(|event| crate::new_finding(CheckKind::Turns, Verdict::Unverified, reason.clone(), Some(event.span)))
+        .collect()
 }

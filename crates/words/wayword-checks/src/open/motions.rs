@@ -2,31 +2,31 @@
 //! that contradict its stop.
 
 use super::{
-    claims::{Claim, claims},
-    phrase::phrase,
-    relation::Relation,
-    stretches::Stretches,
+    claims::{PlaceClaim, read_claims},
+    phrase::motion_span,
+    relation::WalkerRelation,
+    stretches::PathStretches,
 };
-use wayword_core::Climb;
+use wayword_core::ClimbDirection;
 use wayword_language::{
-    lexicon::{Class, is_room, is_thing, kinds, normal_word, room_name},
-    reading::{Going, Place, Reading, What, motion_words::TAKING_UP},
-    text::Token,
+    lexicon::{ThingClass, is_room, is_thing, kinds_of, normal_word, room_name},
+    reading::{EventContent, PlaceMention, PlaceMotion, TextReading, motion_words::TAKING_UP},
+    text::TextToken,
 };
 
 /// How far before a place the words may be that identify it.
 const WORDS_BEFORE: usize = 3;
 
 /// A motion by a place: it goes into it, out of it, through it or past it.
-struct Motion<'a> {
+struct TextMotion<'a> {
     /// The place among the claims of the text.
     at: usize,
-    relation: Relation,
+    relation: WalkerRelation,
     name: String,
     /// The words that identify it: those right before the place, and those of its name.
     which: Vec<&'a str>,
     /// Where it goes over stairs, which way.
-    climb: Option<Climb>,
+    climb: Option<ClimbDirection>,
     clause: usize,
     is_room: bool,
     /// Whether the same place may be meant again: "walk around the table".
@@ -35,15 +35,19 @@ struct Motion<'a> {
 }
 
 /// The byte ranges of repeated motions, where the path has one stretch of them.
-pub(super) fn told_twice(tokens: &[Token], reading: &Reading, stretches: &Stretches<'_>) -> Vec<[usize; 2]> {
-    let claims = claims(reading);
-    let motions = motions(tokens, reading, &claims);
-    let again = |(at, motion): (usize, &Motion<'_>)| {
-        let climbs_alike = |before: &Motion<'_>| match (before.climb, motion.climb) {
+pub(super) fn repeated_motions(
+    tokens: &[TextToken],
+    reading: &TextReading,
+    stretches: &PathStretches<'_>,
+) -> Vec<[usize; 2]> {
+    let claims = read_claims(reading);
+    let motions = find_motions(tokens, reading, &claims);
+    let again = |(at, motion): (usize, &TextMotion<'_>)| {
+        let climbs_alike = |before: &TextMotion<'_>| match (before.climb, motion.climb) {
             (Some(before), Some(again)) => before == again,
             _ => true,
         };
-        let same = |before: &&Motion<'_>| {
+        let same = |before: &&TextMotion<'_>| {
             before.relation == motion.relation && before.name == motion.name && climbs_alike(before)
         };
         let before = motions[..at].iter().rposition(|before| same(&before))?;
@@ -55,8 +59,8 @@ pub(super) fn told_twice(tokens: &[Token], reading: &Reading, stretches: &Stretc
             || leaves_between(&motions[before..=at]);
         // A thing that the labels do not list is passed no more than once, either.
         let passes_thing =
-            motion.relation == Relation::Past && !motion.is_room && claims[motion.at].class != Class::Fabric;
-        let is_once = match stretches.places(&claims[motion.at]) {
+            motion.relation == WalkerRelation::Past && !motion.is_room && claims[motion.at].class != ThingClass::Fabric;
+        let is_once = match stretches.count_places(&claims[motion.at]) {
             0 => passes_thing,
             count => count == 1,
         };
@@ -66,66 +70,69 @@ pub(super) fn told_twice(tokens: &[Token], reading: &Reading, stretches: &Stretc
 }
 
 /// The byte range of a motion past the place at which the text stops next: "walk past the sofa and stop by the sofa".
-pub(super) fn past_the_stop(tokens: &[Token], reading: &Reading) -> Option<[usize; 2]> {
-    let claims = claims(reading);
-    let stop = claims.iter().rposition(|claim| claim.relation == Relation::Stop)?;
-    let before = stop.checked_sub(1).filter(|at| claims[*at].relation == Relation::Past)?;
+pub(super) fn past_the_stop(tokens: &[TextToken], reading: &TextReading) -> Option<[usize; 2]> {
+    let claims = read_claims(reading);
+    let stop = claims.iter().rposition(|claim| claim.relation == WalkerRelation::Stop)?;
+    let before = stop.checked_sub(1).filter(|at| claims[*at].relation == WalkerRelation::Past)?;
     let place = |at: usize| match &reading.events[claims[at].event].what {
-        What::Place(place) => Some(place),
+        EventContent::Place(place) => Some(place),
         _ => None,
     };
     let (passed, stopped) = (place(before)?, place(stop)?);
     let (from, to) = (claims[before].event, claims[stop].event);
-    let goes_on = reading.events[from..to].iter().any(|event| moves(&event.what));
+    let goes_on = reading.events[from..to].iter().any(|event| is_turn_or_climb(&event.what));
     let (first, last) = (claims[before].span, claims[stop].span);
-    let (words, at_stop) = (which(tokens, &claims[before]), which(tokens, &claims[stop]));
+    let (words, at_stop) = (identifying_words(tokens, &claims[before]), identifying_words(tokens, &claims[stop]));
     // "Walk past the closet and stop in the closet doorway".
     let is_its_door = || at_stop.last().is_some_and(|word| matches!(*word, "door" | "doorway" | "entrance"));
     let is_same =
         at_stop == words || (at_stop.starts_with(&words) && at_stop.len() == words.len() + 1 && is_its_door());
     let between = || tokens.iter().filter(|token| first[1] <= token.span[0] && token.span[1] <= last[0]);
     let is_part = || between().any(|token| matches!(token.word.as_str(), "between" | "end" | "past" | "behind"));
-    let is_apart = claims[before].clause(reading) != claims[stop].clause(reading);
+    let is_apart = claims[before].clause_in(reading) != claims[stop].clause_in(reading);
     let is_wrong = is_same && is_apart && !goes_on && !tells_which(passed) && !tells_which(stopped) && !is_part();
     // The place itself is there.
     let way = tokens.iter().rev().filter(|token| token.span[1] <= first[0]).find(|token| is_way(&token.word))?;
-    is_wrong.then(|| phrase(tokens, way.span, |_| false))
+    is_wrong.then(|| motion_span(tokens, way.span, |_| false))
 }
 
 /// Whether the text identifies a place among several, or names several of them.
-fn tells_which(place: &Place) -> bool {
+fn tells_which(place: &PlaceMention) -> bool {
     place.ordinal.is_some() || place.several || place.side.is_some()
 }
 
 /// Whether an event is a turn or a climb.
-fn moves(what: &What) -> bool {
-    matches!(what, What::Turn(_) | What::Climb(_) | What::Steps(_))
+fn is_turn_or_climb(what: &EventContent) -> bool {
+    matches!(what, EventContent::Turn(_) | EventContent::Climb(_) | EventContent::Steps(_))
 }
 
-fn motions<'a>(tokens: &'a [Token], reading: &Reading, claims: &[Claim]) -> Vec<Motion<'a>> {
-    let place = |claim: &Claim| match &reading.events[claim.event].what {
-        What::Place(place) => Some((place.ordinal.is_some() || place.several, place.going)),
+fn find_motions<'a>(tokens: &'a [TextToken], reading: &TextReading, claims: &[PlaceClaim]) -> Vec<TextMotion<'a>> {
+    let place = |claim: &PlaceClaim| match &reading.events[claim.event].what {
+        EventContent::Place(place) => Some((place.ordinal.is_some() || place.several, place.going)),
         _ => None,
     };
     // "Into the next hallway": there are several.
-    let told_apart = |claim: &&Claim| place(claim).is_some_and(|(is_one_of_several, _)| is_one_of_several);
-    let several: Vec<String> = claims.iter().filter(told_apart).map(name).collect();
-    let motion = |(at, claim): (usize, &Claim)| {
-        let moves = matches!(claim.relation, Relation::Enter | Relation::Exit | Relation::Through | Relation::Past);
+    let told_apart = |claim: &&PlaceClaim| place(claim).is_some_and(|(is_one_of_several, _)| is_one_of_several);
+    let several: Vec<String> = claims.iter().filter(told_apart).map(compared_name).collect();
+    let motion = |(at, claim): (usize, &PlaceClaim)| {
+        let moves = matches!(
+            claim.relation,
+            WalkerRelation::Enter | WalkerRelation::Exit | WalkerRelation::Through | WalkerRelation::Past
+        );
         let (_, going) = place(claim)?;
-        let name = name(claim);
+        let name = compared_name(claim);
         let is_motion =
             moves && !several.contains(&name) && !says_where(tokens, claim) && !stops_before(reading, claim);
-        let motion = Motion {
+        let motion = TextMotion {
             at,
             relation: claim.relation,
             name,
-            which: which(tokens, claim),
-            climb: climb(reading, claim),
-            clause: claim.clause(reading),
+            which: identifying_words(tokens, claim),
+            climb: stair_climb(reading, claim),
+            clause: claim.clause_in(reading),
             is_room: claim.is_room,
-            may_go_on: going == Some(Going::Around),
-            span: phrase(tokens, claim.span, |_| false),
+            may_go_on: going == Some(PlaceMotion::Around),
+            span: motion_span(tokens, claim.span, |_| false),
         };
         is_motion.then_some(motion)
     };
@@ -133,28 +140,28 @@ fn motions<'a>(tokens: &'a [Token], reading: &Reading, claims: &[Claim]) -> Vec<
 }
 
 /// Which way the words before the stairs of a claim climb them.
-fn climb(reading: &Reading, claim: &Claim) -> Option<Climb> {
-    let is_stairs = claim.class == Class::Stairs || room_name(&claim.name) == Some("stairs");
-    let clause = claim.clause(reading);
+fn stair_climb(reading: &TextReading, claim: &PlaceClaim) -> Option<ClimbDirection> {
+    let is_stairs = claim.class == ThingClass::Stairs || room_name(&claim.name) == Some("stairs");
+    let clause = claim.clause_in(reading);
     let before = reading.events[..claim.event].iter().rev().take_while(|event| event.clause == clause);
     before.filter(|_| is_stairs).find_map(|event| match event.what {
-        What::Climb(climb) | What::Steps(climb) => Some(climb),
+        EventContent::Climb(climb) | EventContent::Steps(climb) => Some(climb),
         _ => None,
     })
 }
 
 /// The name by which a place is compared.
-fn name(claim: &Claim) -> String {
+fn compared_name(claim: &PlaceClaim) -> String {
     // People call one room by several names, but not in one text.
     match room_name(&claim.name).filter(|_| claim.is_room) {
         Some(room @ ("hallway" | "stairs")) => room.to_owned(),
         Some(_) => claim.name.clone(),
-        None => kinds(&claim.name).swap_remove(0),
+        None => kinds_of(&claim.name).swap_remove(0),
     }
 }
 
 /// The words that identify a place: those before it, back to its article, and those of its name.
-fn which<'a>(tokens: &'a [Token], claim: &Claim) -> Vec<&'a str> {
+fn identifying_words<'a>(tokens: &'a [TextToken], claim: &PlaceClaim) -> Vec<&'a str> {
     let at = tokens.partition_point(|token| token.span[0] < claim.span[0]);
     let end = tokens.partition_point(|token| token.span[1] <= claim.span[1]);
     let before = || tokens[..at].iter().rev().take(WORDS_BEFORE);
@@ -173,7 +180,7 @@ fn is_article(word: &str) -> bool {
 
 /// Whether the words before a place only locate something: "the door just past the sofa", "the hallway that is past
 /// the stairs", "halfway down the stairs".
-fn says_where(tokens: &[Token], claim: &Claim) -> bool {
+fn says_where(tokens: &[TextToken], claim: &PlaceClaim) -> bool {
     let at = tokens.partition_point(|token| token.span[0] < claim.span[0]);
     let word = |at: usize| tokens.get(at).map_or("", |token| token.word.as_str());
     let of = at.saturating_sub(1 + usize::from(at > 0 && is_article(word(at - 1))));
@@ -196,39 +203,46 @@ fn is_ordinal(word: &str) -> bool {
 }
 
 /// "Stop just past the sofa", "wait halfway down the stairs": no motion.
-fn stops_before(reading: &Reading, claim: &Claim) -> bool {
-    let clause = claim.clause(reading);
-    reading.events[..claim.event].iter().any(|event| event.what == What::Stop && event.clause == clause)
+fn stops_before(reading: &TextReading, claim: &PlaceClaim) -> bool {
+    let clause = claim.clause_in(reading);
+    reading.events[..claim.event].iter().any(|event| event.what == EventContent::Stop && event.clause == clause)
 }
 
 /// Whether a motion into, out of or along a place is repeated at once, in other words: "exit the room and turn right
 /// out of the room", "down the hallway. Go down the hallway until ...".
-fn is_restated(reading: &Reading, before: &Motion<'_>, again: &Motion<'_>) -> bool {
+fn is_restated(reading: &TextReading, before: &TextMotion<'_>, again: &TextMotion<'_>) -> bool {
     let is_between = |clause: usize| before.clause < clause && clause < again.clause;
-    let goes_on = |event: &wayword_language::reading::Event| match &event.what {
-        What::Place(place) => matches!(
+    let goes_on = |event: &wayword_language::reading::TextEvent| match &event.what {
+        EventContent::Place(place) => matches!(
             place.going,
-            Some(Going::Leaving | Going::Entering | Going::Through | Going::Along | Going::Past | Going::Towards)
+            Some(
+                PlaceMotion::Leaving
+                    | PlaceMotion::Entering
+                    | PlaceMotion::Through
+                    | PlaceMotion::Along
+                    | PlaceMotion::Past
+                    | PlaceMotion::Towards
+            )
         ),
-        what => moves(what),
+        what => is_turn_or_climb(what),
     };
     let moved = reading.events.iter().filter(|event| is_between(event.clause)).any(goes_on);
-    again.relation != Relation::Past && !moved
+    again.relation != WalkerRelation::Past && !moved
 }
 
 /// Whether the walk gets elsewhere between two motions by places of one name: people call two rooms by one name.
-fn leaves_between(motions: &[Motion<'_>]) -> bool {
+fn leaves_between(motions: &[TextMotion<'_>]) -> bool {
     let (Some(first), Some(last)) = (motions.first(), motions.last()) else { return false };
-    let elsewhere = |between: &Motion<'_>| match last.relation {
-        Relation::Exit => between.name == first.name && between.relation == Relation::Enter,
-        _ => between.name != first.name || between.relation == Relation::Exit,
+    let elsewhere = |between: &TextMotion<'_>| match last.relation {
+        WalkerRelation::Exit => between.name == first.name && between.relation == WalkerRelation::Enter,
+        _ => between.name != first.name || between.relation == WalkerRelation::Exit,
     };
     let between = &motions[1..motions.len() - 1];
-    last.is_room && between.iter().any(|motion| motion.relation != Relation::Past && elsewhere(motion))
+    last.is_room && between.iter().any(|motion| motion.relation != WalkerRelation::Past && elsewhere(motion))
 }
 
 /// Whether the sentence before a place refers back: "once past the sofa", "another door".
-fn takes_up(tokens: &[Token], claim: &Claim) -> bool {
+fn takes_up(tokens: &[TextToken], claim: &PlaceClaim) -> bool {
     let at = tokens.partition_point(|token| token.span[0] < claim.span[0]);
     let clause = tokens[..at].iter().rev().take_while(|token| token.is_word()).take(9);
     clause.into_iter().any(|token| TAKING_UP.contains(&token.word.as_str()))

@@ -2,56 +2,61 @@
 
 use super::{
     Calibration,
-    claims::{Claim, claims},
-    features::sight,
-    relation::Relation,
+    claims::{PlaceClaim, read_claims},
+    features::sight_of_claim,
+    relation::WalkerRelation,
     sides,
-    sight::{Missed, Sight},
-    weights::{Table, Weights},
+    sight::{ClaimSight, MissedClaim},
+    weights::{SilenceWeights, WeightTable},
 };
-use crate::{Subject, evidence::Source, finding, landmarks::is_beyond};
-use wayword_core::{Check, Finding, Verdict};
-use wayword_language::reading::{Reading, What};
+use crate::{CheckSubject, evidence::EvidenceSource, landmarks::is_beyond, new_finding};
+use wayword_core::{CheckFinding, CheckKind, Verdict};
+use wayword_language::reading::{EventContent, TextReading};
 
 /// The places of a text that are wrong, and those that cannot be checked.
-pub(super) fn places(reading: &Reading, subject: Subject<'_>) -> Vec<Finding> {
+pub(super) fn check_places(reading: &TextReading, subject: CheckSubject<'_>) -> Vec<CheckFinding> {
     let evidence = subject.evidence;
-    let weights = Weights::shipped();
+    let weights = SilenceWeights::shipped();
     let mut findings = Vec::new();
-    let claims = claims(reading);
-    let sights = sights(&claims, subject, weights);
+    let claims = read_claims(reading);
+    let sights = sights_in_company(&claims, subject, weights);
     for (claim, sight) in claims.into_iter().zip(sights) {
-        let What::Place(place) = &reading.events[claim.event].what else { continue };
+        let EventContent::Place(place) = &reading.events[claim.event].what else { continue };
         let wrong = match &sight {
-            Sight::Shown => {
-                sides::unclear_side(place, subject).or_else(|| colour(place.colour.as_deref(), &claim, subject))
+            ClaimSight::Shown => {
+                sides::unclear_side(place, subject).or_else(|| unclear_colour(place.colour.as_deref(), &claim, subject))
             }
-            _ if evidence.source == Source::Detector && place.is_thing && evidence.denies_thing(&place.name) => {
+            _ if evidence.source == EvidenceSource::Detector
+                && place.is_thing
+                && evidence.denies_thing(&place.name) =>
+            {
                 let reason = format!("the detector finds no {:?} along the path, and would have found one", claim.name);
                 Some((Verdict::Fail, reason))
             }
-            Sight::Unknown => {
+            ClaimSight::Unknown => {
                 Some((Verdict::Unverified, format!("the program cannot check whether there is {:?}", claim.name)))
             }
             // It is in the room at the end, or is the room next to it, and no frame has to show it.
-            Sight::Missed(_) if is_beyond(place, evidence) => None,
-            Sight::Missed(missed) => Some(missing(&claim, missed, weights, subject.reach.calibration)),
+            ClaimSight::Missed(_) if is_beyond(place, evidence) => None,
+            ClaimSight::Missed(missed) => Some(verdict_on_missing(&claim, missed, weights, subject.reach.calibration)),
         };
-        findings.extend(wrong.map(|(verdict, reason)| finding(Check::Landmarks, verdict, reason, Some(claim.span))));
+        findings.extend(
+            wrong.map(|(verdict, reason)| new_finding(CheckKind::Landmarks, verdict, reason, Some(claim.span))),
+        );
     }
-    if evidence.source == Source::Nothing && findings.is_empty() {
+    if evidence.source == EvidenceSource::Nothing && findings.is_empty() {
         let reason = "the program does not know what can be seen along the path";
-        findings.push(finding(Check::Landmarks, Verdict::Unverified, reason, None));
+        findings.push(new_finding(CheckKind::Landmarks, Verdict::Unverified, reason, None));
     }
     findings
 }
 
 /// The sight of each claim, in view of the others.
-fn sights(claims: &[Claim], subject: Subject<'_>, weights: &Weights) -> Vec<Sight> {
-    let alone = |claim| sight(claim, subject.evidence, subject.reach.surroundings, weights);
-    let sights: Vec<Sight> = claims.iter().map(alone).collect();
-    let in_company = |(at, mut sight): (usize, Sight)| {
-        if let Sight::Missed(missed) = &mut sight {
+fn sights_in_company(claims: &[PlaceClaim], subject: CheckSubject<'_>, weights: &SilenceWeights) -> Vec<ClaimSight> {
+    let alone = |claim| sight_of_claim(claim, subject.evidence, subject.reach.surroundings, weights);
+    let sights: Vec<ClaimSight> = claims.iter().map(alone).collect();
+    let in_company = |(at, mut sight): (usize, ClaimSight)| {
+        if let ClaimSight::Missed(missed) = &mut sight {
             missed.keep_company(sights[..at].iter().chain(&sights[at + 1..]));
         }
         sight
@@ -60,12 +65,17 @@ fn sights(claims: &[Claim], subject: Subject<'_>, weights: &Weights) -> Vec<Sigh
 }
 
 /// The verdict on a place that is not listed within reach.
-fn missing(claim: &Claim, missed: &Missed, weights: &Weights, calibration: Option<&Calibration>) -> (Verdict, String) {
-    let offset = calibration.map_or(0.0, |calibration| calibration.offset(claim, missed));
+fn verdict_on_missing(
+    claim: &PlaceClaim,
+    missed: &MissedClaim,
+    weights: &SilenceWeights,
+    calibration: Option<&Calibration>,
+) -> (Verdict, String) {
+    let offset = calibration.map_or(0.0, |calibration| calibration.offset_for(claim, missed));
     let ratio = weights.log_ratio(missed).map(|ratio| ratio + offset);
-    let passes_threshold = |(ratio, table): (f64, &Table)| ratio >= table.fails_at.ln();
-    let fails = missed.can_fail() && ratio.zip(weights.table(missed.case)).is_some_and(passes_threshold);
-    let place = if claim.relation == Relation::Stop { "where the path ends" } else { "along the path" };
+    let passes_threshold = |(ratio, table): (f64, &WeightTable)| ratio >= table.fails_at.ln();
+    let fails = missed.can_fail() && ratio.zip(weights.table_for(missed.case)).is_some_and(passes_threshold);
+    let place = if claim.relation == WalkerRelation::Stop { "where the path ends" } else { "along the path" };
     let name = &claim.name;
     match (fails, missed.nearest_m.is_finite()) {
         (false, _) => (Verdict::Unverified, format!("the labels list no {name:?} {place}, which says little")),
@@ -77,10 +87,10 @@ fn missing(claim: &Claim, missed: &Missed, weights: &Weights, calibration: Optio
 }
 
 /// The doubt about a colour: the labels of a place need not be those of the thing that the text means.
-fn colour(told: Option<&str>, claim: &Claim, subject: Subject<'_>) -> Option<(Verdict, String)> {
+fn unclear_colour(told: Option<&str>, claim: &PlaceClaim, subject: CheckSubject<'_>) -> Option<(Verdict, String)> {
     let told = told?;
     let things = subject.evidence.frames.iter().flat_map(|frame| &frame.things);
-    let known = things.filter(|thing| wayword_language::lexicon::agree(&thing.name, &claim.name));
+    let known = things.filter(|thing| wayword_language::lexicon::names_agree(&thing.name, &claim.name));
     let fits = known
         .filter_map(|thing| thing.colour.as_deref())
         .any(|colour| colour == told || colour.ends_with(&format!(" {told}")) || told.ends_with(&format!(" {colour}")));

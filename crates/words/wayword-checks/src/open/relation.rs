@@ -2,12 +2,12 @@
 
 use wayword_language::{
     lexicon::room_name,
-    reading::{Going, Link, Reading, What},
+    reading::{EventContent, PlaceLink, PlaceMotion, TextReading},
 };
 
 /// How the walker moves relative to a place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Relation {
+pub enum WalkerRelation {
     /// Goes into it.
     Enter,
     /// Comes out of it.
@@ -24,7 +24,7 @@ pub enum Relation {
     Beside,
 }
 
-impl Relation {
+impl WalkerRelation {
     /// Its name in the table of weights.
     #[must_use]
     pub fn name(self) -> &'static str {
@@ -41,42 +41,42 @@ impl Relation {
 }
 
 /// The relation of each event of a reading, where it is a place.
-pub(super) fn relations(reading: &Reading) -> Vec<Option<Relation>> {
+pub(super) fn place_relations(reading: &TextReading) -> Vec<Option<WalkerRelation>> {
     let goes_on = last_motion(reading);
     // The clause, and whether the next place in it is where the walker stops.
     let (mut clause, mut stops, mut named, mut at_stairs) = (usize::MAX, false, false, false);
-    let relation = |event: &wayword_language::reading::Event| {
+    let relation = |event: &wayword_language::reading::TextEvent| {
         if event.clause != clause {
             (clause, stops, named, at_stairs) = (event.clause, false, false, false);
         }
         let place = match &event.what {
-            What::Stop => {
+            EventContent::Stop => {
                 (stops, named) = (event.clause >= goes_on, false);
                 return None;
             }
-            What::Face { .. } => {
+            EventContent::Face { .. } => {
                 stops = false;
                 return None;
             }
-            What::Place(place) => place,
+            EventContent::Place(place) => place,
             _ => return None,
         };
         let relation = match place.going {
-            Some(Going::Leaving) => Relation::Exit,
+            Some(PlaceMotion::Leaving) => WalkerRelation::Exit,
             // "Stop when you are back in the kitchen".
-            Some(Going::Entering) if stops && !named => Relation::Stop,
-            Some(Going::Entering) => Relation::Enter,
-            Some(Going::Through | Going::Along | Going::Around) => Relation::Through,
-            Some(Going::Past) => Relation::Past,
-            Some(Going::Towards | Going::Until) if stops && !named => Relation::Stop,
-            Some(Going::Towards | Going::Until) => Relation::Towards,
+            Some(PlaceMotion::Entering) if stops && !named => WalkerRelation::Stop,
+            Some(PlaceMotion::Entering) => WalkerRelation::Enter,
+            Some(PlaceMotion::Through | PlaceMotion::Along | PlaceMotion::Around) => WalkerRelation::Through,
+            Some(PlaceMotion::Past) => WalkerRelation::Past,
+            Some(PlaceMotion::Towards | PlaceMotion::Until) if stops && !named => WalkerRelation::Stop,
+            Some(PlaceMotion::Towards | PlaceMotion::Until) => WalkerRelation::Towards,
             // "Stop by the sofa next to the window": the window only identifies the sofa. Stairs are long, so the walk
             // stops at a thing next to them.
-            None if stops && at_stairs && place.link == Link::Beside => Relation::Stop,
-            None if stops && !(named && place.link == Link::Beside) => Relation::Stop,
-            None => Relation::Beside,
+            None if stops && at_stairs && place.link == PlaceLink::Beside => WalkerRelation::Stop,
+            None if stops && !(named && place.link == PlaceLink::Beside) => WalkerRelation::Stop,
+            None => WalkerRelation::Beside,
         };
-        at_stairs = !named && relation == Relation::Stop && room_name(&place.name) == Some("stairs");
+        at_stairs = !named && relation == WalkerRelation::Stop && room_name(&place.name) == Some("stairs");
         named = true;
         Some(relation)
     };
@@ -85,12 +85,19 @@ pub(super) fn relations(reading: &Reading) -> Vec<Option<Relation>> {
 
 /// The clause of the last motion by a place or over stairs. A stop before it is not where the walk ends: "stop at the
 /// top of the stairs. Turn right and walk into the kitchen".
-fn last_motion(reading: &Reading) -> usize {
-    let is_motion = |what: &What| match what {
-        What::Climb(_) => true,
-        What::Place(place) => matches!(
+fn last_motion(reading: &TextReading) -> usize {
+    let is_motion = |what: &EventContent| match what {
+        EventContent::Climb(_) => true,
+        EventContent::Place(place) => matches!(
             place.going,
-            Some(Going::Leaving | Going::Entering | Going::Through | Going::Past | Going::Along | Going::Towards)
+            Some(
+                PlaceMotion::Leaving
+                    | PlaceMotion::Entering
+                    | PlaceMotion::Through
+                    | PlaceMotion::Past
+                    | PlaceMotion::Along
+                    | PlaceMotion::Towards
+            )
         ),
         _ => false,
     };

@@ -3,23 +3,23 @@
 //! Of people's true claims, one in three hundred has every listed thing on the other side; of flipped ones, one in a
 //! hundred. That is far from enough to call a side wrong, so it is unverified.
 
-use crate::{Subject, evidence::Surroundings, sides};
+use crate::{CheckSubject, evidence::PathSurroundings, sides};
 use std::f64::consts::{PI, TAU};
 use wayword_core::{DVec3, Side, Verdict};
-use wayword_language::reading::Place;
+use wayword_language::reading::PlaceMention;
 
 /// A thing with a side is no farther than this from the path, metres.
 const REACH_M: f64 = 6.0;
 /// It is seen from a point of the path that is no farther off than this, metres.
 const SIGHT_M: f64 = 9.0;
 /// Points of a hop from which the sides are seen.
-const POINTS: usize = 5;
+const POINTS_PER_HOP: usize = 5;
 /// A direction counts as on the other side from here on, degrees.
 const CLEARLY_DEG: f64 = 20.0;
 
 /// The doubt about the side of a place: every thing of its name near the path is clearly on the other side all along
 /// the path, or the motion is unknown.
-pub(super) fn unclear_side(place: &Place, subject: Subject<'_>) -> Option<(Verdict, String)> {
+pub(super) fn unclear_side(place: &PlaceMention, subject: CheckSubject<'_>) -> Option<(Verdict, String)> {
     let side = place.side?;
     let name = &place.name;
     if sides::is_unknown(place, subject.evidence) {
@@ -31,7 +31,7 @@ pub(super) fn unclear_side(place: &Place, subject: Subject<'_>) -> Option<(Verdi
         Side::Right => 1.0,
         Side::Ahead | Side::Behind => return None,
     };
-    let turns = turns(name, place.is_room, subject.reach.surroundings?);
+    let turns = directions_to(name, place.is_room, subject.reach.surroundings?);
     let is_wrong = |deg: &f64| deg * sign <= -CLEARLY_DEG && deg.abs() <= 180.0 - CLEARLY_DEG;
     let all_wrong = !turns.is_empty() && turns.iter().all(is_wrong);
     let reason = || format!("every {name:?} that is listed near the path is on another side, which says little");
@@ -39,27 +39,27 @@ pub(super) fn unclear_side(place: &Place, subject: Subject<'_>) -> Option<(Verdi
 }
 
 /// The directions of all things of that name from points along the path, degrees from the way ahead, positive right.
-fn turns(name: &str, is_room: bool, around: &Surroundings) -> Vec<f64> {
-    let mut spots = around.spots(name, REACH_M);
+fn directions_to(name: &str, is_room: bool, around: &PathSurroundings) -> Vec<f64> {
+    let mut spots = around.thing_spots(name, REACH_M);
     if is_room {
         spots.extend(around.room_spots(name, REACH_M));
     }
     let mut turns = Vec::new();
     for hop in around.eyes().windows(2) {
-        let ahead = heading(hop[1] - hop[0]);
-        for step in 0..=POINTS {
-            let eye = hop[0] + (hop[1] - hop[0]) * (step as f64 / POINTS as f64);
+        let ahead = heading_rad(hop[1] - hop[0]);
+        for step in 0..=POINTS_PER_HOP {
+            let eye = hop[0] + (hop[1] - hop[0]) * (step as f64 / POINTS_PER_HOP as f64);
             let near = spots.iter().filter(|spot| spot.distance(eye) <= SIGHT_M);
-            turns.extend(near.map(|spot| wrap(heading(*spot - eye) - ahead).to_degrees()));
+            turns.extend(near.map(|spot| wrap_rad(heading_rad(*spot - eye) - ahead).to_degrees()));
         }
     }
     turns
 }
 
-fn heading(to: DVec3) -> f64 {
+fn heading_rad(to: DVec3) -> f64 {
     libm::atan2(to.x, to.y)
 }
 
-fn wrap(rad: f64) -> f64 {
+fn wrap_rad(rad: f64) -> f64 {
     (rad + PI).rem_euclid(TAU) - PI
 }

@@ -1,23 +1,23 @@
 //! Whether the evidence shows a claimed place, and if not, the features by which its absence is weighed.
 
-use wayword_language::lexicon::Class;
+use wayword_language::lexicon::ThingClass;
 
 /// The state of a claimed place in the evidence.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Sight {
+pub enum ClaimSight {
     /// It is there.
     Shown,
     /// The evidence cannot decide.
     Unknown,
     /// It is not listed within reach. The weights decide how much that means.
-    Missed(Missed),
+    Missed(MissedClaim),
 }
 
 /// A claimed place that is not listed within reach.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Missed {
+pub struct MissedClaim {
     /// Which table of weights applies to it.
-    pub case: Case,
+    pub case: ClaimCase,
     /// Features by name.
     pub features: Vec<(String, f64)>,
     /// How far the nearest one is that is listed.
@@ -26,7 +26,7 @@ pub struct Missed {
 
 /// The kinds of claims that have a table of weights each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Case {
+pub enum ClaimCase {
     /// An object along the path.
     Thing,
     /// An object at which the walker stops.
@@ -39,7 +39,7 @@ pub enum Case {
     RoomLacking,
 }
 
-impl Case {
+impl ClaimCase {
     /// All of them.
     pub const ALL: [Self; 5] = [Self::Thing, Self::ThingAtStop, Self::Room, Self::RoomAtStop, Self::RoomLacking];
 
@@ -59,22 +59,22 @@ impl Case {
 /// An object that is listed no farther off than this may be seen from the path, metres.
 const SEEN_M: f64 = 8.0;
 
-impl Missed {
+impl MissedClaim {
     /// Whether the claim can fail at all. People name objects that they see across a room or through a door.
     #[must_use]
     pub fn can_fail(&self) -> bool {
-        self.case != Case::Thing || self.nearest_m >= SEEN_M
+        self.case != ClaimCase::Thing || self.nearest_m >= SEEN_M
     }
 
     /// Adds how the evidence treats the other places that the text claims: where the labels have those, they are
     /// good enough to miss this one too.
-    pub fn keep_company<'a>(&mut self, others: impl Iterator<Item = &'a Sight>) {
+    pub fn keep_company<'a>(&mut self, others: impl Iterator<Item = &'a ClaimSight>) {
         let (mut shown, mut missed) = (0.0, 0.0);
         for other in others {
             match other {
-                Sight::Shown => shown += 1.0,
-                Sight::Unknown => {}
-                Sight::Missed(_) => missed += 1.0,
+                ClaimSight::Shown => shown += 1.0,
+                ClaimSight::Unknown => {}
+                ClaimSight::Missed(_) => missed += 1.0,
             }
         }
         self.features.push(("others shown".into(), f64::ln_1p(shown)));
@@ -84,6 +84,6 @@ impl Missed {
 
 /// A class's name in the file of weights.
 #[must_use]
-pub fn class_name(class: Class) -> String {
+pub fn class_name(class: ThingClass) -> String {
     format!("{class:?}").to_lowercase()
 }

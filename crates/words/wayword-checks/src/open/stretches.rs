@@ -1,9 +1,9 @@
 //! Counts how many stretches of a path fit a statement of a text, for the check of repetitions.
 
-use super::claims::Claim;
-use crate::{Subject, evidence::NEAR_M};
-use wayword_core::{Climb, Side};
-use wayword_language::lexicon::{Class, room_name, same_room, thing};
+use super::claims::PlaceClaim;
+use crate::{CheckSubject, evidence::NEAR_M};
+use wayword_core::{ClimbDirection, Side};
+use wayword_language::lexicon::{ThingClass, find_thing, room_name, same_room};
 
 /// A move that turns by this much may be called a turn, degrees.
 const TURN_DEG: f64 = 20.0;
@@ -13,17 +13,17 @@ const CORNER_DEG: f64 = 30.0;
 const RISE_M: f64 = 0.2;
 
 /// Counts the stretches of a path that fit statements of a text.
-pub(super) struct Stretches<'a> {
-    subject: Subject<'a>,
+pub(super) struct PathStretches<'a> {
+    subject: CheckSubject<'a>,
 }
 
-impl<'a> Stretches<'a> {
-    pub(super) fn of(subject: Subject<'a>) -> Self {
+impl<'a> PathStretches<'a> {
+    pub(super) fn from_subject(subject: CheckSubject<'a>) -> Self {
         Self { subject }
     }
 
     /// Turns to a side.
-    pub(super) fn turns(&self, side: Side) -> usize {
+    pub(super) fn count_turns(&self, side: Side) -> usize {
         let turns = |deg: f64| match side {
             Side::Left => deg <= -TURN_DEG,
             Side::Right => deg >= TURN_DEG,
@@ -33,34 +33,36 @@ impl<'a> Stretches<'a> {
     }
 
     /// Moves up or down.
-    pub(super) fn climbs(&self, climb: Climb) -> usize {
-        let way = if climb == Climb::Down { -1.0 } else { 1.0 };
+    pub(super) fn count_climbs(&self, climb: ClimbDirection) -> usize {
+        let way = if climb == ClimbDirection::Down { -1.0 } else { 1.0 };
         self.subject.evidence.moves.iter().filter(|step| step.rise_m * way >= RISE_M).count()
     }
 
     /// Places that a claim may mean: separate stays in a room of that name, or as many things near the path; 0 where
     /// that is not known.
-    pub(super) fn places(&self, claim: &Claim) -> usize {
+    pub(super) fn count_places(&self, claim: &PlaceClaim) -> usize {
         match claim.class {
-            Class::Stairs => return (self.climbs(Climb::Up) + self.climbs(Climb::Down)).max(1),
-            Class::Door => return self.thresholds(),
-            _ if thing(&claim.name).is_some_and(|thing| matches!(thing.name, "doorway" | "arch")) => {
-                return self.thresholds();
+            ThingClass::Stairs => {
+                return (self.count_climbs(ClimbDirection::Up) + self.count_climbs(ClimbDirection::Down)).max(1);
+            }
+            ThingClass::Door => return self.count_thresholds(),
+            _ if find_thing(&claim.name).is_some_and(|thing| matches!(thing.name, "doorway" | "arch")) => {
+                return self.count_thresholds();
             }
             _ => {}
         }
         if room_name(&claim.name) == Some("entryway") {
-            return self.thresholds().max(self.stays(&claim.name));
+            return self.count_thresholds().max(self.count_stays(&claim.name));
         }
         if claim.is_room {
-            return self.stays(&claim.name);
+            return self.count_stays(&claim.name);
         }
-        let spots = self.subject.reach.surroundings.map(|around| around.spots(&claim.name, NEAR_M).len());
+        let spots = self.subject.reach.surroundings.map(|around| around.thing_spots(&claim.name, NEAR_M).len());
         spots.unwrap_or(0)
     }
 
     /// Separate stays in a room. Rooms that people confuse count as one where the text's own kind is nowhere.
-    fn stays(&self, name: &str) -> usize {
+    fn count_stays(&self, name: &str) -> usize {
         let frames = &self.subject.evidence.frames;
         let runs = |is_in: &dyn Fn(&str) -> bool| {
             let mut before = false;
@@ -76,11 +78,11 @@ impl<'a> Stretches<'a> {
             0 => runs(&|room: &str| same_room(room, name)),
             stays => stays,
         };
-        if room_name(name) == Some("hallway") { stays + self.corners(name) } else { stays }
+        if room_name(name) == Some("hallway") { stays + self.count_corners(name) } else { stays }
     }
 
     /// Corners in a room: people call each straight part of a hallway a hallway.
-    fn corners(&self, name: &str) -> usize {
+    fn count_corners(&self, name: &str) -> usize {
         let evidence = self.subject.evidence;
         let turns = evidence.moves.iter().zip(&evidence.frames).skip(1);
         let is_in = |rooms: &[String]| rooms.is_empty() || rooms.iter().any(|room| same_room(room, name));
@@ -88,7 +90,7 @@ impl<'a> Stretches<'a> {
     }
 
     /// Steps from one room into another, and one more: not every doorway lies between rooms.
-    fn thresholds(&self) -> usize {
+    fn count_thresholds(&self) -> usize {
         let frames = &self.subject.evidence.frames;
         1 + frames.windows(2).filter(|pair| pair[0].rooms != pair[1].rooms).count()
     }

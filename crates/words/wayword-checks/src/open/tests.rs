@@ -1,10 +1,14 @@
 //! Tests of the open world, on an invented building.
 
-use crate::{Building, Evidence, Reach, Subject, Surroundings, Testimony, Turns, check, lift};
+use crate::{
+    BuildingInventory, CheckSubject, Evidence, PathSurroundings, Testimony, TurnJudge, WorldReach, check_text,
+    lift_confirmed,
+};
 use std::sync::Arc;
 use wayword_core::{
-    Check, DVec3, Frame, Heading, Label, Motion, ObjectId, Path, Placed, SceneId, Style, Survey, Verdict,
-    ViewpointGraph, ViewpointId, graph::GraphError, path::Stop, survey::Known,
+    CheckKind, DVec3, Frame, Heading, InstructionStyle, ObjectId, ObjectLabel, Path, PathMotion, PlacedObject, SceneId,
+    Verdict, ViewpointGraph, ViewpointId, ViewpointSurvey, graph::GraphError, path::PathStop,
+    survey::ViewpointKnowledge,
 };
 
 /// A hallway along y with a viewpoint every two metres, and rooms behind it: the room of each viewpoint, the things listed
@@ -34,25 +38,25 @@ fn object(at: usize, name: &str) -> ObjectId {
     ObjectId::new(format!("{name}-{at}").replace(' ', "-")).unwrap()
 }
 
-fn survey() -> Survey {
+fn survey() -> ViewpointSurvey {
     survey_with(None)
 }
 
 /// The building, where a floor may be known that is as high everywhere.
-fn survey_with(floor_m: Option<f64>) -> Survey {
+fn survey_with(floor_m: Option<f64>) -> ViewpointSurvey {
     let mut graph = ViewpointGraph::default();
     for at in 0..BUILDING.len() {
-        graph.add(id(at), position(at), Some(1)).unwrap();
+        graph.add_viewpoint(id(at), position(at), Some(1)).unwrap();
         if let Some(floor_m) = floor_m {
             graph.set_floor(&id(at), floor_m).unwrap();
         }
     }
     for at in 1..BUILDING.len() {
-        graph.join(&id(at - 1), &id(at)).unwrap();
+        graph.join_viewpoints(&id(at - 1), &id(at)).unwrap();
     }
     let known = |viewpoint: &ViewpointId, eye: DVec3| {
         let at: usize = viewpoint.as_str()[1..].parse().unwrap();
-        let label = |name: &&str| Label {
+        let label = |name: &&str| ObjectLabel {
             object: object(at, name),
             name: (*name).to_owned(),
             heading: Heading::new(1.5).unwrap(),
@@ -63,47 +67,48 @@ fn survey_with(floor_m: Option<f64>) -> Survey {
             colour: None,
         };
         let things = BUILDING[at].1.iter().map(label).collect();
-        Ok::<_, GraphError>(Known { room: Some(BUILDING[at].0.to_owned()), things: Some(things) })
+        Ok::<_, GraphError>(ViewpointKnowledge { room: Some(BUILDING[at].0.to_owned()), things: Some(things) })
     };
-    let hidden = Placed { object: object(1, "piano"), name: "piano".into(), position: DVec3::new(1.0, 2.0, 1.0) };
-    Survey::of(&graph, known).unwrap().with_objects(vec![hidden])
+    let hidden = PlacedObject { object: object(1, "piano"), name: "piano".into(), position: DVec3::new(1.0, 2.0, 1.0) };
+    ViewpointSurvey::from_graph(&graph, known).unwrap().with_objects(vec![hidden])
 }
 
 /// The path between two viewpoints, with its evidence and surroundings.
-fn path(from: usize, to: usize) -> (Path, Evidence, Surroundings) {
-    let stop = |at: usize| Stop { position: position(at), viewpoint: Some(id(at)), level: Some(1) };
+fn path(from: usize, to: usize) -> (Path, Evidence, PathSurroundings) {
+    let stop = |at: usize| PathStop { position: position(at), viewpoint: Some(id(at)), level: Some(1) };
     let frames: Vec<Frame> = Path::frames_along((from..=to).map(stop).collect(), None);
     let scene = SceneId::new("made-up").unwrap();
-    let path = Path { id: "1".into(), scene, frames, motion: Motion::Known, target: None };
+    let path = Path { id: "1".into(), scene, frames, motion: PathMotion::Known, target: None };
     let mut evidence = Evidence::of_path_alone(&path);
     for (frame, at) in evidence.frames.iter_mut().zip(from..) {
         frame.rooms = vec![BUILDING[at].0.to_owned()];
         frame.knows_things = true;
     }
-    evidence.source = crate::Source::Labels;
-    let around = Surroundings::of(&Arc::new(Building::of(&survey())), &path).unwrap();
+    evidence.source = crate::EvidenceSource::Labels;
+    let around = PathSurroundings::around_path(&Arc::new(BuildingInventory::from_survey(&survey())), &path).unwrap();
     (path, evidence, around)
 }
 
-fn any() -> Style {
-    Style { name: "any".into(), ..Style::default() }
+fn any() -> InstructionStyle {
+    InstructionStyle { name: "any".into(), ..InstructionStyle::default() }
 }
 
 /// The verdict on a text about the path between two viewpoints, with the checks that have it.
-fn told(text: &str, from: usize, to: usize) -> (Verdict, Vec<Check>) {
+fn told(text: &str, from: usize, to: usize) -> (Verdict, Vec<CheckKind>) {
     let (_, evidence, around) = path(from, to);
-    let reach = Reach { surroundings: Some(&around), calibration: None };
+    let reach = WorldReach { surroundings: Some(&around), calibration: None };
     let style = any();
-    let subject = Subject { turns: Turns::JudgedElsewhere, ..Subject::open(&evidence, &style, reach) };
-    let checked = check(text, subject);
+    let subject =
+        CheckSubject { turns: TurnJudge::JudgedElsewhere, ..CheckSubject::open_world(&evidence, &style, reach) };
+    let checked = check_text(text, subject);
     let verdict = checked.verdict();
     let of = checked.findings.iter().filter(|finding| finding.verdict == verdict && verdict != Verdict::Pass);
-    let mut checks: Vec<Check> = of.map(|finding| finding.check).collect();
+    let mut checks: Vec<CheckKind> = of.map(|finding| finding.check).collect();
     checks.dedup();
     (verdict, checks)
 }
 
-const PASSES: (Verdict, Vec<Check>) = (Verdict::Pass, Vec::new());
+const PASSES: (Verdict, Vec<CheckKind>) = (Verdict::Pass, Vec::new());
 
 #[test]
 fn listed_objects_within_three_metres_pass_even_if_no_viewpoint_shows_them() {
@@ -115,10 +120,10 @@ fn listed_objects_within_three_metres_pass_even_if_no_viewpoint_shows_them() {
 #[test]
 fn an_object_that_labels_merely_do_not_list_is_unverified() {
     for text in ["Walk past the cabinet and stop by the chair.", "Walk past the pillar."] {
-        assert_eq!(told(text, 0, 3), (Verdict::Unverified, vec![Check::Landmarks]), "{text}");
+        assert_eq!(told(text, 0, 3), (Verdict::Unverified, vec![CheckKind::Landmarks]), "{text}");
     }
     // Nor does the reader know this word.
-    let unknown = (Verdict::Unverified, vec![Check::Landmarks, Check::Coverage]);
+    let unknown = (Verdict::Unverified, vec![CheckKind::Landmarks, CheckKind::Coverage]);
     assert_eq!(told("Walk past the xylorimba.", 0, 3), unknown);
 }
 
@@ -126,14 +131,14 @@ fn an_object_that_labels_merely_do_not_list_is_unverified() {
 fn a_room_that_the_path_comes_nowhere_near_fails() {
     for text in ["Leave the bedroom and walk through the kitchen.", "Walk through the bathroom and stop by the chair."]
     {
-        assert_eq!(told(text, 0, 3), (Verdict::Fail, vec![Check::Landmarks]), "{text}");
+        assert_eq!(told(text, 0, 3), (Verdict::Fail, vec![CheckKind::Landmarks]), "{text}");
     }
     assert_eq!(told("Leave the bedroom and walk down the hallway.", 0, 3), PASSES);
     // A room without a name may be any.
     let (path, mut evidence, around) = path(0, 3);
     evidence.frames[2].rooms.clear();
-    let reach = Reach { surroundings: Some(&around), calibration: None };
-    let checked = check("Walk into the kitchen.", Subject::open(&evidence, &any(), reach));
+    let reach = WorldReach { surroundings: Some(&around), calibration: None };
+    let checked = check_text("Walk into the kitchen.", CheckSubject::open_world(&evidence, &any(), reach));
     assert_eq!(checked.verdict(), Verdict::Unverified, "{}", path.id);
 }
 
@@ -141,21 +146,23 @@ fn a_room_that_the_path_comes_nowhere_near_fails() {
 fn climbs_are_checked_by_floor_heights() {
     for text in ["Go up the stairs.", "Walk up the first few steps of the stairs.", "Climb the stairs and stop."] {
         assert_eq!(told(text, 7, 9).0, Verdict::Pass, "{text}");
-        assert_eq!(told(text, 0, 3).1, [Check::Floors], "{text}");
+        assert_eq!(told(text, 0, 3).1, [CheckKind::Floors], "{text}");
     }
-    assert_eq!(told("Go down the stairs.", 7, 9), (Verdict::Fail, vec![Check::Floors]));
+    assert_eq!(told("Go down the stairs.", 7, 9), (Verdict::Fail, vec![CheckKind::Floors]));
     for text in ["Walk past the stairs leading down.", "Stop before you go up the stairs."] {
-        assert_ne!(told(text, 0, 3).1, [Check::Floors], "{text}");
+        assert_ne!(told(text, 0, 3).1, [CheckKind::Floors], "{text}");
     }
     // The eye is higher at the end, but the floor is not.
     let (path, evidence, _) = path(7, 9);
-    let around = Surroundings::of(&Arc::new(Building::of(&survey_with(Some(0.0)))), &path).unwrap();
-    let reach = Reach { surroundings: Some(&around), calibration: None };
-    let checked = check("Walk up the stairs.", Subject::open(&evidence, &any(), reach));
-    let finding = checked.findings.iter().find(|finding| finding.check == Check::Floors).unwrap();
+    let around =
+        PathSurroundings::around_path(&Arc::new(BuildingInventory::from_survey(&survey_with(Some(0.0)))), &path)
+            .unwrap();
+    let reach = WorldReach { surroundings: Some(&around), calibration: None };
+    let checked = check_text("Walk up the stairs.", CheckSubject::open_world(&evidence, &any(), reach));
+    let finding = checked.findings.iter().find(|finding| finding.check == CheckKind::Floors).unwrap();
     assert_eq!((finding.verdict, finding.span), (Verdict::Fail, Some([0, 18])));
     // People count storeys as they like.
-    assert_eq!(told("Walk down the hallway on the third floor.", 0, 3), (Verdict::Unverified, vec![Check::Floors]));
+    assert_eq!(told("Walk down the hallway on the third floor.", 0, 3), (Verdict::Unverified, vec![CheckKind::Floors]));
 }
 
 #[test]
@@ -165,7 +172,7 @@ fn a_repeated_statement_needs_two_stretches_of_the_path() {
         "Enter the hallway. Enter the hallway. Wait there.",
         "Leave the bedroom and walk past the sofa to the chair. Leave the bedroom and walk past the sofa to the chair.",
     ] {
-        assert_eq!(told(text, 0, 3), (Verdict::Fail, vec![Check::Order]), "{text}");
+        assert_eq!(told(text, 0, 3), (Verdict::Fail, vec![CheckKind::Order]), "{text}");
     }
     for text in [
         "Walk past the piano. Once past the piano, stop.",
@@ -184,12 +191,13 @@ fn a_repeated_statement_needs_two_stretches_of_the_path() {
 /// The verdict on a text about a path through points two metres apart, each with its height; no objects or rooms are
 /// known.
 fn told_of(text: &str, points: &[(f64, f64, f64)]) -> (Verdict, Vec<String>) {
-    let stop = |(x, y, z): &(f64, f64, f64)| Stop { position: DVec3::new(*x, *y, *z), viewpoint: None, level: Some(1) };
+    let stop =
+        |(x, y, z): &(f64, f64, f64)| PathStop { position: DVec3::new(*x, *y, *z), viewpoint: None, level: Some(1) };
     let frames = Path::frames_along(points.iter().map(stop).collect(), None);
     let scene = SceneId::new("made-up").unwrap();
-    let path = Path { id: "1".into(), scene, frames, motion: Motion::Known, target: None };
+    let path = Path { id: "1".into(), scene, frames, motion: PathMotion::Known, target: None };
     let evidence = Evidence::of_path_alone(&path);
-    let checked = check(text, Subject::open(&evidence, &any(), Reach::default()));
+    let checked = check_text(text, CheckSubject::open_world(&evidence, &any(), WorldReach::default()));
     let wrong = checked.findings.iter().filter(|finding| finding.verdict == Verdict::Fail);
     (checked.verdict(), wrong.map(|finding| finding.reason.clone()).collect())
 }
@@ -241,7 +249,7 @@ fn a_stop_is_checked_at_the_end_of_the_path() {
     assert_eq!(by_stairs("toilet"), PASSES);
     assert_ne!(by_stairs("chandelier"), PASSES);
     for text in ["Stay where you are.", "Wait here."] {
-        assert_eq!(told(text, 1, 5), (Verdict::Unverified, vec![Check::Order]), "{text}");
+        assert_eq!(told(text, 1, 5), (Verdict::Unverified, vec![CheckKind::Order]), "{text}");
     }
     assert_eq!(told("Stay where you are and walk to the sofa.", 1, 5), PASSES);
 }
@@ -249,15 +257,15 @@ fn a_stop_is_checked_at_the_end_of_the_path() {
 #[test]
 fn statements_that_no_rule_judges_are_unverified() {
     for (text, check) in [
-        ("Walk down the hallway. Never go down the stairs.", Check::Floors),
-        ("Walk down the hallway. There is no toilet.", Check::Landmarks),
-        ("Walk down the hallway. Do not turn right.", Check::Turns),
-        ("Walk down the hallway and take the third left.", Check::Turns),
-        ("Walk down the hallway and stop at the fourth door on the right.", Check::Landmarks),
-        ("Walk past three sofas.", Check::Landmarks),
-        ("Walk down the hallway and stop. Do it three times.", Check::Order),
-        ("Head west down the hallway.", Check::Turns),
-        ("Walk down the hallway. Face north.", Check::Turns),
+        ("Walk down the hallway. Never go down the stairs.", CheckKind::Floors),
+        ("Walk down the hallway. There is no toilet.", CheckKind::Landmarks),
+        ("Walk down the hallway. Do not turn right.", CheckKind::Turns),
+        ("Walk down the hallway and take the third left.", CheckKind::Turns),
+        ("Walk down the hallway and stop at the fourth door on the right.", CheckKind::Landmarks),
+        ("Walk past three sofas.", CheckKind::Landmarks),
+        ("Walk down the hallway and stop. Do it three times.", CheckKind::Order),
+        ("Head west down the hallway.", CheckKind::Turns),
+        ("Walk down the hallway. Face north.", CheckKind::Turns),
     ] {
         assert_eq!(told(text, 0, 3), (Verdict::Unverified, vec![check]), "{text}");
     }
@@ -268,15 +276,15 @@ fn statements_that_no_rule_judges_are_unverified() {
     ] {
         assert_eq!(told(text, 0, 3), PASSES, "{text}");
     }
-    assert_eq!(told("Walk down the hallway. Turn right five times.", 0, 3), (Verdict::Fail, vec![Check::Turns]));
+    assert_eq!(told("Walk down the hallway. Turn right five times.", 0, 3), (Verdict::Fail, vec![CheckKind::Turns]));
 }
 
 #[test]
 fn a_finding_about_a_motion_covers_its_verb() {
     let (_, evidence, around) = path(0, 3);
-    let reach = Reach { surroundings: Some(&around), calibration: None };
+    let reach = WorldReach { surroundings: Some(&around), calibration: None };
     let wrong = |text: &str| {
-        let checked = check(text, Subject::open(&evidence, &any(), reach));
+        let checked = check_text(text, CheckSubject::open_world(&evidence, &any(), reach));
         let span = checked.findings.iter().find(|finding| finding.verdict == Verdict::Fail).and_then(|fail| fail.span);
         span.map(|[from, to]| text[from..to].to_owned())
     };
@@ -299,7 +307,7 @@ fn only_the_last_stop_is_where_the_walk_ends() {
 #[test]
 fn a_distance_is_checked_by_the_length_of_the_path() {
     assert_eq!(told("Walk 6 meters down the hallway.", 0, 3), PASSES);
-    assert_eq!(told("Walk 500 meters down the hallway.", 0, 3), (Verdict::Fail, vec![Check::Order]));
+    assert_eq!(told("Walk 500 meters down the hallway.", 0, 3), (Verdict::Fail, vec![CheckKind::Order]));
 }
 
 #[test]
@@ -308,14 +316,14 @@ fn turns_are_left_to_the_comparison_of_walks() {
     assert_eq!(told("Turn around and walk down the hallway.", 0, 3), PASSES);
     let (_, evidence, _) = path(0, 3);
     let style = any();
-    let turns = |turns: Turns| {
-        let subject = Subject { turns, ..Subject::open(&evidence, &style, Reach::default()) };
-        let checked = check("Turn left. Turn right.", subject);
-        let of_turns = checked.findings.into_iter().filter(|finding| finding.check == Check::Turns);
+    let turns = |turns: TurnJudge| {
+        let subject = CheckSubject { turns, ..CheckSubject::open_world(&evidence, &style, WorldReach::default()) };
+        let checked = check_text("Turn left. Turn right.", subject);
+        let of_turns = checked.findings.into_iter().filter(|finding| finding.check == CheckKind::Turns);
         of_turns.map(|finding| (finding.verdict, finding.reason)).collect::<Vec<_>>()
     };
-    assert_eq!(turns(Turns::JudgedElsewhere), [(Verdict::Pass, String::new())]);
-    let unjudged = turns(Turns::NotJudged("nobody looks"));
+    assert_eq!(turns(TurnJudge::JudgedElsewhere), [(Verdict::Pass, String::new())]);
+    let unjudged = turns(TurnJudge::NotJudged("nobody looks"));
     assert_eq!(unjudged.len(), 2, "each turn is unverified: {unjudged:?}");
     assert!(unjudged.iter().all(|(verdict, why)| *verdict == Verdict::Unverified && why.ends_with("nobody looks")));
 }
@@ -323,8 +331,8 @@ fn turns_are_left_to_the_comparison_of_walks() {
 #[test]
 fn the_distance_of_the_nearest_one_has_one_decimal() {
     let (_, evidence, around) = path(0, 3);
-    let reach = Reach { surroundings: Some(&around), calibration: None };
-    let checked = check("Walk through the kitchen.", Subject::open(&evidence, &any(), reach));
+    let reach = WorldReach { surroundings: Some(&around), calibration: None };
+    let checked = check_text("Walk through the kitchen.", CheckSubject::open_world(&evidence, &any(), reach));
     let reason = &checked.findings.iter().find(|finding| finding.verdict == Verdict::Fail).unwrap().reason;
     assert!(reason.contains("the nearest is 6.0 m off"), "{reason}");
 }
@@ -332,7 +340,8 @@ fn the_distance_of_the_nearest_one_has_one_decimal() {
 #[test]
 fn without_surroundings_an_absence_is_unverified() {
     let (_, evidence, _) = path(0, 3);
-    let verdict = |text: &str| check(text, Subject::open(&evidence, &any(), Reach::default())).verdict();
+    let verdict =
+        |text: &str| check_text(text, CheckSubject::open_world(&evidence, &any(), WorldReach::default())).verdict();
     for text in ["Walk into the kitchen.", "Walk past the toilet."] {
         assert_eq!(verdict(text), Verdict::Unverified, "{text}");
     }
@@ -342,10 +351,14 @@ fn without_surroundings_an_absence_is_unverified() {
 #[test]
 fn lift_turns_a_confirmed_failure_into_unverified() {
     let (_, evidence, around) = path(0, 3);
-    let reach = Reach { surroundings: Some(&around), calibration: None };
+    let reach = WorldReach { surroundings: Some(&around), calibration: None };
     let verdict = |text: &str, other: &str| {
-        let mut checked = check(text, Subject::open(&evidence, &any(), reach));
-        lift(&mut checked, &Testimony::of(text, &evidence), &[&Testimony::of(other, &evidence)]);
+        let mut checked = check_text(text, CheckSubject::open_world(&evidence, &any(), reach));
+        lift_confirmed(
+            &mut checked,
+            &Testimony::from_text(text, &evidence),
+            &[&Testimony::from_text(other, &evidence)],
+        );
         checked.verdict()
     };
     assert_eq!(verdict("Walk through the kitchen.", "Go to the kitchen and stop."), Verdict::Unverified);
@@ -361,9 +374,9 @@ fn lift_turns_a_confirmed_failure_into_unverified() {
 
 #[test]
 fn the_weights_that_ship_can_be_read_and_hold_every_case() {
-    let weights = super::Weights::shipped();
-    for case in super::Case::ALL {
-        let table = weights.table(case).unwrap();
+    let weights = super::SilenceWeights::shipped();
+    for case in super::ClaimCase::ALL {
+        let table = weights.table_for(case).unwrap();
         assert!(table.fails_at >= 3.0 && table.weights.contains_key("bias"), "{case:?}");
     }
 }

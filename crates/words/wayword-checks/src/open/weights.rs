@@ -1,58 +1,59 @@
 //! The weights that ship with the program: how much a missing label means for a claim.
 
-use super::sight::{Case, Missed, class_name};
+use super::sight::{ClaimCase, MissedClaim, class_name};
 use serde::{Deserialize, Serialize};
 use std::{
     collections::{BTreeMap, BTreeSet},
     sync::LazyLock,
 };
-use wayword_language::lexicon::{Class, room_name};
+use wayword_language::lexicon::{ThingClass, room_name};
 
 /// The file of the weights. Its head names their source and the command that fitted them.
-const FILE: &str = include_str!("weights.toml");
+const WEIGHTS_FILE: &str = include_str!("weights.toml");
 
-static SHIPPED: LazyLock<Weights> = LazyLock::new(|| Weights::read(FILE).unwrap_or_default());
+static SHIPPED_WEIGHTS: LazyLock<SilenceWeights> =
+    LazyLock::new(|| SilenceWeights::read_weights(WEIGHTS_FILE).unwrap_or_default());
 
 /// How much a missing label means for a claim.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Weights {
+pub struct SilenceWeights {
     /// Rooms by what makes them: fixtures, seats, desks, storing, ways, the open air.
     pub room_groups: BTreeMap<String, BTreeSet<String>>,
     /// For each class of objects, the rooms that list it more often than others.
     pub homes: BTreeMap<String, BTreeSet<String>>,
     /// One table per kind of claim.
-    pub cases: BTreeMap<String, Table>,
+    pub cases: BTreeMap<String, WeightTable>,
 }
 
 /// The weights of one kind of claim.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Table {
+pub struct WeightTable {
     /// A claim fails where the evidence is likelier by this factor if the claim is wrong than if it is true.
     pub fails_at: f64,
     /// A weight per feature: their sum is the logarithm of that factor.
     pub weights: BTreeMap<String, f64>,
 }
 
-impl Weights {
+impl SilenceWeights {
     /// The weights that ship.
     #[must_use]
     pub fn shipped() -> &'static Self {
-        &SHIPPED
+        &SHIPPED_WEIGHTS
     }
 
     /// Reads a file of weights.
     ///
     /// # Errors
     /// When its form is wrong.
-    pub fn read(file: &str) -> Result<Self, toml::de::Error> {
+    pub fn read_weights(file: &str) -> Result<Self, toml::de::Error> {
         toml::from_str(file)
     }
 
     /// The rooms that list a class more often than others do; `None` where the class has none.
     #[must_use]
-    pub fn homes(&self, class: Class) -> Option<&BTreeSet<String>> {
+    pub fn homes_of(&self, class: ThingClass) -> Option<&BTreeSet<String>> {
         self.homes.get(&class_name(class))
     }
 
@@ -67,15 +68,15 @@ impl Weights {
     /// The logarithm of how much likelier the evidence is if the claim is wrong than if it is true; `None` where there
     /// is no table for claims of this kind.
     #[must_use]
-    pub fn log_ratio(&self, missed: &Missed) -> Option<f64> {
-        let table = self.table(missed.case)?;
+    pub fn log_ratio(&self, missed: &MissedClaim) -> Option<f64> {
+        let table = self.table_for(missed.case)?;
         let weight = |(name, value): &(String, f64)| table.weights.get(name).map_or(0.0, |weight| weight * value);
         Some(missed.features.iter().map(weight).sum())
     }
 
     /// The table of a kind of claim.
     #[must_use]
-    pub fn table(&self, case: Case) -> Option<&Table> {
+    pub fn table_for(&self, case: ClaimCase) -> Option<&WeightTable> {
         self.cases.get(case.name())
     }
 }

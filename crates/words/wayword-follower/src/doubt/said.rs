@@ -1,42 +1,51 @@
 //! Makes doubts of the findings of checks, and of the ambiguity of a text.
 
 use crate::guide::Guide;
-use wayword_core::{Alternative, Ambiguity, Cause, Check, Doubt, Finding, Grade, Verdict};
-use wayword_language::{lexicon::is_room, reading::Reading, rewording::Spelt};
+use wayword_core::{
+    CheckFinding, CheckKind, DoubtAlternative, DoubtCause, DoubtGrade, TextAmbiguity, TextDoubt, Verdict,
+};
+use wayword_language::{lexicon::is_room, reading::TextReading, rewording::TokenisedText};
 
 /// The doubts from the findings of checks. Findings about form, copying and unknown words are left out, because they do
 /// not concern the path.
 #[must_use]
-pub fn of_findings(findings: &[Finding]) -> Vec<Doubt> {
-    let doubt = |finding: &Finding| {
+pub fn doubts_from_findings(findings: &[CheckFinding]) -> Vec<TextDoubt> {
+    let doubt = |finding: &CheckFinding| {
         let (grade, cause) = match finding.verdict {
             Verdict::Pass => return None,
-            Verdict::Unverified => (Grade::Uncertain, Cause::Unverified),
-            Verdict::Fail => (Grade::Likely, Cause::Wrong),
+            Verdict::Unverified => (DoubtGrade::Uncertain, DoubtCause::Unverified),
+            Verdict::Fail => (DoubtGrade::Likely, DoubtCause::Wrong),
         };
-        let is_of_path = !matches!(finding.check, Check::Form | Check::Leak | Check::Coverage);
+        let is_of_path = !matches!(finding.check, CheckKind::Form | CheckKind::Leak | CheckKind::Coverage);
         let span = finding.span.filter(|_| is_of_path)?;
-        Some(Doubt { span, grade, cause, reason: finding.reason.clone(), alternatives: Vec::new() })
+        Some(TextDoubt { span, grade, cause, reason: finding.reason.clone(), alternatives: Vec::new() })
     };
     findings.iter().filter_map(doubt).collect()
 }
 
 /// The doubts about a text that may mean several places or objects: at its end, and at the object of its task.
 #[must_use]
-pub fn of_ambiguity(text: &str, guide: &Guide, reading: &Reading, ambiguity: &Ambiguity) -> Vec<Doubt> {
-    let doubt = |span, reason, alternatives| Doubt {
+pub fn doubts_from_ambiguity(
+    text: &str,
+    guide: &Guide,
+    reading: &TextReading,
+    ambiguity: &TextAmbiguity,
+) -> Vec<TextDoubt> {
+    let doubt = |span, reason, alternatives| TextDoubt {
         span,
-        grade: Grade::Uncertain,
-        cause: Cause::Ambiguous,
+        grade: DoubtGrade::Uncertain,
+        cause: DoubtCause::Ambiguous,
         reason,
         alternatives,
     };
     let mut doubts = Vec::new();
-    if let Some((ends, span)) = ambiguity.ends.filter(|ends| *ends > 1).zip(end(&Spelt::of(text), guide)) {
+    if let Some((ends, span)) =
+        ambiguity.ends.filter(|ends| *ends > 1).zip(end_words(&TokenisedText::from_text(text), guide))
+    {
         let apart = ambiguity.told_apart_by.as_deref().zip(text.get(span[0]..span[1]));
         let apart = apart.map(|(by, words)| {
             let joined = if is_room(by) { "in" } else { "by" };
-            Alternative { words: Some(format!("{words} {joined} the {by}")), gain: None }
+            DoubtAlternative { words: Some(format!("{words} {joined} the {by}")), gain: None }
         });
         doubts.push(doubt(span, format!("the text may end at {ends} places"), apart.into_iter().collect()));
     }
@@ -49,7 +58,7 @@ pub fn of_ambiguity(text: &str, guide: &Guide, reading: &Reading, ambiguity: &Am
 }
 
 /// The words for the end of the walk: the last place of the step that stops, or else that step.
-fn end(spelt: &Spelt<'_>, guide: &Guide) -> Option<[usize; 2]> {
+fn end_words(spelt: &TokenisedText<'_>, guide: &Guide) -> Option<[usize; 2]> {
     let stop = guide.steps.iter().rev().find(|told| told.step.stops).or(guide.steps.last())?;
-    stop.mentions.iter().rev().find_map(|mention| mention.span).or_else(|| spelt.step(stop.step.span))
+    stop.mentions.iter().rev().find_map(|mention| mention.span).or_else(|| spelt.step_words(stop.step.span))
 }

@@ -8,23 +8,23 @@ mod places;
 mod stretch;
 pub(crate) mod tables;
 
-pub(crate) use ending::ending;
-pub(crate) use stretch::{MOST_HOPS, Stretch, stretch};
+pub(crate) use ending::ending_features;
+pub(crate) use stretch::{MOST_HOPS, WalkStretch, stretch_features};
 
 /// The number of a feature, by which its weight is found.
-pub(crate) type Feature = u32;
+pub(crate) type FeatureNumber = u32;
 
 /// Which of twelve classes of 30 degrees an angle (radians) falls into, half of them negative.
-fn twelfth(rad: f64) -> usize {
-    angle(rad) / 2
+fn angle_twelfth(rad: f64) -> usize {
+    angle_class(rad) / 2
 }
 
 /// Which of 24 classes of 15 degrees an angle (radians) falls into, half of them negative.
-fn angle(rad: f64) -> usize {
+fn angle_class(rad: f64) -> usize {
     ((rad.to_degrees() + 180.0) / 15.0).floor().rem_euclid(24.0) as usize
 }
 
 /// Which class a value falls into: the number of limits that it reaches.
-fn class(value: f64, limits: &[f64]) -> usize {
+fn limit_class(value: f64, limits: &[f64]) -> usize {
     limits.iter().filter(|limit| value >= **limit).count()
 }

@@ -1,12 +1,12 @@
 //! The tables of features. Each table has a consecutive range of feature numbers, one for each combination of its
 //! dimensions.
 
-use crate::{guide::Kind, near::CLASSES};
-use wayword_language::reading::steps::Relation;
+use crate::{guide::GuideStepKind, near::CLASSES};
+use wayword_language::reading::steps::StepRelation;
 
 /// A table of features.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Table {
+pub(crate) struct FeatureTable {
     /// Its name in the file of weights.
     pub(crate) name: &'static str,
     /// The number of its first feature.
@@ -18,9 +18,9 @@ pub(crate) struct Table {
     pub(crate) is_fine: bool,
 }
 
-impl Table {
+impl FeatureTable {
     /// A feature of the table, by its places in each dimension and the sizes of the dimensions.
-    pub(crate) fn at<const N: usize>(&self, places: [(usize, usize); N]) -> u32 {
+    pub(crate) fn feature_at<const N: usize>(&self, places: [(usize, usize); N]) -> u32 {
         let place = places.iter().fold(0, |place, (at, size)| {
             debug_assert!(at < size, "{} in {}", at, self.name);
             place * size + at
@@ -34,11 +34,11 @@ macro_rules! tables {
     ($($name:ident $kind:ident $size:expr;)*) => {
         tables!(@ 0; $($name $kind $size;)*);
         /// All tables, in the order of their numbers.
-        pub(crate) const ALL: &[Table] = &[$($name),*];
+        pub(crate) const ALL: &[FeatureTable] = &[$($name),*];
     };
     (@ $from:expr; $name:ident $kind:ident $size:expr; $($rest:tt)*) => {
-        pub(crate) const $name: Table =
-            Table { name: stringify!($name), from: $from, size: $size, is_fine: tables!(= $kind) };
+        pub(crate) const $name: FeatureTable =
+            FeatureTable { name: stringify!($name), from: $from, size: $size, is_fine: tables!(= $kind) };
         tables!(@ $from + $size; $($rest)*);
     };
     (@ $from:expr;) => {
@@ -49,9 +49,9 @@ macro_rules! tables {
     (= coarse) => { false };
 }
 
-const KINDS: usize = Kind::COUNT;
+const KINDS: usize = GuideStepKind::COUNT;
 /// Number of relations.
-pub(crate) const RELATIONS: usize = Relation::ALL.len();
+pub(crate) const RELATIONS: usize = StepRelation::ALL.len();
 /// Number of groups of relations.
 pub(crate) const GROUPS: usize = 6;
 /// Classes of hops: 0 to 6, and more.
@@ -126,14 +126,14 @@ tables! {
 }
 
 /// The group of a relation.
-pub(crate) fn group(relation: Relation) -> usize {
+pub(crate) fn relation_group(relation: StepRelation) -> usize {
     match relation {
-        Relation::OutOf => 0,
-        Relation::Into | Relation::To => 1,
-        Relation::In | Relation::At | Relation::Near | Relation::Before => 2,
-        Relation::Through | Relation::Past | Relation::Along | Relation::Between => 3,
-        Relation::With | Relation::Of => 4,
-        Relation::Plain => 5,
+        StepRelation::OutOf => 0,
+        StepRelation::Into | StepRelation::To => 1,
+        StepRelation::In | StepRelation::At | StepRelation::Near | StepRelation::Before => 2,
+        StepRelation::Through | StepRelation::Past | StepRelation::Along | StepRelation::Between => 3,
+        StepRelation::With | StepRelation::Of => 4,
+        StepRelation::Plain => 5,
     }
 }
 

@@ -1,14 +1,14 @@
 //! A walker's own map of a building: the viewpoints where it was and their neighbours, in the frame of its start.
 
-use crate::building::{Building, Thing, Viewpoint};
+use crate::building::{BuildingThing, BuildingViewpoint, KnownBuilding};
 use wayword_core::{DVec3, Heading};
-use wayword_language::lexicon::normal;
+use wayword_language::lexicon::normalise_name;
 
 /// The walker's observation at a viewpoint. Directions are relative to its body.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Sighting {
+pub struct WalkerSighting {
     /// The ways out.
-    pub hops: Vec<Hop>,
+    pub hops: Vec<WalkerHop>,
     /// The room, where the platform has rooms.
     pub room: Option<String>,
     /// The objects that are seen, each with the number of the hop that lies nearest to its direction.
@@ -17,7 +17,7 @@ pub struct Sighting {
 
 /// A way out of a viewpoint.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Hop {
+pub struct WalkerHop {
     /// Its direction from straight ahead, radians, positive right.
     pub turn_rad: f64,
     /// Its elevation, radians, positive upwards.
@@ -26,7 +26,7 @@ pub struct Hop {
     pub length_m: f64,
 }
 
-impl Hop {
+impl WalkerHop {
     /// The way from one place to another (metres, world frame), for a walker that looks along `heading`. Straight up or
     /// down counts as ahead, because the walker's heading stays.
     #[must_use]
@@ -41,8 +41,8 @@ impl Hop {
 
     /// The number of the hop that lies nearest to a direction; `None` where there is none. `heading` is the walker's.
     #[must_use]
-    pub fn nearest(hops: &[Self], heading: Heading, direction: Heading) -> Option<usize> {
-        let off_rad = |hop: &Self| heading.turned(hop.turn_rad).turn_to(direction).abs();
+    pub fn nearest_hop(hops: &[Self], heading: Heading, direction: Heading) -> Option<usize> {
+        let off_rad = |hop: &Self| heading.turned_by(hop.turn_rad).turn_to(direction).abs();
         (0..hops.len()).min_by(|a, b| off_rad(&hops[*a]).total_cmp(&off_rad(&hops[*b])))
     }
 }
@@ -55,8 +55,8 @@ const THING_M: f64 = 1.5;
 
 /// A map of where a walker was.
 #[derive(Debug, Default)]
-pub(super) struct Map {
-    pub(super) building: Building,
+pub(super) struct WalkerMap {
+    pub(super) building: KnownBuilding,
     /// The walker's viewpoint.
     pub(super) here: usize,
     /// The walker's direction, radians clockwise; 0 is its first direction.
@@ -65,25 +65,25 @@ pub(super) struct Map {
     pub(super) ways: Vec<Vec<usize>>,
 }
 
-impl Map {
+impl WalkerMap {
     /// The map of a walker that has not looked yet.
     pub(super) fn new() -> Self {
         let mut map = Self::default();
-        map.add(DVec3::ZERO);
+        map.add_viewpoint(DVec3::ZERO);
         map
     }
 
     /// Goes over to a viewpoint that is one hop away.
-    pub(super) fn go(&mut self, to: usize) {
-        let (bearing_rad, _) = self.building.hop(self.here, to);
+    pub(super) fn go_to(&mut self, to: usize) {
+        let (bearing_rad, _) = self.building.hop_between(self.here, to);
         self.heading_rad = bearing_rad.unwrap_or(self.heading_rad);
         self.here = to;
     }
 
     /// Adds the observation at the walker's viewpoint to the map.
-    pub(super) fn look(&mut self, seen: &Sighting) {
+    pub(super) fn note_sighting(&mut self, seen: &WalkerSighting) {
         let here_m = self.building.viewpoints[self.here].position;
-        let offsets: Vec<DVec3> = seen.hops.iter().map(|hop| self.offset(hop)).collect();
+        let offsets: Vec<DVec3> = seen.hops.iter().map(|hop| self.hop_offset(hop)).collect();
         if self.building.viewpoints[self.here].is_known {
             let ends = self.ways[self.here].iter().map(|to| self.building.viewpoints[*to].position);
             let is_close = |(end, off): (DVec3, &DVec3)| end.distance(here_m + *off) < 2.0 * SAME_PLACE_M;
@@ -91,40 +91,44 @@ impl Map {
                 return;
             }
             // This is another viewpoint at the same place: some graphs have two.
-            self.here = self.add(here_m);
+            self.here = self.add_viewpoint(here_m);
         }
-        let ways: Vec<usize> = offsets.iter().map(|off| self.place(here_m + *off)).collect();
+        let ways: Vec<usize> = offsets.iter().map(|off| self.viewpoint_at(here_m + *off)).collect();
         for to in &ways {
-            join(&mut self.building.viewpoints, self.here, *to);
-            join(&mut self.building.viewpoints, *to, self.here);
+            join_viewpoints(&mut self.building.viewpoints, self.here, *to);
+            join_viewpoints(&mut self.building.viewpoints, *to, self.here);
         }
         self.ways[self.here] = ways;
         for (name, hop) in &seen.things {
             let Some(off) = offsets.get(*hop) else { continue };
             let position = here_m + off.normalize_or_zero() * off.length().min(THING_M);
-            self.building.things.push(Thing { name: normal(name), position, seen_from: vec![self.here] });
+            self.building.things.push(BuildingThing {
+                name: normalise_name(name),
+                position,
+                seen_from: vec![self.here],
+            });
         }
         let viewpoint = &mut self.building.viewpoints[self.here];
         viewpoint.room.clone_from(&seen.room);
         viewpoint.is_known = true;
-        self.building.changed();
+        self.building.forget_nearness();
     }
 
     /// The offset of a hop from the walker's viewpoint.
-    fn offset(&self, hop: &Hop) -> DVec3 {
+    fn hop_offset(&self, hop: &WalkerHop) -> DVec3 {
         let rad = self.heading_rad + hop.turn_rad;
         let flat_m = hop.length_m * libm::cos(hop.elevation_rad);
         DVec3::new(flat_m * libm::sin(rad), flat_m * libm::cos(rad), hop.length_m * libm::sin(hop.elevation_rad))
     }
 
     /// The viewpoint at a position: a known one, or a new one.
-    fn place(&mut self, position: DVec3) -> usize {
-        let is_here = |viewpoint: &Viewpoint| viewpoint.position.distance(position) < SAME_PLACE_M;
-        self.building.viewpoints.iter().position(is_here).unwrap_or_else(|| self.add(position))
+    fn viewpoint_at(&mut self, position: DVec3) -> usize {
+        let is_here = |viewpoint: &BuildingViewpoint| viewpoint.position.distance(position) < SAME_PLACE_M;
+        self.building.viewpoints.iter().position(is_here).unwrap_or_else(|| self.add_viewpoint(position))
     }
 
-    fn add(&mut self, position: DVec3) -> usize {
-        self.building.viewpoints.push(Viewpoint {
+    fn add_viewpoint(&mut self, position: DVec3) -> usize {
+        self.building.viewpoints.push(BuildingViewpoint {
             position,
             neighbours: Vec::new(),
             room: None,
@@ -137,7 +141,7 @@ impl Map {
     }
 }
 
-fn join(viewpoints: &mut [Viewpoint], from: usize, to: usize) {
+fn join_viewpoints(viewpoints: &mut [BuildingViewpoint], from: usize, to: usize) {
     if from != to && !viewpoints[from].neighbours.contains(&to) {
         viewpoints[from].neighbours.push(to);
     }

@@ -5,7 +5,7 @@ mod map;
 mod onward;
 mod reader;
 
-pub use map::{Hop, Sighting};
-pub(crate) use onward::{AWAY, LEFT};
-pub use onward::{Onward, OnwardLearner, OnwardSlope, OnwardWeights};
-pub use reader::{Decision, Reader};
+pub use map::{WalkerHop, WalkerSighting};
+pub(crate) use onward::{HOPS_AWAY_CLASSES, STEPS_LEFT_CLASSES};
+pub use onward::{OnwardFit, OnwardLearner, OnwardSlope, OnwardWeights};
+pub use reader::{WalkerDecision, WalkingFollower};

@@ -2,12 +2,12 @@
 //! last begun step still in progress.
 
 use crate::{
-    features::{Feature, MOST_HOPS, Stretch, stretch, tables},
-    fit::{Fit, log_sum},
-    guide::Trial,
-    learn::{Descent, Plan, holds},
-    tree::Tree,
-    weights::Weights,
+    features::{FeatureNumber, MOST_HOPS, WalkStretch, stretch_features, tables},
+    fit::{WalkFit, log_sum},
+    guide::GuideTrial,
+    learn::{AdamDescent, FitPlan, hold_strengths},
+    tree::WalkTree,
+    weights::FeatureWeights,
 };
 use std::sync::LazyLock;
 
@@ -15,34 +15,39 @@ use std::sync::LazyLock;
 #[derive(Debug, Clone, PartialEq)]
 pub struct OnwardWeights {
     /// The weights of completed steps, and of a walk's end.
-    pub done: Weights,
+    pub done: FeatureWeights,
     /// The weights of the step in progress.
-    pub going: Weights,
+    pub going: FeatureWeights,
     /// Weights of going on, by the number of steps after the one in progress.
-    pub left: [f64; LEFT],
+    pub left: [f64; STEPS_LEFT_CLASSES],
     /// Weights of stopping at a viewpoint, and of going on to one, by how many hops away it is.
-    pub away: [[f64; AWAY]; 2],
+    pub away: [[f64; HOPS_AWAY_CLASSES]; 2],
 }
 
 /// Classes of the number of steps that are left.
-pub(crate) const LEFT: usize = 8;
+pub(crate) const STEPS_LEFT_CLASSES: usize = 8;
 /// Classes of hops to an option.
-pub(crate) const AWAY: usize = 8;
+pub(crate) const HOPS_AWAY_CLASSES: usize = 8;
 
-static FITTED: LazyLock<OnwardWeights> =
+static FITTED_ONWARD_WEIGHTS: LazyLock<OnwardWeights> =
     LazyLock::new(|| OnwardWeights::parse(include_str!("fitted.json")).unwrap_or_else(|_| OnwardWeights::by_hand()));
 
 impl OnwardWeights {
     /// The weights that the program uses: fitted to people's texts, as documented in their file.
     #[must_use]
     pub fn fitted() -> &'static Self {
-        &FITTED
+        &FITTED_ONWARD_WEIGHTS
     }
 
     /// Weights written by hand.
     #[must_use]
     pub fn by_hand() -> Self {
-        Self { done: Weights::by_hand(), going: Weights::by_hand(), left: [0.0; LEFT], away: [[0.0; AWAY]; 2] }
+        Self {
+            done: FeatureWeights::by_hand(),
+            going: FeatureWeights::by_hand(),
+            left: [0.0; STEPS_LEFT_CLASSES],
+            away: [[0.0; HOPS_AWAY_CLASSES]; 2],
+        }
     }
 
     /// All weights in one list: of completed steps, of the step in progress, and the rest.
@@ -52,11 +57,17 @@ impl OnwardWeights {
 
     /// The weights from a list of that form.
     pub(super) fn from_values(values: &[f64]) -> Self {
-        let part = |number: usize| Weights::from_values(&values[number * tables::COUNT..(number + 1) * tables::COUNT]);
+        let part =
+            |number: usize| FeatureWeights::from_values(&values[number * tables::COUNT..(number + 1) * tables::COUNT]);
         let rest = &values[2 * tables::COUNT..];
-        let mut weights = Self { done: part(0), going: part(1), left: [0.0; LEFT], away: [[0.0; AWAY]; 2] };
-        weights.left.copy_from_slice(&rest[..LEFT]);
-        weights.away.as_flattened_mut().copy_from_slice(&rest[LEFT..]);
+        let mut weights = Self {
+            done: part(0),
+            going: part(1),
+            left: [0.0; STEPS_LEFT_CLASSES],
+            away: [[0.0; HOPS_AWAY_CLASSES]; 2],
+        };
+        weights.left.copy_from_slice(&rest[..STEPS_LEFT_CLASSES]);
+        weights.away.as_flattened_mut().copy_from_slice(&rest[STEPS_LEFT_CLASSES..]);
         weights
     }
 }
@@ -64,26 +75,28 @@ impl OnwardWeights {
 /// A fit of a walker's weights.
 #[derive(Debug)]
 pub struct OnwardLearner {
-    descent: Descent,
+    descent: AdamDescent,
 }
 
 impl OnwardLearner {
     /// Begins with weights.
     #[must_use]
-    pub fn new(plan: Plan, start: &OnwardWeights) -> Self {
-        let holds = [holds(plan), holds(plan), vec![plan.hold; LEFT + 2 * AWAY]].concat();
-        Self { descent: Descent::new(plan, start.values(), holds) }
+    pub fn new(plan: FitPlan, start: &OnwardWeights) -> Self {
+        let holds =
+            [hold_strengths(plan), hold_strengths(plan), vec![plan.hold; STEPS_LEFT_CLASSES + 2 * HOPS_AWAY_CLASSES]]
+                .concat();
+        Self { descent: AdamDescent::new(plan, start.values(), holds) }
     }
 
     /// The weights as they are.
     #[must_use]
-    pub fn weights(&self) -> OnwardWeights {
+    pub fn current_weights(&self) -> OnwardWeights {
         OnwardWeights::from_values(&self.descent.values)
     }
 
     /// Goes one step down a slope; `round` counts from 0.
-    pub fn step(&mut self, round: usize, slope: &OnwardSlope) {
-        self.descent.step(
+    pub fn step_down(&mut self, round: usize, slope: &OnwardSlope) {
+        self.descent.step_down(
             round,
             &[&slope.done[..], &slope.going, &slope.left, slope.away.as_flattened()].concat(),
             slope.decisions,
@@ -99,31 +112,31 @@ impl OnwardLearner {
 
 /// How well the text fits going on to viewpoints that were not visited.
 #[derive(Debug, Clone)]
-pub struct Onward {
+pub struct OnwardFit {
     /// For each node: the log of the sum over steps and stretches.
     scores: Vec<f64>,
     /// For each node, the terms of its sum: step, hops, value.
     parts: Vec<Vec<(usize, usize, f64)>>,
 }
 
-impl Onward {
+impl OnwardFit {
     /// Scores going on to each node with an unvisited viewpoint.
     #[must_use]
-    pub fn new(trial: &Trial<'_>, tree: &Tree, fit: &Fit, weights: &OnwardWeights) -> Self {
+    pub fn new(trial: &GuideTrial<'_>, tree: &WalkTree, fit: &WalkFit, weights: &OnwardWeights) -> Self {
         let steps = trial.guide.len();
-        let mut found: Vec<Feature> = Vec::new();
+        let mut found: Vec<FeatureNumber> = Vec::new();
         let mut parts = vec![Vec::new(); tree.len()];
-        let is_new = |node: &usize| !trial.building.viewpoints[tree.end(*node)].is_known;
+        let is_new = |node: &usize| !trial.building.viewpoints[tree.end_viewpoint(*node)].is_known;
         for end in (1..tree.len()).filter(is_new) {
-            for (hops, from) in tree.back(end).take(MOST_HOPS + 1).enumerate().skip(1) {
+            for (hops, from) in tree.nodes_back(end).take(MOST_HOPS + 1).enumerate().skip(1) {
                 for step in 0..steps {
-                    let sum = fit.sum(step, from);
+                    let sum = fit.sum_after(step, from);
                     if !sum.is_finite() {
                         continue;
                     }
                     found.clear();
-                    stretch(trial, step, &Stretch::to(tree, end, hops), &mut found);
-                    let value = sum + weights.going.of(&found) + weights.left[left(steps, step)];
+                    stretch_features(trial, step, &WalkStretch::to_node(tree, end, hops), &mut found);
+                    let value = sum + weights.going.sum_of(&found) + weights.left[steps_left_class(steps, step)];
                     parts[end].push((step, hops, value));
                 }
             }
@@ -141,8 +154,8 @@ impl Onward {
     }
 }
 
-fn left(steps: usize, step: usize) -> usize {
-    (steps - step - 1).min(LEFT - 1)
+fn steps_left_class(steps: usize, step: usize) -> usize {
+    (steps - step - 1).min(STEPS_LEFT_CLASSES - 1)
 }
 
 /// The gradient of the loss over decisions.
@@ -150,8 +163,8 @@ fn left(steps: usize, step: usize) -> usize {
 pub struct OnwardSlope {
     pub(crate) done: Vec<f64>,
     pub(crate) going: Vec<f64>,
-    pub(crate) left: [f64; LEFT],
-    pub(crate) away: [[f64; AWAY]; 2],
+    pub(crate) left: [f64; STEPS_LEFT_CLASSES],
+    pub(crate) away: [[f64; HOPS_AWAY_CLASSES]; 2],
     /// Sum of the losses.
     pub loss: f64,
     /// Number of decisions.
@@ -161,31 +174,38 @@ pub struct OnwardSlope {
 impl Default for OnwardSlope {
     fn default() -> Self {
         let zeros = || vec![0.0; tables::COUNT];
-        Self { done: zeros(), going: zeros(), left: [0.0; LEFT], away: [[0.0; AWAY]; 2], loss: 0.0, decisions: 0 }
+        Self {
+            done: zeros(),
+            going: zeros(),
+            left: [0.0; STEPS_LEFT_CLASSES],
+            away: [[0.0; HOPS_AWAY_CLASSES]; 2],
+            loss: 0.0,
+            decisions: 0,
+        }
     }
 }
 
 impl OnwardSlope {
     /// Adds a decision: the share of stopping at each node and of going on to each, less 1 for the right one.
-    pub(crate) fn add(
+    pub(crate) fn add_decision(
         &mut self,
-        trial: &Trial<'_>,
-        tree: &Tree,
-        (fit, onward): (&Fit, &Onward),
+        trial: &GuideTrial<'_>,
+        tree: &WalkTree,
+        (fit, onward): (&WalkFit, &OnwardFit),
         [by_stop, by_going]: [&[f64]; 2],
     ) {
         let steps = trial.guide.len();
         let mut by_sum = vec![vec![0.0; tree.len()]; steps];
-        let mut found: Vec<Feature> = Vec::new();
+        let mut found: Vec<FeatureNumber> = Vec::new();
         for (end, by) in by_going.iter().enumerate().filter(|(_, by)| **by != 0.0) {
-            let froms: Vec<usize> = tree.back(end).take(MOST_HOPS + 1).collect();
+            let froms: Vec<usize> = tree.nodes_back(end).take(MOST_HOPS + 1).collect();
             for (step, hops, value) in &onward.parts[end] {
                 let share = by * (value - onward.scores[end]).exp();
                 by_sum[*step][froms[*hops]] += share;
-                self.left[left(steps, *step)] += share;
+                self.left[steps_left_class(steps, *step)] += share;
                 if share.abs() > 1e-6 {
                     found.clear();
-                    stretch(trial, *step, &Stretch::to(tree, end, *hops), &mut found);
+                    stretch_features(trial, *step, &WalkStretch::to_node(tree, end, *hops), &mut found);
                     found.iter().for_each(|feature| self.going[*feature as usize] += share);
                 }
             }

@@ -1,19 +1,19 @@
 //! The walker: it looks, scores all options that it knows, and decides where to go or to stop.
 
 use super::{
-    map::{Map, Sighting},
-    onward::{AWAY, Onward, OnwardSlope, OnwardWeights},
+    map::{WalkerMap, WalkerSighting},
+    onward::{HOPS_AWAY_CLASSES, OnwardFit, OnwardSlope, OnwardWeights},
 };
 use crate::{
-    Prior,
-    fit::Fit,
-    guide::{Guide, Trial},
-    tree::Tree,
+    WalkPrior,
+    fit::WalkFit,
+    guide::{Guide, GuideTrial},
+    tree::WalkTree,
 };
 
 /// A walker's decision at a viewpoint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Decision {
+pub enum WalkerDecision {
     /// Takes a hop of the sighting, by its number.
     Go(usize),
     /// Ends the walk.
@@ -22,10 +22,10 @@ pub enum Decision {
 
 /// A walker that follows an instruction.
 #[derive(Debug)]
-pub struct Reader<'a> {
+pub struct WalkingFollower<'a> {
     guide: &'a Guide,
     weights: &'a OnwardWeights,
-    map: Map,
+    map: WalkerMap,
     hops: usize,
 }
 
@@ -35,62 +35,62 @@ const MOST_STEPS: usize = 24;
 const MOST_HOPS: usize = 10;
 /// Deduction for each hop to an option, in addition to the fitted weights. These were fitted to reach the goal at all;
 /// going back and forth has a cost too.
-const CAUTION: f64 = 0.3;
+const HOP_COST: f64 = 0.3;
 
 /// A walker's options at its viewpoint.
-struct Options {
+struct WalkerChoices {
     /// The walks from the start.
-    tree: Tree,
+    tree: WalkTree,
     /// For each walk, the class of hops from the walker's viewpoint to its end.
     away: Vec<usize>,
     /// For each walk, the first viewpoint on the way from there to its end; the walker's own where it ends there.
     next: Vec<usize>,
-    fit: Fit,
-    onward: Onward,
+    fit: WalkFit,
+    onward: OnwardFit,
     /// For each walk, the score of stopping at its end, and of going on to it.
     stop: Vec<f64>,
     go: Vec<f64>,
 }
 
-impl<'a> Reader<'a> {
+impl<'a> WalkingFollower<'a> {
     /// A walker at the start of an instruction, looking ahead.
     #[must_use]
     pub fn new(guide: &'a Guide, weights: &'a OnwardWeights) -> Self {
-        Self { guide, weights, map: Map::new(), hops: 0 }
+        Self { guide, weights, map: WalkerMap::new(), hops: 0 }
     }
 
     /// Looks around, and decides.
-    pub fn decide(&mut self, seen: &Sighting) -> Decision {
-        self.look(seen);
+    pub fn decide_next(&mut self, seen: &WalkerSighting) -> WalkerDecision {
+        self.look_around(seen);
         if self.hops >= MOST_STEPS || self.guide.is_empty() {
-            return Decision::Stop;
+            return WalkerDecision::Stop;
         }
-        let next = self.next();
+        let next = self.next_viewpoint();
         let hop = self.map.ways[self.map.here].iter().position(|way| *way == next && next != self.map.here);
-        hop.map_or(Decision::Stop, |hop| {
-            self.take(hop);
-            Decision::Go(hop)
+        hop.map_or(WalkerDecision::Stop, |hop| {
+            self.take_hop(hop);
+            WalkerDecision::Go(hop)
         })
     }
 
     /// Looks around.
-    pub fn look(&mut self, seen: &Sighting) {
-        self.map.look(seen);
+    pub fn look_around(&mut self, seen: &WalkerSighting) {
+        self.map.note_sighting(seen);
     }
 
     /// Takes a hop of the sighting here.
-    pub fn take(&mut self, hop: usize) {
+    pub fn take_hop(&mut self, hop: usize) {
         if let Some(to) = self.map.ways[self.map.here].get(hop) {
-            self.map.go(*to);
+            self.map.go_to(*to);
             self.hops += 1;
         }
     }
 
     /// The viewpoint to go to next: the one behind which most of the probability lies; the walker's own if it should
     /// stop.
-    fn next(&self) -> usize {
-        let options = self.options(&Trial::seen(self.guide, &self.map.building));
-        let cost = |walk: usize| CAUTION * options.away[walk] as f64;
+    fn next_viewpoint(&self) -> usize {
+        let options = self.find_choices(&GuideTrial::new_partial(self.guide, &self.map.building));
+        let cost = |walk: usize| HOP_COST * options.away[walk] as f64;
         let both = options.stop.iter().enumerate().chain(options.go.iter().enumerate());
         let all: Vec<(usize, f64)> = both.map(|(walk, worth)| (walk, worth - cost(walk))).collect();
         let highest = all.iter().map(|(_, worth)| *worth).fold(f64::NEG_INFINITY, f64::max);
@@ -101,31 +101,32 @@ impl<'a> Reader<'a> {
         (0..shares.len()).max_by(|a, b| shares[*a].total_cmp(&shares[*b])).unwrap_or(self.map.here)
     }
 
-    fn options(&self, trial: &Trial<'_>) -> Options {
+    fn find_choices(&self, trial: &GuideTrial<'_>) -> WalkerChoices {
         let building = &self.map.building;
-        let tree = Tree::of(building, 0, 0.0, Prior::Shortest(MOST_HOPS));
-        let back = Tree::shortest(building, self.map.here, 0.0, usize::MAX);
-        let (mut away, mut next) = (vec![AWAY - 1; building.len()], vec![self.map.here; building.len()]);
+        let tree = WalkTree::from_prior(building, 0, 0.0, WalkPrior::Shortest(MOST_HOPS));
+        let back = WalkTree::shortest_paths(building, self.map.here, 0.0, usize::MAX);
+        let (mut away, mut next) = (vec![HOPS_AWAY_CLASSES - 1; building.len()], vec![self.map.here; building.len()]);
         for node in &back.nodes {
-            away[node.viewpoint] = node.hops.min(AWAY - 1);
-            next[node.viewpoint] = if node.hops > 1 { next[back.end(node.before)] } else { node.viewpoint };
+            away[node.viewpoint] = node.hops.min(HOPS_AWAY_CLASSES - 1);
+            next[node.viewpoint] = if node.hops > 1 { next[back.end_viewpoint(node.before)] } else { node.viewpoint };
         }
-        let fit = Fit::new(trial, &tree, &self.weights.done);
-        let onward = Onward::new(trial, &tree, &fit, self.weights);
-        let [away, next] = [away, next].map(|of| (0..tree.len()).map(|walk| of[tree.end(walk)]).collect::<Vec<_>>());
-        let is_known = |node: usize| building.viewpoints[tree.end(node)].is_known;
+        let fit = WalkFit::new(trial, &tree, &self.weights.done);
+        let onward = OnwardFit::new(trial, &tree, &fit, self.weights);
+        let [away, next] =
+            [away, next].map(|of| (0..tree.len()).map(|walk| of[tree.end_viewpoint(walk)]).collect::<Vec<_>>());
+        let is_known = |node: usize| building.viewpoints[tree.end_viewpoint(node)].is_known;
         let stop = |node: usize| match node > 0 && is_known(node) {
             true => fit.score(node) + self.weights.away[0][away[node]],
             false => f64::NEG_INFINITY,
         };
         let stop = (0..tree.len()).map(stop).collect();
         let go = (0..tree.len()).map(|node| onward.score(node) + self.weights.away[1][away[node]]).collect();
-        Options { tree, away, next, fit, onward, stop, go }
+        WalkerChoices { tree, away, next, fit, onward, stop, go }
     }
 
     /// Adds the right decision at this viewpoint to a gradient: to go to the last known viewpoint of the shortest way
     /// to the goal, or to stop at the goal. The way is given by its hops, each by its number at its viewpoint.
-    pub fn learn(&self, way: impl IntoIterator<Item = usize>, slope: &mut OnwardSlope) {
+    pub fn learn_decision(&self, way: impl IntoIterator<Item = usize>, slope: &mut OnwardSlope) {
         let mut right = self.map.here;
         for hop in way {
             match self.map.ways[right].get(hop) {
@@ -137,15 +138,17 @@ impl<'a> Reader<'a> {
             }
         }
         let is_stop = self.map.building.viewpoints[right].is_known;
-        let trial = Trial::seen(self.guide, &self.map.building);
-        let options = self.options(&trial);
+        let trial = GuideTrial::new_partial(self.guide, &self.map.building);
+        let options = self.find_choices(&trial);
         let all = || options.stop.iter().chain(&options.go).copied();
         let highest = all().fold(f64::NEG_INFINITY, f64::max);
         let whole: f64 = all().map(|score| (score - highest).exp()).sum();
         let share = |score: &f64| (score - highest).exp() / whole;
         let mut by_stop: Vec<f64> = options.stop.iter().map(share).collect();
         let mut by_going: Vec<f64> = options.go.iter().map(share).collect();
-        let Some(node) = (1..options.tree.len()).find(|node| options.tree.end(*node) == right) else { return };
+        let Some(node) = (1..options.tree.len()).find(|node| options.tree.end_viewpoint(*node) == right) else {
+            return;
+        };
         let by = if is_stop { &mut by_stop } else { &mut by_going };
         if !by[node].is_normal() {
             return;
@@ -155,6 +158,6 @@ impl<'a> Reader<'a> {
         for (by, away) in [&by_stop, &by_going].into_iter().zip(&mut slope.away) {
             by.iter().zip(&options.away).for_each(|(by, class)| away[*class] += by);
         }
-        slope.add(&trial, &options.tree, (&options.fit, &options.onward), [&by_stop, &by_going]);
+        slope.add_decision(&trial, &options.tree, (&options.fit, &options.onward), [&by_stop, &by_going]);
     }
 }

@@ -3,21 +3,21 @@
 
 mod places;
 
-use super::Weights;
+use super::FeatureWeights;
 use crate::{
     features::tables::{
-        ANGLES, BORDER, CONDITION, CROSSINGS, FIRST_TURN, HOPS, HOPS_CLASSES, HOPS_OF_STEPS, LATER_TURNS, LENGTH,
-        LEVEL, LEVEL_RISE, LEVELS, ONWARD, OPENING_TURN, RISE, SAME_ROOM, SIDE_OF_TURN, SKIPPED, SQUARER, STAIRS_AT,
-        STOPS, TURN_AFTER_OPENING, TURN_BEFORE, TURNS_TOLD, Table, UNTOLD_HOPS, WALK_HOPS, WHOLE_TURN, WIDEST_TURN,
+        ANGLES, BORDER, CONDITION, CROSSINGS, FIRST_TURN, FeatureTable, HOPS, HOPS_CLASSES, HOPS_OF_STEPS, LATER_TURNS,
+        LENGTH, LEVEL, LEVEL_RISE, LEVELS, ONWARD, OPENING_TURN, RISE, SAME_ROOM, SIDE_OF_TURN, SKIPPED, SQUARER,
+        STAIRS_AT, STOPS, TURN_AFTER_OPENING, TURN_BEFORE, TURNS_TOLD, UNTOLD_HOPS, WALK_HOPS, WHOLE_TURN, WIDEST_TURN,
     },
-    guide::Kind,
+    guide::GuideStepKind,
 };
 
 /// Sets a weight of a table, by its places in each dimension.
-type Set<'a> = dyn FnMut(&Table, &[(usize, usize)], f64) + 'a;
+type WeightSetter<'a> = dyn FnMut(&FeatureTable, &[(usize, usize)], f64) + 'a;
 
 /// For each kind of step: the weight of zero hops, the number of hops that is free, and the loss for each further hop.
-const OF_HOPS: [(f64, usize, f64); Kind::COUNT] = [
+const OF_HOPS: [(f64, usize, f64); GuideStepKind::COUNT] = [
     (-2.5, 1, 1.0),
     (-2.0, 1, 1.0),
     (-1.0, 1, 1.2),
@@ -36,26 +36,26 @@ const OF_RISE: [f64; 11] = [-4.0, -4.0, -4.0, -3.5, -3.0, -2.0, 0.5, 1.5, 2.0, 2
 /// Weights of any other step by the rise of the stretch.
 const OF_FLAT: [f64; 11] = [0.0, 0.0, 0.0, 0.0, 0.0, 0.3, -0.3, -0.8, -1.2, -1.5, -2.0];
 
-pub(super) fn weights() -> Weights {
-    let mut weights = Weights::none();
-    let mut set = |table: &Table, places: &[(usize, usize)], value: f64| {
+pub(super) fn weights_by_hand() -> FeatureWeights {
+    let mut weights = FeatureWeights::all_zero();
+    let mut set = |table: &FeatureTable, places: &[(usize, usize)], value: f64| {
         let place = places.iter().fold(0, |place, (at, size)| place * size + at);
         weights.0[table.from + place] = value;
     };
-    length(&mut set);
-    turns(&mut set);
-    ways(&mut set);
-    storeys(&mut set);
-    places::places(&mut set);
+    set_lengths(&mut set);
+    set_turns(&mut set);
+    set_ways(&mut set);
+    set_storeys(&mut set);
+    places::set_places(&mut set);
     weights
 }
 
-fn length(set: &mut Set<'_>) {
+fn set_lengths(set: &mut WeightSetter<'_>) {
     for (kind, (none, free, loss)) in OF_HOPS.into_iter().enumerate() {
         for hops in 0..HOPS_CLASSES {
             let goes = if hops == 0 { none } else { -loss * hops.saturating_sub(free) as f64 };
             for is_last in 0..2 {
-                set(&HOPS, &[(kind, Kind::COUNT), (is_last, 2), (hops, HOPS_CLASSES)], goes);
+                set(&HOPS, &[(kind, GuideStepKind::COUNT), (is_last, 2), (hops, HOPS_CLASSES)], goes);
             }
         }
     }
@@ -67,19 +67,19 @@ fn length(set: &mut Set<'_>) {
         }
         set(&CONDITION, &[(0, 2), (hops, HOPS_CLASSES)], far);
     }
-    for (kind, hops) in (0..Kind::COUNT).flat_map(|kind| (0..HOPS_CLASSES).map(move |hops| (kind, hops))) {
+    for (kind, hops) in (0..GuideStepKind::COUNT).flat_map(|kind| (0..HOPS_CLASSES).map(move |hops| (kind, hops))) {
         // The fewer steps a text has, the farther each of them leads.
         for (steps, each) in [1.0, 0.0, -0.6].into_iter().enumerate() {
             for is_last in 0..2 {
-                let place = [(steps, 3), (kind, Kind::COUNT), (is_last, 2), (hops, HOPS_CLASSES)];
+                let place = [(steps, 3), (kind, GuideStepKind::COUNT), (is_last, 2), (hops, HOPS_CLASSES)];
                 set(&HOPS_OF_STEPS, &place, each * hops as f64);
             }
         }
     }
-    for (kind, class) in (0..Kind::COUNT).flat_map(|kind| (0..8).map(move |class| (kind, class))) {
+    for (kind, class) in (0..GuideStepKind::COUNT).flat_map(|kind| (0..8).map(move |class| (kind, class))) {
         let length_m = [0.0, 1.0, 2.3, 4.0, 6.0, 8.5, 12.0, 16.0f64][class];
-        let free_m = if kind == Kind::Goal as usize { 16.0 } else { 4.0 };
-        set(&LENGTH, &[(kind, Kind::COUNT), (class, 8)], -0.2 * (length_m - free_m).max(0.0));
+        let free_m = if kind == GuideStepKind::Goal as usize { 16.0 } else { 4.0 };
+        set(&LENGTH, &[(kind, GuideStepKind::COUNT), (class, 8)], -0.2 * (length_m - free_m).max(0.0));
     }
     for hops in 0..WALK_HOPS {
         // Instructions describe walks of some length: without any step, the middle of the usual lengths is likeliest.
@@ -105,10 +105,10 @@ fn of_turn(kind: usize, deg: f64) -> f64 {
     }
 }
 
-fn turns(set: &mut Set<'_>) {
-    for (kind, at) in (0..Kind::COUNT).flat_map(|kind| (0..ANGLES).map(move |at| (kind, at))) {
+fn set_turns(set: &mut WeightSetter<'_>) {
+    for (kind, at) in (0..GuideStepKind::COUNT).flat_map(|kind| (0..ANGLES).map(move |at| (kind, at))) {
         let goes = of_turn(kind, middle_deg(at, ANGLES));
-        let place = [(kind, Kind::COUNT), (at, ANGLES)];
+        let place = [(kind, GuideStepKind::COUNT), (at, ANGLES)];
         let tells_turn = kind <= 2;
         // Texts leave out in which direction the walker looks first, so a turn in the first step may be the opening
         // turn or the next.
@@ -126,10 +126,10 @@ fn turns(set: &mut Set<'_>) {
             set(&TURN_BEFORE, &[(kind, 3), (opens, 2), (at, ANGLES)], goes);
         }
     }
-    for kind in 0..Kind::COUNT {
+    for kind in 0..GuideStepKind::COUNT {
         for later in 1..3 {
-            let loss = if kind == Kind::Goal as usize { 0.0 } else { 0.2 };
-            set(&LATER_TURNS, &[(kind, Kind::COUNT), (later, 3)], -loss * later as f64);
+            let loss = if kind == GuideStepKind::Goal as usize { 0.0 } else { 0.2 };
+            set(&LATER_TURNS, &[(kind, GuideStepKind::COUNT), (later, 3)], -loss * later as f64);
         }
     }
     for (told, real) in (0..6).flat_map(|told| (0..7).map(move |real| (told, real))) {
@@ -151,21 +151,21 @@ fn middle_deg(at: usize, classes: usize) -> f64 {
 }
 
 /// Weights of the ways that a walk does not take: an obvious way is taken unless the text describes another.
-fn ways(set: &mut Set<'_>) {
-    for kind in 0..Kind::COUNT {
+fn set_ways(set: &mut WeightSetter<'_>) {
+    for kind in 0..GuideStepKind::COUNT {
         let tells_turn = kind <= 2;
         for count in 1..3 {
             if tells_turn {
-                set(&SQUARER, &[(kind, Kind::COUNT), (count, 3)], -0.3 * count as f64);
+                set(&SQUARER, &[(kind, GuideStepKind::COUNT), (count, 3)], -0.3 * count as f64);
             }
             // Ways to the side of the next turn that it passes were not meant.
             for here in 0..3 {
-                set(&SKIPPED, &[(kind, Kind::COUNT), (count, 3), (here, 3)], -0.4 * count as f64);
+                set(&SKIPPED, &[(kind, GuideStepKind::COUNT), (count, 3), (here, 3)], -0.4 * count as f64);
             }
         }
-        set(&SKIPPED, &[(kind, Kind::COUNT), (0, 3), (1, 3)], 0.2);
+        set(&SKIPPED, &[(kind, GuideStepKind::COUNT), (0, 3), (1, 3)], 0.2);
         // "To the end of the hallway": no way goes straight on from there.
-        set(&ONWARD, &[(kind, Kind::COUNT), (1, 2), (0, 2)], 0.5);
+        set(&ONWARD, &[(kind, GuideStepKind::COUNT), (1, 2), (0, 2)], 0.5);
     }
     // Number of changes of room, for steps that do not mention doors, lead from one room to another, name a door, and
     // lead through it.
@@ -180,11 +180,11 @@ fn ways(set: &mut Set<'_>) {
             set(&BORDER, &[(door, 4), (1, 2), (border, 3)], sign * beside);
         }
     }
-    set(&SAME_ROOM, &[(Kind::Stop as usize, Kind::COUNT), (1, 2)], 0.3);
-    set(&SAME_ROOM, &[(Kind::Cross as usize, Kind::COUNT), (0, 2)], 0.3);
+    set(&SAME_ROOM, &[(GuideStepKind::Stop as usize, GuideStepKind::COUNT), (1, 2)], 0.3);
+    set(&SAME_ROOM, &[(GuideStepKind::Cross as usize, GuideStepKind::COUNT), (0, 2)], 0.3);
 }
 
-fn storeys(set: &mut Set<'_>) {
+fn set_storeys(set: &mut WeightSetter<'_>) {
     for (class, (told, flat)) in OF_RISE.iter().zip(OF_FLAT).enumerate() {
         set(&RISE, &[(0, 2), (class, 11)], *told);
         set(&RISE, &[(1, 2), (class, 11)], flat);

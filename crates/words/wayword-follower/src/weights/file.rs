@@ -1,9 +1,9 @@
 //! Reads and writes the file of weights: JSON, with a list of numbers for each table of features.
 
-use super::Weights;
+use super::FeatureWeights;
 use crate::{
-    features::tables::{ALL, Table},
-    online::{AWAY, LEFT, OnwardWeights},
+    features::tables::{ALL, FeatureTable},
+    online::{HOPS_AWAY_CLASSES, OnwardWeights, STEPS_LEFT_CLASSES},
 };
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -30,7 +30,7 @@ pub enum WeightsError {
 }
 
 #[derive(Serialize, Deserialize)]
-struct File {
+struct WeightsFile {
     /// The data that the weights were fitted to.
     origin: String,
     /// The command that fits them.
@@ -48,21 +48,28 @@ struct File {
     away: Vec<f64>,
 }
 
-impl Weights {
+impl FeatureWeights {
     /// Reads a file of weights.
     ///
     /// # Errors
     /// When a table is missing or has the wrong size.
     pub fn parse(text: &str) -> Result<Self, WeightsError> {
-        of_tables(&serde_json::from_str::<File>(text)?.tables)
+        of_tables(&serde_json::from_str::<WeightsFile>(text)?.tables)
     }
 
     /// The weights as a file, rounded to thousandths. `origin` names the data of the fit, `command` how it was run.
     #[must_use]
     pub fn to_json(&self, origin: &str, command: &str) -> String {
         let (origin, command) = (origin.into(), command.into());
-        File { origin, command, tables: to_tables(self), going: BTreeMap::new(), left: Vec::new(), away: Vec::new() }
-            .text()
+        WeightsFile {
+            origin,
+            command,
+            tables: to_tables(self),
+            going: BTreeMap::new(),
+            left: Vec::new(),
+            away: Vec::new(),
+        }
+        .to_text()
     }
 }
 
@@ -72,12 +79,12 @@ impl OnwardWeights {
     /// # Errors
     /// When a table is missing or has the wrong size.
     pub fn parse(text: &str) -> Result<Self, WeightsError> {
-        let file: File = serde_json::from_str(text)?;
+        let file: WeightsFile = serde_json::from_str(text)?;
         let wrong = |table, found: &[f64], needed| WeightsError::Table { table, found: found.len(), needed };
-        let left = file.left.as_slice().try_into().map_err(|_| wrong("left", &file.left, LEFT))?;
-        let mut away = [[0.0; AWAY]; 2];
-        if file.away.len() != 2 * AWAY {
-            return Err(wrong("away", &file.away, 2 * AWAY));
+        let left = file.left.as_slice().try_into().map_err(|_| wrong("left", &file.left, STEPS_LEFT_CLASSES))?;
+        let mut away = [[0.0; HOPS_AWAY_CLASSES]; 2];
+        if file.away.len() != 2 * HOPS_AWAY_CLASSES {
+            return Err(wrong("away", &file.away, 2 * HOPS_AWAY_CLASSES));
         }
         away.as_flattened_mut().copy_from_slice(&file.away);
         Ok(Self { done: of_tables(&file.tables)?, going: of_tables(&file.going)?, left, away })
@@ -87,31 +94,31 @@ impl OnwardWeights {
     #[must_use]
     pub fn to_json(&self, origin: &str, command: &str) -> String {
         let (tables, going) = (to_tables(&self.done), to_tables(&self.going));
-        let left = self.left.iter().map(rounded).collect();
-        let away = self.away.as_flattened().iter().map(rounded).collect();
-        File { origin: origin.into(), command: command.into(), tables, going, left, away }.text()
+        let left = self.left.iter().map(round_weight).collect();
+        let away = self.away.as_flattened().iter().map(round_weight).collect();
+        WeightsFile { origin: origin.into(), command: command.into(), tables, going, left, away }.to_text()
     }
 }
 
-impl File {
-    fn text(&self) -> String {
+impl WeightsFile {
+    fn to_text(&self) -> String {
         let mut text = serde_json::to_string(self).unwrap_or_default().replace("],\"", "],\n\"");
         text.push('\n');
         text
     }
 }
 
-fn rounded(weight: &f64) -> f64 {
+fn round_weight(weight: &f64) -> f64 {
     (weight * 1000.0).round() / 1000.0
 }
 
-fn to_tables(weights: &Weights) -> BTreeMap<String, Vec<f64>> {
-    let of = |table: &Table| weights.0[table.from..table.from + table.size].iter().map(rounded).collect();
+fn to_tables(weights: &FeatureWeights) -> BTreeMap<String, Vec<f64>> {
+    let of = |table: &FeatureTable| weights.0[table.from..table.from + table.size].iter().map(round_weight).collect();
     ALL.iter().map(|table| (table.name.to_owned(), of(table))).collect()
 }
 
-fn of_tables(tables: &BTreeMap<String, Vec<f64>>) -> Result<Weights, WeightsError> {
-    let mut weights = Weights::none();
+fn of_tables(tables: &BTreeMap<String, Vec<f64>>) -> Result<FeatureWeights, WeightsError> {
+    let mut weights = FeatureWeights::all_zero();
     for table in ALL {
         let found = tables.get(table.name).map_or(&[][..], Vec::as_slice);
         if found.len() != table.size {

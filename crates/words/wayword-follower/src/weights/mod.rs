@@ -3,38 +3,38 @@
 mod by_hand;
 mod file;
 
-use crate::features::{Feature, tables};
+use crate::features::{FeatureNumber, tables};
 pub use file::WeightsError;
 use std::sync::LazyLock;
 
 /// The weight of each feature for or against a walk, in natural logs.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Weights(Vec<f64>);
+pub struct FeatureWeights(Vec<f64>);
 
-static FITTED: LazyLock<Weights> =
-    LazyLock::new(|| Weights::parse(include_str!("fitted.json")).unwrap_or_else(|_| Weights::by_hand()));
+static FITTED_WEIGHTS: LazyLock<FeatureWeights> =
+    LazyLock::new(|| FeatureWeights::parse(include_str!("fitted.json")).unwrap_or_else(|_| FeatureWeights::by_hand()));
 
-impl Weights {
+impl FeatureWeights {
     /// The weights that the program uses: fitted to people's texts, as documented in their file.
     #[must_use]
     pub fn fitted() -> &'static Self {
-        &FITTED
+        &FITTED_WEIGHTS
     }
 
     /// Weights written by hand from the meaning of the words.
     #[must_use]
     pub fn by_hand() -> Self {
-        by_hand::weights()
+        by_hand::weights_by_hand()
     }
 
     /// The sum of the weights of these features.
-    pub(crate) fn of(&self, found: &[Feature]) -> f64 {
+    pub(crate) fn sum_of(&self, found: &[FeatureNumber]) -> f64 {
         found.iter().map(|feature| self.0[*feature as usize]).sum()
     }
 
     /// Weights of 0.
     #[must_use]
-    pub(crate) fn none() -> Self {
+    pub(crate) fn all_zero() -> Self {
         Self(vec![0.0; tables::COUNT])
     }
 
@@ -55,13 +55,13 @@ mod tests {
 
     #[test]
     fn the_file_of_weights_can_be_read() {
-        assert!(Weights::parse(include_str!("fitted.json")).is_ok());
+        assert!(FeatureWeights::parse(include_str!("fitted.json")).is_ok());
     }
 
     #[test]
     fn weights_survive_their_file() {
-        let weights = Weights::by_hand();
-        let again = Weights::parse(&weights.to_json("by hand", "none")).unwrap();
+        let weights = FeatureWeights::by_hand();
+        let again = FeatureWeights::parse(&weights.to_json("by hand", "none")).unwrap();
         let off = weights.values().iter().zip(again.values()).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         assert!(off < 0.001, "{off}");
     }

@@ -1,14 +1,16 @@
 //! Runs the detector on the views along a path and collects where it found each name.
 
-use super::Seeker;
+use super::CaptionDetector;
 use std::collections::{BTreeMap, BTreeSet};
-use wayword_core::{Gaze, ModelError, Observation, Path, Platform, PlatformError, Spot, View, apart};
+use wayword_core::{
+    DetectionSpot, FrameObservation, ModelError, Path, Platform, PlatformError, View, ViewGaze, without_overlaps,
+};
 
 /// Two boxes are taken for the same thing if their overlap is more than this share of their union.
-const SAME: f64 = 0.5;
+const SAME_THING_OVERLAP_SHARE: f64 = 0.5;
 
 /// The view of one look of an observation, with the numbers of its frame and look.
-pub(super) struct Seen {
+pub(super) struct LookPicture {
     pub(super) frame: usize,
     pub(super) look: usize,
     pub(super) view: View,
@@ -16,39 +18,43 @@ pub(super) struct Seen {
 
 /// The path along which views were seen, and the platform that showed them.
 #[derive(Clone, Copy)]
-pub(super) struct Walk<'a> {
+pub(super) struct PlatformPath<'a> {
     pub(super) platform: &'a dyn Platform,
     pub(super) path: &'a Path,
 }
 
 /// The frame and the number of a look.
-pub(super) type Place = (usize, usize);
+pub(super) type LookIndex = (usize, usize);
 
 /// The boxes that were found for one name, by look.
-pub(super) type Finds = BTreeMap<Place, Vec<Spot>>;
+pub(super) type LookSpots = BTreeMap<LookIndex, Vec<DetectionSpot>>;
 
 /// The views of all looks that have a picture. A look without a picture is left out, because the detector cannot have
 /// missed anything there.
-pub(super) fn views(
+pub(super) fn look_views(
     platform: &dyn Platform,
     path: &Path,
-    observations: &[Observation],
-) -> Result<Vec<Seen>, PlatformError> {
+    observations: &[FrameObservation],
+) -> Result<Vec<LookPicture>, PlatformError> {
     let mut seen = Vec::new();
     for (frame, (at, observation)) in path.frames.iter().zip(observations).enumerate() {
         for (look, gaze) in observation.looks.iter().map(|look| look.gaze).enumerate() {
-            let view = platform.look(&path.scene, at, gaze)?;
-            seen.extend(view.image.is_some().then_some(Seen { frame, look, view }));
+            let view = platform.look_from(&path.scene, at, gaze)?;
+            seen.extend(view.image.is_some().then_some(LookPicture { frame, look, view }));
         }
     }
     Ok(seen)
 }
 
 /// Runs the detector once over all views and returns, for each name, the boxes that pass its score threshold.
-pub(super) fn finds(seen: &[Seen], names: &[&str], seeker: Seeker<'_>) -> Result<Vec<Finds>, ModelError> {
+pub(super) fn find_spots(
+    seen: &[LookPicture],
+    names: &[&str],
+    seeker: CaptionDetector<'_>,
+) -> Result<Vec<LookSpots>, ModelError> {
     let views: Vec<&View> = seen.iter().map(|seen| &seen.view).collect();
-    let mut found: Vec<Finds> = vec![Finds::new(); names.len()];
-    let answers = seeker.detector.detect(&views, names);
+    let mut found: Vec<LookSpots> = vec![LookSpots::new(); names.len()];
+    let answers = seeker.detector.detect_phrases(&views, names);
     if answers.len() != views.len() {
         let model = seeker.detector.name().to_owned();
         return Err(ModelError::Failed { model, reason: "it gave no answer".to_owned() });
@@ -57,8 +63,9 @@ pub(super) fn finds(seen: &[Seen], names: &[&str], seeker: Seeker<'_>) -> Result
         let width_px = seen.view.image.as_ref().map_or(0, |image| image.width_px());
         for (finds, boxes) in found.iter_mut().zip(answer?) {
             let sure = boxes.into_iter().filter(|found| found.score >= seeker.figures.found_from);
-            let spots: Vec<Spot> =
-                apart(sure, SAME).map(|found| Spot::new(found, width_px, seen.view.horizontal_fov_rad)).collect();
+            let spots: Vec<DetectionSpot> = without_overlaps(sure, SAME_THING_OVERLAP_SHARE)
+                .map(|found| DetectionSpot::new(found, width_px, seen.view.horizontal_fov_rad))
+                .collect();
             if !spots.is_empty() {
                 finds.insert((seen.frame, seen.look), spots);
             }
@@ -69,17 +76,21 @@ pub(super) fn finds(seen: &[Seen], names: &[&str], seeker: Seeker<'_>) -> Result
 
 /// Fills in the distance of each find where the platform has depth. Depth is asked for once per view, and only for
 /// views with finds.
-pub(super) fn measure(walk: Walk<'_>, seen: &[Seen], finds: &mut [Finds]) -> Result<(), PlatformError> {
-    for Seen { frame, look, view } in seen {
+pub(super) fn measure_distances(
+    walk: PlatformPath<'_>,
+    seen: &[LookPicture],
+    finds: &mut [LookSpots],
+) -> Result<(), PlatformError> {
+    for LookPicture { frame, look, view } in seen {
         let place = (*frame, *look);
         let size_px = view.image.as_ref().map_or([0; 2], |image| [image.width_px(), image.height_px()]);
         let is_found = finds.iter().any(|finds| finds.contains_key(&place));
         if !is_found || size_px.contains(&0) {
             continue;
         }
-        let gaze = Gaze { heading: view.pose.heading, horizontal_fov_rad: view.horizontal_fov_rad };
+        let gaze = ViewGaze { heading: view.pose.heading, horizontal_fov_rad: view.horizontal_fov_rad };
         let from = &walk.path.frames[*frame];
-        let Some(depth) = walk.platform.depth(&walk.path.scene, from, gaze)? else { continue };
+        let Some(depth) = walk.platform.view_depth(&walk.path.scene, from, gaze)? else { continue };
         let [width, height] = size_px.map(f64::from);
         for spot in finds.iter_mut().filter_map(|finds| finds.get_mut(&place)).flatten() {
             let [left, top, right, bottom] = spot.found.box_px.map(f64::from);
@@ -91,7 +102,7 @@ pub(super) fn measure(walk: Walk<'_>, seen: &[Seen], finds: &mut [Finds]) -> Res
 }
 
 /// For each frame with a look that has a picture, in order: whether the name was found from it.
-pub(super) fn frames(seen: &[Seen], finds: &Finds) -> Vec<bool> {
+pub(super) fn found_by_frame(seen: &[LookPicture], finds: &LookSpots) -> Vec<bool> {
     let looked_at: BTreeSet<usize> = seen.iter().map(|seen| seen.frame).collect();
     looked_at.iter().map(|frame| finds.keys().any(|(of, _)| of == frame)).collect()
 }

@@ -2,45 +2,45 @@
 //! reference texts of a style name often.
 
 use std::collections::{BTreeMap, BTreeSet};
-use wayword_core::Style;
+use wayword_core::InstructionStyle;
 use wayword_language::{
-    lexicon::{normal, thing},
-    reading::{What, read},
+    lexicon::{find_thing, normalise_name},
+    reading::{EventContent, read_instruction},
 };
 
 /// The built-in list of household things, one name per line.
-const LIST: &str = include_str!("nouns.txt");
+const HOUSEHOLD_NOUNS: &str = include_str!("nouns.txt");
 
 /// Most names that a style adds.
 const MOST_OF_STYLE: usize = 30;
 
 /// Most names that are looked for: each costs time in every view.
-const MOST: usize = 300;
+const MAX_NOUNS: usize = 300;
 
 /// Parses a list of names: one per line, `#` begins a comment. `None` if the list is empty or longer than the limit.
 #[must_use]
-pub fn listed(text: &str) -> Option<Vec<String>> {
+pub fn parse_noun_list(text: &str) -> Option<Vec<String>> {
     let names = text.lines().map(|line| line.split('#').next().unwrap_or_default().trim());
-    let names: BTreeSet<String> = names.filter(|name| !name.is_empty()).map(normal).collect();
-    (1..=MOST).contains(&names.len()).then(|| names.into_iter().collect())
+    let names: BTreeSet<String> = names.filter(|name| !name.is_empty()).map(normalise_name).collect();
+    (1..=MAX_NOUNS).contains(&names.len()).then(|| names.into_iter().collect())
 }
 
 /// The household things of the built-in list, and the things that the texts of these styles name most often.
 #[must_use]
-pub fn usual<'a>(styles: impl Iterator<Item = &'a Style>) -> Vec<String> {
-    let mut names: BTreeSet<String> = listed(LIST).unwrap_or_default().into_iter().collect();
+pub fn usual_nouns<'a>(styles: impl Iterator<Item = &'a InstructionStyle>) -> Vec<String> {
+    let mut names: BTreeSet<String> = parse_noun_list(HOUSEHOLD_NOUNS).unwrap_or_default().into_iter().collect();
     styles.for_each(|style| names.extend(of_style(style)));
     names.into_iter().collect()
 }
 
-fn of_style(style: &Style) -> Vec<String> {
+fn of_style(style: &InstructionStyle) -> Vec<String> {
     let mut counts: BTreeMap<String, usize> = BTreeMap::new();
     for text in &style.references {
-        for event in read(text, &BTreeSet::new()).events {
-            if let What::Place(place) = event.what
+        for event in read_instruction(text, &BTreeSet::new()).events {
+            if let EventContent::Place(place) = event.what
                 && place.is_thing
                 && !place.is_room
-                && let Some(thing) = thing(&place.name).filter(|thing| thing.salience >= 1)
+                && let Some(thing) = find_thing(&place.name).filter(|thing| thing.salience >= 1)
             {
                 *counts.entry(thing.name.to_owned()).or_default() += 1;
             }
@@ -57,26 +57,27 @@ mod tests {
 
     #[test]
     fn every_name_of_the_list_is_one_that_the_lexicon_has() {
-        let names = listed(LIST).unwrap();
+        let names = parse_noun_list(HOUSEHOLD_NOUNS).unwrap();
         let strange: Vec<&String> =
-            names.iter().filter(|name| thing(name).is_none_or(|thing| thing.salience == 0)).collect();
+            names.iter().filter(|name| find_thing(name).is_none_or(|thing| thing.salience == 0)).collect();
         assert!(strange.is_empty() && names.len() > 40, "{strange:?}");
     }
 
     #[test]
     fn usual_nouns_adds_things_that_a_style_names_repeatedly() {
         let references = ["Stop at the canoe.", "Pass the guitar and the sofa.", "Stop beside the guitar."];
-        let style = Style { references: references.map(str::to_owned).to_vec(), ..Style::default() };
-        let names = usual(std::iter::once(&style));
+        let style =
+            InstructionStyle { references: references.map(str::to_owned).to_vec(), ..InstructionStyle::default() };
+        let names = usual_nouns(std::iter::once(&style));
         assert!(names.contains(&"guitar".to_owned()) && names.contains(&"sofa".to_owned()), "{names:?}");
         assert!(!names.contains(&"canoe".to_owned()));
     }
 
     #[test]
     fn a_list_has_one_name_a_line_and_is_neither_empty_nor_endless() {
-        assert_eq!(listed("# mine\nRed Sofas\n\nlamp # tall").unwrap(), ["lamp", "red sofa"]);
-        assert_eq!(listed("# nothing"), None);
-        let endless: String = (0..=MOST).map(|at| format!("thing{at}\n")).collect();
-        assert_eq!(listed(&endless), None);
+        assert_eq!(parse_noun_list("# mine\nRed Sofas\n\nlamp # tall").unwrap(), ["lamp", "red sofa"]);
+        assert_eq!(parse_noun_list("# nothing"), None);
+        let endless: String = (0..=MAX_NOUNS).map(|at| format!("thing{at}\n")).collect();
+        assert_eq!(parse_noun_list(&endless), None);
     }
 }

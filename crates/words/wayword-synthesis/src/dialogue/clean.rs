@@ -1,6 +1,6 @@
 //! Extracts the one question or the one answer that was asked for from a model's reply.
 
-use wayword_language::{answers::ASKING, text::words};
+use wayword_language::{answers::ASKING, text::split_words};
 
 /// Longest question, characters. A longer text is no question.
 const QUESTION_CHARS: usize = 300;
@@ -11,17 +11,20 @@ const MOST_BYTES: usize = 16_384;
 /// Labels that models put before a question.
 const QUESTION_LABELS: [&str; 4] = ["question:", "q:", "next question:", "new question:"];
 /// Marks that begin another turn within an answer, wherever they are.
-const TURNS: [&str; 5] = ["question:", "user:", "### ", "<|", "</s>"];
+const TURN_MARKS: [&str; 5] = ["question:", "user:", "### ", "<|", "</s>"];
 /// Marks that begin another turn only after a whole sentence, because "the short answer: no" is one answer.
 const TURNS_BEHIND_SENTENCES: [&str; 5] = ["q:", "a:", "answer:", "human:", "assistant:"];
 
 /// The one question in a reply, without labels, quotes, chatter, further questions or an invented answer. `None` if
 /// there is no question, or it is longer than the limit.
-pub(super) fn question(reply: &str) -> Option<String> {
-    let reply = head(reply, MOST_BYTES);
-    let after = QUESTION_LABELS.iter().filter_map(|label| labels(reply, label).last().map(|at| at + label.len())).max();
+pub(super) fn extract_question(reply: &str) -> Option<String> {
+    let reply = first_bytes(reply, MOST_BYTES);
+    let after = QUESTION_LABELS
+        .iter()
+        .filter_map(|label| label_positions(reply, label).last().map(|at| at + label.len()))
+        .max();
     let rest = &reply[after.unwrap_or(0)..];
-    let answered = ["answer:", "a:"].iter().filter_map(|label| labels(rest, label).find(|at| *at > 0)).min();
+    let answered = ["answer:", "a:"].iter().filter_map(|label| label_positions(rest, label).find(|at| *at > 0)).min();
     let rest = rest[..answered.unwrap_or(rest.len())].trim();
     let asked = match rest.find(['?', '？']) {
         Some(mark) => last_sentence(&rest[..=mark + rest[mark..].chars().next().map_or(0, char::len_utf8) - 1]),
@@ -35,26 +38,26 @@ pub(super) fn question(reply: &str) -> Option<String> {
 
 /// The answer in a reply, without a repetition of the question before it and invented turns after it, cut to the length
 /// limit.
-pub(super) fn answer(reply: &str, question: &str) -> String {
-    let reply = without_lead(head(reply, MOST_BYTES).trim(), question);
+pub(super) fn extract_answer(reply: &str, question: &str) -> String {
+    let reply = without_lead(first_bytes(reply, MOST_BYTES).trim(), question);
     let behind_sentence = |at: &usize| {
         let before = reply[..*at].trim_end_matches([' ', '*', '"']);
         before.is_empty() || before.ends_with(['.', '!', '?', '\n'])
     };
-    let turns = TURNS.iter().filter_map(|label| labels(reply, label).find(|at| *at > 0));
+    let turns = TURN_MARKS.iter().filter_map(|label| label_positions(reply, label).find(|at| *at > 0));
     let behind = TURNS_BEHIND_SENTENCES
         .iter()
-        .filter_map(|label| labels(reply, label).filter(behind_sentence).find(|at| *at > 0));
+        .filter_map(|label| label_positions(reply, label).filter(behind_sentence).find(|at| *at > 0));
     let cut = turns.chain(behind).min();
-    bounded(reply[..cut.unwrap_or(reply.len())].trim()).to_owned()
+    bounded_answer(reply[..cut.unwrap_or(reply.len())].trim()).to_owned()
 }
 
-fn head(text: &str, bytes: usize) -> &str {
+fn first_bytes(text: &str, bytes: usize) -> &str {
     &text[..text.floor_char_boundary(bytes)]
 }
 
 /// The positions of a label, in upper or lower case, at the start of a line or after a space.
-fn labels<'a>(text: &'a str, label: &'a str) -> impl Iterator<Item = usize> + 'a {
+fn label_positions<'a>(text: &'a str, label: &'a str) -> impl Iterator<Item = usize> + 'a {
     text.char_indices().map(|(at, _)| at).filter(move |at| {
         let is_label = text.get(*at..at + label.len()).is_some_and(|here| here.eq_ignore_ascii_case(label));
         is_label
@@ -75,7 +78,7 @@ fn last_sentence(text: &str) -> &str {
 }
 
 fn begins_as_question(line: &str) -> bool {
-    words(head(line, 200)).first().is_some_and(|first| ASKING.contains(&first.as_str()))
+    split_words(first_bytes(line, 200)).first().is_some_and(|first| ASKING.contains(&first.as_str()))
 }
 
 /// The reply without "Answer:" and the question itself before the answer.
@@ -92,7 +95,7 @@ fn without_lead<'a>(reply: &'a str, question: &str) -> &'a str {
     rest
 }
 
-fn bounded(text: &str) -> &str {
+fn bounded_answer(text: &str) -> &str {
     let Some((end, _)) = text.char_indices().nth(ANSWER_CHARS) else { return text };
     let whole = &text[..end];
     whole.rfind(['.', '!', '?']).map_or(whole, |at| &whole[..=at]).trim()
@@ -119,7 +122,7 @@ mod tests {
             ("QUESTION: what is that?\nANSWER: a bed", "what is that?"),
             ("- Is there a door?", "Is there a door?"),
         ] {
-            assert_eq!(question(reply).as_deref(), Some(wanted), "{reply}");
+            assert_eq!(extract_question(reply).as_deref(), Some(wanted), "{reply}");
         }
     }
 
@@ -127,7 +130,7 @@ mod tests {
     fn chatter_silence_and_endless_questions_are_no_question() {
         let long = format!("Is there a {}?", "very ".repeat(80));
         for reply in ["", "   ", "?", "I have no more questions.", "Thank you!", "🤖", long.as_str()] {
-            assert_eq!(question(reply), None, "{reply}");
+            assert_eq!(extract_question(reply), None, "{reply}");
         }
     }
 
@@ -149,22 +152,22 @@ mod tests {
             ("It is red. A: it is red", "It is red."),
             ("", ""),
         ] {
-            assert_eq!(answer(reply, asked), wanted, "{reply}");
+            assert_eq!(extract_answer(reply, asked), wanted, "{reply}");
         }
     }
 
     #[test]
     fn a_long_answer_ends_with_a_sentence() {
         let long = "There is a chair and a long table. ".repeat(100);
-        let kept = answer(&long, "?");
+        let kept = extract_answer(&long, "?");
         assert!(kept.len() <= ANSWER_CHARS && kept.ends_with("table."), "{kept}");
     }
 
     proptest! {
         #[test]
         fn any_reply_is_bounded(reply in "(\\PC|[\n:?Qq. ]){0,400}", asked in "\\PC{0,40}") {
-            prop_assert!(answer(&reply.repeat(8), &asked).chars().count() <= ANSWER_CHARS);
-            prop_assert!(question(&reply).is_none_or(|question| question.chars().count() <= QUESTION_CHARS));
+            prop_assert!(extract_answer(&reply.repeat(8), &asked).chars().count() <= ANSWER_CHARS);
+            prop_assert!(extract_question(&reply).is_none_or(|question| question.chars().count() <= QUESTION_CHARS));
         }
     }
 }

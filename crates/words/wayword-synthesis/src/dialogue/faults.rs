@@ -1,11 +1,11 @@
 //! Checks a caption against the sightings of its dialogue, to keep hallucinated objects out.
 
-use super::answers::{Mention, denies, mentions};
+use super::answers::{AnswerMention, denial_covers, find_mentions};
 use std::{collections::BTreeSet, fmt};
-use wayword_core::{Sighting, Witness};
+use wayword_core::{ObjectSighting, WitnessAnswer};
 use wayword_language::{
-    lexicon::{Class, agree, normal, thing},
-    text::words,
+    lexicon::{ThingClass, find_thing, names_agree, normalise_name},
+    text::split_words,
 };
 
 /// A statement of a caption that its dialogue does not support. Its text is a reason that a model understands.
@@ -44,13 +44,13 @@ impl fmt::Display for CaptionFault {
 /// Objects are words that the lexicon or a sighting names. Walls, floors, ceilings and rooms are not checked. A name
 /// that can also mean a room counts as one if the text begins with it ("A staircase with a window").
 #[must_use]
-pub fn caption_faults(text: &str, sightings: &[Sighting]) -> Vec<CaptionFault> {
-    let known: BTreeSet<String> = sightings.iter().map(|sighting| normal(&sighting.name)).collect();
-    let mentions = mentions(text, &known);
+pub fn caption_faults(text: &str, sightings: &[ObjectSighting]) -> Vec<CaptionFault> {
+    let known: BTreeSet<String> = sightings.iter().map(|sighting| normalise_name(&sighting.name)).collect();
+    let mentions = find_mentions(text, &known);
     let mut found: Vec<CaptionFault> = Vec::new();
     for (at, mention) in mentions.iter().enumerate().filter(|(_, mention)| mention.is_thing) {
         let is_the_room = at == 0 && mention.is_room && begins_with_room(text, &mention.name);
-        let fault = fault(mention, sightings).filter(|fault| !is_the_room && !found.contains(fault));
+        let fault = mention_fault(mention, sightings).filter(|fault| !is_the_room && !found.contains(fault));
         found.extend(fault);
     }
     found
@@ -58,27 +58,27 @@ pub fn caption_faults(text: &str, sightings: &[Sighting]) -> Vec<CaptionFault> {
 
 /// Whether a text consists of just a name, or begins with the name and "with".
 fn begins_with_room(text: &str, name: &str) -> bool {
-    let text = words(text);
-    let name = words(name);
+    let text = split_words(text);
+    let name = split_words(name);
     let after_article = text.iter().position(|word| !matches!(word.as_str(), "a" | "an" | "the" | "some")).unwrap_or(0);
     let rest = &text[after_article..];
     rest.starts_with(&name) && rest.get(name.len()).is_none_or(|next| next == "with")
 }
 
-fn fault(mention: &Mention, sightings: &[Sighting]) -> Option<CaptionFault> {
+fn mention_fault(mention: &AnswerMention, sightings: &[ObjectSighting]) -> Option<CaptionFault> {
     let name = mention.name.clone();
-    let is_known = sightings.iter().any(|sighting| holds(&sighting.name, &name));
-    let class = thing(&name).map(|thing| thing.class);
-    if class == Some(Class::Fabric) || (class.is_none() && !is_known) {
+    let is_known = sightings.iter().any(|sighting| contains_name(&sighting.name, &name));
+    let class = find_thing(&name).map(|thing| thing.class);
+    if class == Some(ThingClass::Fabric) || (class.is_none() && !is_known) {
         return None;
     }
-    let denied = sightings.iter().any(|sighting| denies(sighting, &name, mention.colour.as_deref()));
+    let denied = sightings.iter().any(|sighting| denial_covers(sighting, &name, mention.colour.as_deref()));
     let with = |witness| sightings.iter().any(|sighting| sighting.witness == witness && speaks_of(sighting, &name));
-    if mention.witness == Witness::Denied || (denied && !seen_by_name(sightings, &name)) {
+    if mention.witness == WitnessAnswer::Denied || (denied && !seen_by_name(sightings, &name)) {
         Some(CaptionFault::Denied { name })
-    } else if with(Witness::Seen) {
+    } else if with(WitnessAnswer::Seen) {
         None
-    } else if with(Witness::Unsure) {
+    } else if with(WitnessAnswer::Unsure) {
         Some(CaptionFault::Unsure { name })
     } else {
         Some(CaptionFault::Invented { name })
@@ -86,36 +86,38 @@ fn fault(mention: &Mention, sightings: &[Sighting]) -> Option<CaptionFault> {
 }
 
 /// Whether a thing of exactly this name was seen: a lamp may be denied on the left and seen on the right.
-fn seen_by_name(sightings: &[Sighting], name: &str) -> bool {
-    sightings.iter().any(|sighting| sighting.witness == Witness::Seen && normal(&sighting.name) == normal(name))
+fn seen_by_name(sightings: &[ObjectSighting], name: &str) -> bool {
+    sightings.iter().any(|sighting| {
+        sighting.witness == WitnessAnswer::Seen && normalise_name(&sighting.name) == normalise_name(name)
+    })
 }
 
-fn speaks_of(sighting: &Sighting, name: &str) -> bool {
-    agree(&sighting.name, name) || holds(&sighting.name, name)
+fn speaks_of(sighting: &ObjectSighting, name: &str) -> bool {
+    names_agree(&sighting.name, name) || contains_name(&sighting.name, name)
 }
 
 /// Whether a name contains another as whole words: "cup and plate" contains "cup".
-fn holds(name: &str, part: &str) -> bool {
-    format!(" {} ", normal(name)).contains(&format!(" {} ", normal(part)))
+fn contains_name(name: &str, part: &str) -> bool {
+    format!(" {} ", normalise_name(name)).contains(&format!(" {} ", normalise_name(part)))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dialogue::{OPENING, sightings};
-    use wayword_core::Exchange;
+    use crate::dialogue::{OPENING_REQUEST, dialogue_sightings};
+    use wayword_core::DialogueExchange;
 
     fn faults(text: &str) -> Vec<String> {
         let transcript = [
-            Exchange::new(
-                OPENING,
+            DialogueExchange::new(
+                OPENING_REQUEST,
                 "The picture shows a bedroom with a bed, a couch, a red chair and a mirror. There might be a piano.",
             ),
-            Exchange::new("Is there really a mirror?", "No, there is no mirror."),
-            Exchange::new("Is there a lamp?", "No."),
-            Exchange::new("Is there a dining chair?", "No."),
+            DialogueExchange::new("Is there really a mirror?", "No, there is no mirror."),
+            DialogueExchange::new("Is there a lamp?", "No."),
+            DialogueExchange::new("Is there a dining chair?", "No."),
         ];
-        let told = sightings(&transcript, "test");
+        let told = dialogue_sightings(&transcript, "test");
         let short = |fault: CaptionFault| match fault {
             CaptionFault::Denied { name } => format!("denied {name}"),
             CaptionFault::Unsure { name } => format!("unsure {name}"),

@@ -1,44 +1,47 @@
 //! Decides whether an exchange brings new information; a dialogue without news is ended early.
 
-use super::answers::{Asked, asked, room, sightings};
+use super::answers::{QuestionSubject, dialogue_room, dialogue_sightings, read_question};
 use std::collections::BTreeSet;
-use wayword_core::{Exchange, Witness};
+use wayword_core::{DialogueExchange, WitnessAnswer};
 use wayword_language::{
     answers::EMPTY,
-    lexicon::{agree, normal_word},
-    text::words,
+    lexicon::{names_agree, normal_word},
+    text::split_words,
 };
 
 /// Whether the last exchange of a transcript changes the sightings or the room, settles a doubt, or has a word that
 /// neither its question nor any earlier exchange contains.
-pub(super) fn is_new(transcript: &[Exchange]) -> bool {
+pub(super) fn is_new(transcript: &[DialogueExchange]) -> bool {
     let Some((last, before)) = transcript.split_last() else { return false };
     if last.answer.is_empty() {
         return false;
     }
     let texts = before.iter().flat_map(|exchange| [&exchange.question, &exchange.answer]).chain([&last.question]);
-    let known: BTreeSet<String> = texts.flat_map(|text| words(text)).map(|word| normal_word(&word)).collect();
+    let known: BTreeSet<String> = texts.flat_map(|text| split_words(text)).map(|word| normal_word(&word)).collect();
     let says_more = || {
-        words(&last.answer).iter().any(|word| !EMPTY.contains(&word.as_str()) && !known.contains(&normal_word(word)))
+        split_words(&last.answer)
+            .iter()
+            .any(|word| !EMPTY.contains(&word.as_str()) && !known.contains(&normal_word(word)))
     };
     says_more()
-        || sightings(transcript, "") != sightings(before, "")
-        || room(transcript) != room(before)
+        || dialogue_sightings(transcript, "") != dialogue_sightings(before, "")
+        || dialogue_room(transcript) != dialogue_room(before)
         || settles_a_doubt(last, before)
 }
 
 /// Whether the exchange is the first to ask directly for a thing, and is answered. A confirmed object is worth knowing
 /// even if no sighting changes.
-fn settles_a_doubt(last: &Exchange, before: &[Exchange]) -> bool {
-    let doubted = |exchange: &Exchange| match asked(&exchange.question) {
-        Asked::Presence { wanted, .. } => wanted.into_iter().map(|wanted| wanted.name).collect(),
+fn settles_a_doubt(last: &DialogueExchange, before: &[DialogueExchange]) -> bool {
+    let doubted = |exchange: &DialogueExchange| match read_question(&exchange.question) {
+        QuestionSubject::Presence { wanted, .. } => wanted.into_iter().map(|wanted| wanted.name).collect(),
         _ => Vec::new(),
     };
     let earlier: Vec<String> = before.iter().flat_map(doubted).collect();
-    let told = sightings(std::slice::from_ref(last), "");
-    let answered =
-        |name: &String| told.iter().any(|sighting| sighting.witness != Witness::Unsure && agree(&sighting.name, name));
-    doubted(last).iter().any(|name| answered(name) && !earlier.iter().any(|other| agree(other, name)))
+    let told = dialogue_sightings(std::slice::from_ref(last), "");
+    let answered = |name: &String| {
+        told.iter().any(|sighting| sighting.witness != WitnessAnswer::Unsure && names_agree(&sighting.name, name))
+    };
+    doubted(last).iter().any(|name| answered(name) && !earlier.iter().any(|other| names_agree(other, name)))
 }
 
 #[cfg(test)]
@@ -46,7 +49,7 @@ mod tests {
     use super::*;
 
     fn last_is_new(answers: &[(&str, &str)]) -> bool {
-        is_new(&answers.iter().map(|(question, answer)| Exchange::new(*question, *answer)).collect::<Vec<_>>())
+        is_new(&answers.iter().map(|(question, answer)| DialogueExchange::new(*question, *answer)).collect::<Vec<_>>())
     }
 
     #[test]

@@ -1,14 +1,14 @@
 //! The summariser that works by rules: it lists the sightings of a dialogue in one sentence.
 
 use super::{
-    Condensed, Summariser,
-    answers::{denies, room, sightings},
+    CaptionSummariser, CondensedCaption,
+    answers::{denial_covers, dialogue_room, dialogue_sightings},
     faults::caption_faults,
 };
-use wayword_core::{Caption, Exchange, ModelError, Sighting, Where, Witness};
+use wayword_core::{Caption, DialogueExchange, ModelError, ObjectSighting, ViewThird, WitnessAnswer};
 use wayword_language::{
-    lexicon::{counted, thing, with_article},
-    text::{capital, word_count},
+    lexicon::{counted_name, find_thing, with_article},
+    text::{capitalise_first, word_count},
 };
 
 /// Writes a caption of the things that answers affirmed, and leaves out denied and doubtful ones, so that
@@ -16,58 +16,63 @@ use wayword_language::{
 #[derive(Debug, Clone, Copy, Default)]
 pub struct RulesSummariser;
 
-impl Summariser for RulesSummariser {
+impl CaptionSummariser for RulesSummariser {
     fn name(&self) -> &str {
         "rules"
     }
 
-    fn sum_up(&self, transcript: &[Exchange], answerer: &str) -> Result<Caption, ModelError> {
-        let told = sightings(transcript, answerer);
-        let room = room(transcript);
+    fn sum_up(&self, transcript: &[DialogueExchange], answerer: &str) -> Result<Caption, ModelError> {
+        let told = dialogue_sightings(transcript, answerer);
+        let room = dialogue_room(transcript);
         let text = caption_of(room.as_deref(), &told);
         Ok(Caption { text, room, sightings: told, transcript: transcript.to_vec(), ..Caption::default() })
     }
 
-    fn condense(&self, captions: &[(&str, &Caption)], fewer_words_than: usize) -> Result<Condensed, ModelError> {
+    fn condense(&self, captions: &[(&str, &Caption)], fewer_words_than: usize) -> Result<CondensedCaption, ModelError> {
         let captions: Vec<&Caption> = captions.iter().map(|(_, caption)| *caption).collect();
-        Ok(Condensed { text: condense(&captions, fewer_words_than), by: None })
+        Ok(CondensedCaption { text: condense_captions(&captions, fewer_words_than), by: None })
     }
 }
 
 /// The caption of the seen things. Names may be any words, and two adjacent names may read as a third. So names that
 /// would cause a fault are left out, and as a last resort the room too.
-pub(crate) fn caption_of(room: Option<&str>, told: &[Sighting]) -> String {
-    let is_denied = |seen: &Sighting| told.iter().any(|other| denies(other, &seen.name, seen.colour.as_deref()));
-    let mut seen: Vec<&Sighting> =
-        told.iter().filter(|sighting| sighting.witness == Witness::Seen && !is_denied(sighting)).collect();
-    let text = caption(room, &seen);
+pub(crate) fn caption_of(room: Option<&str>, told: &[ObjectSighting]) -> String {
+    let is_denied =
+        |seen: &ObjectSighting| told.iter().any(|other| denial_covers(other, &seen.name, seen.colour.as_deref()));
+    let mut seen: Vec<&ObjectSighting> =
+        told.iter().filter(|sighting| sighting.witness == WitnessAnswer::Seen && !is_denied(sighting)).collect();
+    let text = compose_caption(room, &seen);
     if caption_faults(&text, told).is_empty() {
         return text;
     }
-    seen.retain(|sighting| caption_faults(&caption(None, &[sighting]), told).is_empty());
-    let texts = [caption(room, &seen), caption(None, &seen)];
+    seen.retain(|sighting| caption_faults(&compose_caption(None, &[sighting]), told).is_empty());
+    let texts = [compose_caption(room, &seen), compose_caption(None, &seen)];
     let good = texts.into_iter().find(|text| caption_faults(text, told).is_empty());
-    good.unwrap_or_else(|| caption(None, &[]))
+    good.unwrap_or_else(|| compose_caption(None, &[]))
 }
 
-fn caption(room: Option<&str>, seen: &[&Sighting]) -> String {
-    let place = |place: Where| match place {
-        Where::Left => " on the left",
-        Where::Middle => " in the middle",
-        Where::Right => " on the right",
+fn compose_caption(room: Option<&str>, seen: &[&ObjectSighting]) -> String {
+    let place = |place: ViewThird| match place {
+        ViewThird::Left => " on the left",
+        ViewThird::Middle => " in the middle",
+        ViewThird::Right => " on the right",
     };
-    let item = |sighting: &&Sighting| {
+    let item = |sighting: &&ObjectSighting| {
         let name = [sighting.colour.as_deref(), sighting.material.as_deref(), Some(sighting.name.as_str())];
         let name = name.into_iter().flatten().collect::<Vec<_>>().join(" ");
-        let name = if sighting.several { counted(7, &name) } else { with_article(&name) };
+        let name = if sighting.several { counted_name(7, &name) } else { with_article(&name) };
         format!("{name}{}", sighting.place.map_or("", place))
     };
     let items: Vec<String> = seen.iter().map(item).collect();
     let room = room.map_or("a place".to_owned(), with_article);
-    capital(&if items.is_empty() { format!("{room}.") } else { format!("{room} with {}.", enumerate(&items)) })
+    capitalise_first(&if items.is_empty() {
+        format!("{room}.")
+    } else {
+        format!("{room} with {}.", join_with_and(&items))
+    })
 }
 
-fn enumerate(items: &[String]) -> String {
+fn join_with_and(items: &[String]) -> String {
     match items {
         [] => String::new(),
         [only] => only.clone(),
@@ -77,21 +82,23 @@ fn enumerate(items: &[String]) -> String {
 
 /// Several captions of one place as one description of under `fewer_words_than` words: the room, then the most salient
 /// things (arXiv 2403.11487 condenses four captions to under 20 words).
-fn condense(captions: &[&Caption], fewer_words_than: usize) -> String {
+fn condense_captions(captions: &[&Caption], fewer_words_than: usize) -> String {
     let room = captions.iter().find_map(|caption| caption.room.as_deref());
-    let seen =
-        captions.iter().flat_map(|caption| &caption.sightings).filter(|sighting| sighting.witness == Witness::Seen);
+    let seen = captions
+        .iter()
+        .flat_map(|caption| &caption.sightings)
+        .filter(|sighting| sighting.witness == WitnessAnswer::Seen);
     let mut names: Vec<&str> = Vec::new();
     for sighting in seen {
         if !names.contains(&sighting.name.as_str()) {
             names.push(&sighting.name);
         }
     }
-    names.sort_by_key(|name| std::cmp::Reverse(thing(name).map_or(0, |thing| thing.salience)));
+    names.sort_by_key(|name| std::cmp::Reverse(find_thing(name).map_or(0, |thing| thing.salience)));
     let text = |count: usize| {
         let items: Vec<String> = names[..count].iter().map(|name| with_article(name)).collect();
         let room = room.map_or("a place".to_owned(), with_article);
-        if items.is_empty() { room } else { format!("{room} with {}", enumerate(&items)) }
+        if items.is_empty() { room } else { format!("{room} with {}", join_with_and(&items)) }
     };
     let fits = |count: &usize| word_count(&text(*count)) < fewer_words_than;
     (0..=names.len()).rev().find(fits).map_or_else(String::new, text)
@@ -102,36 +109,37 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn exchange(question: &str, answer: &str) -> Exchange {
-        Exchange::new(question, answer)
+    fn exchange(question: &str, answer: &str) -> DialogueExchange {
+        DialogueExchange::new(question, answer)
     }
 
     #[test]
     fn a_denied_thing_is_a_sighting_but_not_in_the_caption() {
         let transcript = [
-            exchange(super::super::OPENING, "There is a bed in the middle and a mirror on the left."),
+            exchange(super::super::OPENING_REQUEST, "There is a bed in the middle and a mirror on the left."),
             exchange("Which room is this?", "It is a bedroom."),
             exchange("Is there a mirror?", "No, there is no mirror."),
         ];
         let caption = RulesSummariser.sum_up(&transcript, "test").unwrap();
         assert_eq!(caption.text, "A bedroom with a bed in the middle.");
-        assert!(caption.sightings.iter().any(|s| s.name == "mirror" && s.witness == Witness::Denied));
+        assert!(caption.sightings.iter().any(|s| s.name == "mirror" && s.witness == WitnessAnswer::Denied));
     }
 
     #[test]
     fn four_captions_are_condensed_to_under_twenty_words() {
         let list = "There is a bed in the middle, a side table on the left, a floor lamp on the left, a picture on the right, \
                     a window on the right, a rug in the middle and a chair on the right.";
-        let transcript = [exchange(super::super::OPENING, list), exchange("Which room is this?", "It is a bedroom.")];
+        let transcript =
+            [exchange(super::super::OPENING_REQUEST, list), exchange("Which room is this?", "It is a bedroom.")];
         let caption = RulesSummariser.sum_up(&transcript, "test").unwrap();
-        let short = condense(&[&caption, &caption], 20);
+        let short = condense_captions(&[&caption, &caption], 20);
         assert!(word_count(&short) < 20, "{short}");
         assert!(short.starts_with("a bedroom with a bed"), "{short}");
     }
 
     #[test]
     fn a_denial_of_a_kind_covers_its_members_but_not_the_reverse() {
-        let opening = exchange(super::super::OPENING, "There are two dining chairs, a table and a red sofa.");
+        let opening = exchange(super::super::OPENING_REQUEST, "There are two dining chairs, a table and a red sofa.");
         let text = |question: &str, answer: &str| {
             RulesSummariser.sum_up(&[opening.clone(), exchange(question, answer)], "test").unwrap().text
         };
@@ -217,7 +225,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(400))]
         #[test]
         fn no_transcript_gives_a_caption_with_faults(exchanges in prop::collection::vec((question(), phrase()), 1..7)) {
-            let transcript: Vec<Exchange> = exchanges.iter().map(|(question, answer)| exchange(question, answer)).collect();
+            let transcript: Vec<DialogueExchange> = exchanges.iter().map(|(question, answer)| exchange(question, answer)).collect();
             let caption = RulesSummariser.sum_up(&transcript, "test").unwrap();
             prop_assert_eq!(caption_faults(&caption.text, &caption.sightings), vec![], "{}", caption.text);
         }
@@ -226,7 +234,7 @@ mod tests {
         fn any_words_can_be_summed_up(
             exchanges in prop::collection::vec(("(\\PC|[\n?.,]){0,40}", "(\\PC|[\n?.,]){0,120}"), 0..4),
         ) {
-            let transcript: Vec<Exchange> = exchanges.iter().map(|(question, answer)| exchange(question, answer)).collect();
+            let transcript: Vec<DialogueExchange> = exchanges.iter().map(|(question, answer)| exchange(question, answer)).collect();
             let caption = RulesSummariser.sum_up(&transcript, "test").unwrap();
             prop_assert_eq!(caption_faults(&caption.text, &caption.sightings), vec![], "{}", caption.text);
         }

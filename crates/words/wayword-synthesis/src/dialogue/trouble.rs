@@ -1,9 +1,9 @@
 //! Recognises unusable answers (empty, refusal, echo, loop, repeat), and words the question anew.
 
-use wayword_core::{Exchange, Trouble};
+use wayword_core::{AnswerTrouble, DialogueExchange};
 use wayword_language::{
     chatter::{BARE_REFUSAL, REFUSING, UNHELPING},
-    text::words,
+    text::split_words,
 };
 
 /// Longest phrase, in words, of an answer that repeats itself.
@@ -17,24 +17,24 @@ const REPEAT_WORDS: usize = 6;
 const REFUSAL_WORDS: usize = 40;
 
 /// The reason why an answer is unusable; `None` if it is usable.
-pub(super) fn trouble(question: &str, answer: &str, before: &[Exchange]) -> Option<Trouble> {
-    let said = words(&answer.replace('’', "'"));
+pub(super) fn answer_trouble(question: &str, answer: &str, before: &[DialogueExchange]) -> Option<AnswerTrouble> {
+    let said = split_words(&answer.replace('’', "'"));
     if said.is_empty() {
-        Some(Trouble::Empty)
+        Some(AnswerTrouble::Empty)
     } else if is_refusal(&said) {
-        Some(Trouble::Refusal)
-    } else if is_echo(&words(question), &said) {
-        Some(Trouble::Echo)
+        Some(AnswerTrouble::Refusal)
+    } else if is_echo(&split_words(question), &said) {
+        Some(AnswerTrouble::Echo)
     } else if is_loop(&said) {
-        Some(Trouble::Loop)
+        Some(AnswerTrouble::Loop)
     } else {
-        is_repeat(question, &said, before).then_some(Trouble::Repeat)
+        is_repeat(question, &said, before).then_some(AnswerTrouble::Repeat)
     }
 }
 
 /// Whether a model refuses to look at the picture. "Sorry, I can't see a bed" is an answer and no refusal.
-pub(crate) fn refuses(answer: &str) -> bool {
-    is_refusal(&words(&answer.replace('’', "'")))
+pub(crate) fn refuses_to_look(answer: &str) -> bool {
+    is_refusal(&split_words(&answer.replace('’', "'")))
 }
 
 fn is_refusal(said: &[String]) -> bool {
@@ -51,8 +51,8 @@ fn is_at(said: &[String], at: usize, phrase: &[&str]) -> bool {
 }
 
 /// The question in other words, for a second try.
-pub(crate) fn rephrased(question: &str) -> String {
-    if question == super::OPENING {
+pub(crate) fn rephrase_question(question: &str) -> String {
+    if question == super::OPENING_REQUEST {
         return "Look at the picture again and say in one sentence which room and which objects it shows.".to_owned();
     }
     format!("Look again and answer in one short sentence: {question}")
@@ -83,11 +83,13 @@ fn is_loop(said: &[String]) -> bool {
 }
 
 /// Whether the answer is long enough, and word for word the answer to an earlier and different question.
-fn is_repeat(question: &str, said: &[String], before: &[Exchange]) -> bool {
+fn is_repeat(question: &str, said: &[String], before: &[DialogueExchange]) -> bool {
     let is_unsure = said.len() <= 8 && said.windows(2).any(|pair| pair[0] == "not" && pair[1] == "sure");
     said.len() >= REPEAT_WORDS
         && !is_unsure
-        && before.iter().any(|exchange| words(&exchange.question) != words(question) && words(&exchange.answer) == said)
+        && before.iter().any(|exchange| {
+            split_words(&exchange.question) != split_words(question) && split_words(&exchange.answer) == said
+        })
 }
 
 #[cfg(test)]
@@ -99,28 +101,28 @@ mod tests {
 
     #[test]
     fn answers_that_cannot_be_used_are_recognised() {
-        let before = [Exchange::new("What is on the left?", "There is a tall lamp on the left.")];
-        let of = |answer: &str| trouble(ASKED, answer, &before);
+        let before = [DialogueExchange::new("What is on the left?", "There is a tall lamp on the left.")];
+        let of = |answer: &str| answer_trouble(ASKED, answer, &before);
         for (answer, wanted) in [
-            ("", Some(Trouble::Empty)),
-            (" ... ", Some(Trouble::Empty)),
-            ("what colour is the sofa in the room", Some(Trouble::Echo)),
-            ("What colour is the sofa in the room? What colour is the sofa in the room?", Some(Trouble::Echo)),
+            ("", Some(AnswerTrouble::Empty)),
+            (" ... ", Some(AnswerTrouble::Empty)),
+            ("what colour is the sofa in the room", Some(AnswerTrouble::Echo)),
+            ("What colour is the sofa in the room? What colour is the sofa in the room?", Some(AnswerTrouble::Echo)),
             ("the sofa in the room colour is the sofa", None),
-            ("is the sofa in the room", Some(Trouble::Echo)),
+            ("is the sofa in the room", Some(AnswerTrouble::Echo)),
             ("the sofa", None),
-            ("a chair a chair a chair a chair", Some(Trouble::Loop)),
-            ("There is a bed, and a lamp, and a lamp, and a lamp, and a lamp, and a lamp", Some(Trouble::Loop)),
-            ("red red red", Some(Trouble::Loop)),
+            ("a chair a chair a chair a chair", Some(AnswerTrouble::Loop)),
+            ("There is a bed, and a lamp, and a lamp, and a lamp, and a lamp, and a lamp", Some(AnswerTrouble::Loop)),
+            ("red red red", Some(AnswerTrouble::Loop)),
             ("The sofa is very very red.", None),
             ("a chair, a table, a lamp and a rug", None),
-            ("there is a tall lamp on the left", Some(Trouble::Repeat)),
+            ("there is a tall lamp on the left", Some(AnswerTrouble::Repeat)),
             ("It is red.", None),
-            ("I'm sorry, but I can't help with that.", Some(Trouble::Refusal)),
-            ("I’m sorry, I cannot assist with identifying what this shows.", Some(Trouble::Refusal)),
-            ("As an AI, I do not have the ability to view images.", Some(Trouble::Refusal)),
-            ("I'm sorry.", Some(Trouble::Refusal)),
-            ("I'm sorry, but I can't.", Some(Trouble::Refusal)),
+            ("I'm sorry, but I can't help with that.", Some(AnswerTrouble::Refusal)),
+            ("I’m sorry, I cannot assist with identifying what this shows.", Some(AnswerTrouble::Refusal)),
+            ("As an AI, I do not have the ability to view images.", Some(AnswerTrouble::Refusal)),
+            ("I'm sorry.", Some(AnswerTrouble::Refusal)),
+            ("I'm sorry, but I can't.", Some(AnswerTrouble::Refusal)),
             ("Sorry, I can't see a sofa anywhere in this room.", None),
             ("I am not able to tell the colour of the sofa from here.", None),
             ("I don't have a clear look at the sofa, but it seems red.", None),
@@ -136,24 +138,24 @@ mod tests {
     #[test]
     fn short_answers_may_come_again() {
         let before = [
-            Exchange::new("Is there a bed?", "Yes, in the middle."),
-            Exchange::new("Is there a rug?", "I am not sure about that, sorry."),
+            DialogueExchange::new("Is there a bed?", "Yes, in the middle."),
+            DialogueExchange::new("Is there a rug?", "I am not sure about that, sorry."),
         ];
-        assert_eq!(trouble(ASKED, "Yes, in the middle.", &before), None);
-        assert_eq!(trouble(ASKED, "I am not sure about that, sorry.", &before), None);
+        assert_eq!(answer_trouble(ASKED, "Yes, in the middle.", &before), None);
+        assert_eq!(answer_trouble(ASKED, "I am not sure about that, sorry.", &before), None);
     }
 
     proptest! {
         #[test]
         fn any_answer_is_judged(question in "\\PC{0,60}", answer in "(\\PC| ){0,200}") {
             let empty = !answer.chars().any(char::is_alphanumeric);
-            prop_assert_eq!(trouble(&question, &answer, &[]) == Some(Trouble::Empty), empty);
+            prop_assert_eq!(answer_trouble(&question, &answer, &[]) == Some(AnswerTrouble::Empty), empty);
         }
 
         #[test]
         fn a_phrase_repeated_three_times_is_a_loop(phrase in "[a-z]{1,5}( [a-z]{1,5}){0,7}", times in 3_usize..9) {
             let said = vec![phrase; times].join(", ");
-            prop_assert_eq!(trouble("Which one?", &said, &[]), Some(Trouble::Loop));
+            prop_assert_eq!(answer_trouble("Which one?", &said, &[]), Some(AnswerTrouble::Loop));
         }
     }
 }

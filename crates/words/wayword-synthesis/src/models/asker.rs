@@ -1,9 +1,9 @@
 //! A language model that chooses the questions.
 
-use super::{PERCEPTION_SEED, say};
-use crate::{dialogue::Asker, prompts::Prompts};
+use super::{PERCEPTION_SEED, send_message};
+use crate::{dialogue::QuestionAsker, prompts::Prompts};
 use std::sync::Arc;
-use wayword_core::{Exchange, LanguageModel, Message, ModelError, Sampling};
+use wayword_core::{ChatMessage, DialogueExchange, LanguageModel, ModelError, SamplingOptions};
 
 /// Lets a language model choose the questions. The dialogue extracts the question from its reply.
 #[derive(Clone)]
@@ -14,7 +14,7 @@ pub struct ModelAsker {
 
 /// As in ChatCaptioner, temperature 0.6, so that questions differ from frame to frame. ChatCaptioner's 30 tokens cut
 /// long questions off; 60 do not.
-const SAMPLING: Sampling = Sampling { temperature: 0.6, max_tokens: 60, seed: PERCEPTION_SEED };
+const QUESTION_SAMPLING: SamplingOptions = SamplingOptions { temperature: 0.6, max_tokens: 60, seed: PERCEPTION_SEED };
 
 impl ModelAsker {
     /// An asker behind a model.
@@ -24,14 +24,14 @@ impl ModelAsker {
     }
 }
 
-impl Asker for ModelAsker {
+impl QuestionAsker for ModelAsker {
     fn name(&self) -> &str {
         self.model.name()
     }
 
-    fn next_question(&self, transcript: &[Exchange]) -> Result<Option<String>, ModelError> {
-        let prompt = self.prompts.question(transcript)?;
-        let reply = say(self.model.as_ref(), Message::user(prompt), SAMPLING)?;
+    fn next_question(&self, transcript: &[DialogueExchange]) -> Result<Option<String>, ModelError> {
+        let prompt = self.prompts.question_prompt(transcript)?;
+        let reply = send_message(self.model.as_ref(), ChatMessage::from_user(prompt), QUESTION_SAMPLING)?;
         Ok(Some(reply.text))
     }
 }

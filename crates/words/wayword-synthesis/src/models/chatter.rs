@@ -1,9 +1,9 @@
 //! Removes the chatter around a text that a model was asked for ("Sure! Here is ..."), and recognises refusals.
 
 use wayword_language::{
-    Phrases,
+    PhraseList,
     chatter::{AGREEING, ANNOUNCED, ANNOUNCING, PARTING, REFUSING},
-    text::words,
+    text::split_words,
 };
 
 /// Most words of a sentence that announces a text.
@@ -14,27 +14,27 @@ const LOOKED_AT: usize = 300;
 /// The text without code fences, announcing sentences before it, and remarks after it.
 pub(super) fn without_chatter(text: &str) -> &str {
     let text = without_fence(text);
-    let sentences = sentences(text);
-    let before = sentences.iter().take_while(|sentence| announces(sentence)).count();
+    let sentences = split_sentences(text);
+    let before = sentences.iter().take_while(|sentence| announces_text(sentence)).count();
     // A reply of chatter alone stays as it is: the caller recognises that it is unusable.
     let Some(first) = sentences.get(before) else { return text };
-    let behind = sentences.iter().skip(before + 1).find(|sentence| parts(sentence));
-    let start = offset(text, first);
-    let end = behind.map_or(text.len(), |sentence| offset(text, sentence));
+    let behind = sentences.iter().skip(before + 1).find(|sentence| is_parting_remark(sentence));
+    let start = offset_of_part(text, first);
+    let end = behind.map_or(text.len(), |sentence| offset_of_part(text, sentence));
     text[start..end].trim().trim_end_matches("---").trim()
 }
 
 /// Whether a reply is a refusal.
-pub(super) fn refuses(text: &str) -> bool {
-    let said = spoken(text.trim_start_matches(['"', '“', '*']));
-    begins(&said, &REFUSING)
+pub(super) fn is_refusal(text: &str) -> bool {
+    let said = sentence_words(text.trim_start_matches(['"', '“', '*']));
+    begins_with_phrase(&said, &REFUSING)
 }
 
 /// The content of the first code fence, without the name of its language.
 fn without_fence(text: &str) -> &str {
-    const FENCE: &str = "```";
-    let Some((_, inside)) = text.split_once(FENCE) else { return text };
-    let inside = inside.split(FENCE).next().unwrap_or(inside);
+    const CODE_FENCE: &str = "```";
+    let Some((_, inside)) = text.split_once(CODE_FENCE) else { return text };
+    let inside = inside.split(CODE_FENCE).next().unwrap_or(inside);
     let body = match inside.split_once('\n') {
         Some((tag, body)) if !tag.trim().contains(' ') => body,
         _ => inside,
@@ -43,7 +43,7 @@ fn without_fence(text: &str) -> &str {
 }
 
 /// The sentences of a text: each ends at its mark, at a colon, or at the end of its line.
-fn sentences(text: &str) -> Vec<&str> {
+fn split_sentences(text: &str) -> Vec<&str> {
     let mut sentences = Vec::new();
     for line in text.lines() {
         let mut start = 0;
@@ -63,32 +63,32 @@ fn sentences(text: &str) -> Vec<&str> {
 }
 
 /// Where a part of a text begins in it.
-fn offset(text: &str, part: &str) -> usize {
+fn offset_of_part(text: &str, part: &str) -> usize {
     part.as_ptr() as usize - text.as_ptr() as usize
 }
 
 /// Whether a sentence only announces a text.
-fn announces(sentence: &str) -> bool {
-    let said = spoken(sentence);
-    let said: &[String] = match agreeing(&said) {
+fn announces_text(sentence: &str) -> bool {
+    let said = sentence_words(sentence);
+    let said: &[String] = match count_agreeing_words(&said) {
         0 => &said,
         all if all == said.len() => return true,
         some => &said[some..],
     };
     let names_text = said.iter().any(|word| ANNOUNCED.contains(&word.as_str()));
     let leads = sentence.trim_end_matches('*').ends_with(':');
-    names_text && said.len() <= ANNOUNCING_WORDS && (leads || begins(said, &ANNOUNCING))
+    names_text && said.len() <= ANNOUNCING_WORDS && (leads || begins_with_phrase(said, &ANNOUNCING))
 }
 
 /// Whether a sentence after a text does not belong to it: a remark, or a count of its words.
-fn parts(sentence: &str) -> bool {
-    let said = spoken(sentence);
+fn is_parting_remark(sentence: &str) -> bool {
+    let said = sentence_words(sentence);
     let counts = sentence.starts_with('(') && said.iter().any(|word| word == "words" || word == "note");
-    counts || begins(&said, &PARTING)
+    counts || begins_with_phrase(&said, &PARTING)
 }
 
 /// Number of words at the beginning that only express agreement ("Sure", "Of course").
-fn agreeing(said: &[String]) -> usize {
+fn count_agreeing_words(said: &[String]) -> usize {
     let longest = |from: usize| {
         let fits = AGREEING.iter().filter(|phrase| said[from..].iter().take(phrase.len()).eq(phrase.iter()));
         fits.map(Vec::len).max().unwrap_or(0)
@@ -97,12 +97,12 @@ fn agreeing(said: &[String]) -> usize {
     first + if first < said.len() && first > 0 { longest(first) } else { 0 }
 }
 
-fn begins(said: &[String], phrases: &Phrases) -> bool {
+fn begins_with_phrase(said: &[String], phrases: &PhraseList) -> bool {
     phrases.iter().any(|phrase| said.len() >= phrase.len() && said.iter().zip(phrase.iter()).all(|(a, b)| a == b))
 }
 
-fn spoken(sentence: &str) -> Vec<String> {
-    words(&sentence[..sentence.floor_char_boundary(LOOKED_AT)].replace('’', "'"))
+fn sentence_words(sentence: &str) -> Vec<String> {
+    split_words(&sentence[..sentence.floor_char_boundary(LOOKED_AT)].replace('’', "'"))
 }
 
 #[cfg(test)]
@@ -141,10 +141,10 @@ mod tests {
         for refusal in
             ["I'm sorry, but I can't help with that.", "I’m sorry, I cannot.", "As an AI, I do not see.", "Sorry!"]
         {
-            assert!(refuses(refusal), "{refusal}");
+            assert!(is_refusal(refusal), "{refusal}");
         }
         for text in ["Go past the sorry-looking plant.", "Into the hall. I can't stress it enough.", "Stop."] {
-            assert!(!refuses(text), "{text}");
+            assert!(!is_refusal(text), "{text}");
         }
     }
 
@@ -152,7 +152,7 @@ mod tests {
         #[test]
         fn any_reply_is_taken(reply in "(\\PC|[\n`:.! ]|Sure|Note){0,300}") {
             prop_assert!(reply.contains(without_chatter(&reply)));
-            let _ = refuses(&reply);
+            let _ = is_refusal(&reply);
         }
     }
 }

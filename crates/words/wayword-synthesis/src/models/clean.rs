@@ -1,13 +1,13 @@
 //! Takes the wanted text out of a model's reply: whole sentences only, without labels, quotes and emphasis.
 
 use super::chatter::without_chatter;
-use wayword_core::{Finish, Reply};
+use wayword_core::{FinishReason, ModelReply};
 
 /// The text of a reply. Of a reply that was cut off: up to the end of its last sentence, or all of it where no sentence
 /// ended.
-pub(super) fn whole_sentences(reply: &Reply) -> &str {
+pub(super) fn whole_sentences(reply: &ModelReply) -> &str {
     let text = reply.text.trim();
-    if reply.finish == Finish::Stop {
+    if reply.finish == FinishReason::Stop {
         return text;
     }
     // The dot of "2.5 metres" ends no sentence.
@@ -16,7 +16,7 @@ pub(super) fn whole_sentences(reply: &Reply) -> &str {
 }
 
 /// A text as one line, without the chatter, the label, the quotes and the marks of emphasis that models put around it.
-pub(super) fn plain(text: &str, labels: &[&str]) -> String {
+pub(super) fn plain_text(text: &str, labels: &[&str]) -> String {
     let text = text.replace("**", "");
     let joined = without_chatter(&text).split_whitespace().collect::<Vec<_>>().join(" ");
     let mut rest = joined.trim();
@@ -50,21 +50,21 @@ mod tests {
             ("instruction", "instruction"),
             ("", ""),
         ] {
-            assert_eq!(plain(told, &labels), wanted);
+            assert_eq!(plain_text(told, &labels), wanted);
         }
     }
 
     #[test]
     fn a_sentence_that_was_cut_off_is_left_out() {
         for (finish, told, wanted) in [
-            (Finish::Length, "A bed. A lamp and a", "A bed."),
-            (Finish::Length, "A lamp and a", "A lamp and a"),
-            (Finish::Length, "A bed. A rug 2.5 metres", "A bed."),
-            (Finish::Length, "He said \"go!\" and", "He said \"go!"),
-            (Finish::Stop, "A bed. A lamp and a rug", "A bed. A lamp and a rug"),
-            (Finish::Stop, " A rug 2.5 metres wide ", "A rug 2.5 metres wide"),
+            (FinishReason::Length, "A bed. A lamp and a", "A bed."),
+            (FinishReason::Length, "A lamp and a", "A lamp and a"),
+            (FinishReason::Length, "A bed. A rug 2.5 metres", "A bed."),
+            (FinishReason::Length, "He said \"go!\" and", "He said \"go!"),
+            (FinishReason::Stop, "A bed. A lamp and a rug", "A bed. A lamp and a rug"),
+            (FinishReason::Stop, " A rug 2.5 metres wide ", "A rug 2.5 metres wide"),
         ] {
-            assert_eq!(whole_sentences(&Reply { text: told.to_owned(), finish, usage: None }), wanted);
+            assert_eq!(whole_sentences(&ModelReply { text: told.to_owned(), finish, usage: None }), wanted);
         }
     }
 }

@@ -10,7 +10,7 @@ mod clean;
 mod summariser;
 mod writer;
 
-use wayword_core::{LanguageModel, Message, ModelError, Reply, Request, Sampling};
+use wayword_core::{ChatMessage, LanguageModel, ModelError, ModelReply, ModelRequest, SamplingOptions};
 
 pub use answerer::ModelAnswerer;
 pub use asker::ModelAsker;
@@ -21,13 +21,17 @@ pub use writer::ModelWriter;
 const PERCEPTION_SEED: u64 = 0;
 
 /// Sends one message to a model.
-fn say(model: &dyn LanguageModel, message: Message, sampling: Sampling) -> Result<Reply, ModelError> {
-    let request = Request { messages: vec![message], sampling, replicate: 0, schema: None, tools: &[] };
+fn send_message(
+    model: &dyn LanguageModel,
+    message: ChatMessage,
+    sampling: SamplingOptions,
+) -> Result<ModelReply, ModelError> {
+    let request = ModelRequest { messages: vec![message], sampling, replicate: 0, schema: None, tools: &[] };
     let nothing = || ModelError::Failed {
         model: model.name().to_owned(),
         reason: "it gave no result for the request".to_owned(),
     };
-    model.complete(&[request]).pop().unwrap_or_else(|| Err(nothing()))
+    model.complete_requests(&[request]).pop().unwrap_or_else(|| Err(nothing()))
 }
 
 #[cfg(test)]

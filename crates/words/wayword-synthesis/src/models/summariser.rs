@@ -2,19 +2,20 @@
 
 use super::{
     PERCEPTION_SEED,
-    chatter::refuses,
-    clean::{plain, whole_sentences},
-    say,
+    chatter::is_refusal,
+    clean::{plain_text, whole_sentences},
+    send_message,
 };
 use crate::{
-    dialogue::{Condensed, RulesSummariser, Summariser, caption_faults},
+    dialogue::{CaptionSummariser, CondensedCaption, RulesSummariser, caption_faults},
     prompts::Prompts,
 };
 use std::sync::Arc;
 use wayword_core::{
-    Caption, Exchange, Finish, LONGEST_TEXT_BYTES, LanguageModel, Message, ModelError, Sampling, Sighting, Witness,
+    Caption, ChatMessage, DialogueExchange, FinishReason, LONGEST_TEXT_BYTES, LanguageModel, ModelError,
+    ObjectSighting, SamplingOptions, WitnessAnswer,
 };
-use wayword_language::{lexicon::agree, text::word_count};
+use wayword_language::{lexicon::names_agree, text::word_count};
 
 /// Lets a language model summarise. If a caption names a denied object or one that no answer named, or if it is a
 /// refusal or cut off, the model is asked once more, with the reason. If it fails again, rules summarise, and the
@@ -26,9 +27,9 @@ pub struct ModelSummariser {
 }
 
 /// As in ChatCaptioner, with room for two or three whole sentences.
-const SAMPLING: Sampling = Sampling { temperature: 0.0, max_tokens: 160, seed: PERCEPTION_SEED };
+const SUMMARY_SAMPLING: SamplingOptions = SamplingOptions { temperature: 0.0, max_tokens: 160, seed: PERCEPTION_SEED };
 /// How often a caption is asked for.
-const ATTEMPTS: usize = 2;
+const MAX_CAPTION_ATTEMPTS: usize = 2;
 
 impl ModelSummariser {
     /// A summariser behind a model.
@@ -38,23 +39,24 @@ impl ModelSummariser {
     }
 
     /// Asks until `faults` finds none. `Err(reasons)` where every attempt had some.
-    fn attempt(
+    fn ask_until_faultless(
         &self,
         prompt: impl Fn(&[String]) -> Result<String, ModelError>,
         faults: impl Fn(&str) -> Vec<String>,
     ) -> Result<Result<String, Vec<String>>, ModelError> {
         let mut complaints = Vec::new();
-        for attempt in 1..=ATTEMPTS {
-            let reply = say(self.model.as_ref(), Message::user(prompt(&complaints)?), SAMPLING)?;
-            let text = plain(whole_sentences(&reply), &["caption", "summary"]);
+        for attempt in 1..=MAX_CAPTION_ATTEMPTS {
+            let reply =
+                send_message(self.model.as_ref(), ChatMessage::from_user(prompt(&complaints)?), SUMMARY_SAMPLING)?;
+            let text = plain_text(whole_sentences(&reply), &["caption", "summary"]);
             let found = match text.len() {
                 0 => vec!["it was empty".to_owned()],
                 bytes if bytes > LONGEST_TEXT_BYTES => {
                     vec![format!("it has {bytes} bytes, more than {LONGEST_TEXT_BYTES}")]
                 }
-                _ if refuses(&text) => vec!["it refused to describe the picture".to_owned()],
+                _ if is_refusal(&text) => vec!["it refused to describe the picture".to_owned()],
                 // The whole sentences of the last attempt are better than a summary by rules.
-                _ if reply.finish == Finish::Length && attempt < ATTEMPTS => {
+                _ if reply.finish == FinishReason::Length && attempt < MAX_CAPTION_ATTEMPTS => {
                     vec!["it was cut off: write a shorter one".to_owned()]
                 }
                 _ => faults(&text),
@@ -68,60 +70,62 @@ impl ModelSummariser {
     }
 }
 
-impl Summariser for ModelSummariser {
+impl CaptionSummariser for ModelSummariser {
     fn name(&self) -> &str {
         self.model.name()
     }
 
-    fn sum_up(&self, transcript: &[Exchange], answerer: &str) -> Result<Caption, ModelError> {
+    fn sum_up(&self, transcript: &[DialogueExchange], answerer: &str) -> Result<Caption, ModelError> {
         let by_rules = RulesSummariser.sum_up(transcript, answerer)?;
-        let prompt = |complaints: &[String]| Ok(self.prompts.summary(transcript, &by_rules.sightings, complaints)?);
-        let faults = |text: &str| faults(text, &by_rules.sightings);
-        Ok(match self.attempt(prompt, faults)? {
+        let prompt =
+            |complaints: &[String]| Ok(self.prompts.summary_prompt(transcript, &by_rules.sightings, complaints)?);
+        let faults = |text: &str| fault_reasons(text, &by_rules.sightings);
+        Ok(match self.ask_until_faultless(prompt, faults)? {
             Ok(text) => Caption { text, ..by_rules },
-            Err(reasons) => Caption { by: Some(instead(&reasons)), ..by_rules },
+            Err(reasons) => Caption { by: Some(rules_instead(&reasons)), ..by_rules },
         })
     }
 
-    fn condense(&self, captions: &[(&str, &Caption)], fewer_words_than: usize) -> Result<Condensed, ModelError> {
+    fn condense(&self, captions: &[(&str, &Caption)], fewer_words_than: usize) -> Result<CondensedCaption, ModelError> {
         let texts: Vec<(&str, &str)> =
             captions.iter().map(|(direction, caption)| (*direction, caption.text.as_str())).collect();
-        let prompt = |complaints: &[String]| Ok(self.prompts.condense(&texts, fewer_words_than, complaints)?);
-        let told = together(captions);
+        let prompt = |complaints: &[String]| Ok(self.prompts.condense_prompt(&texts, fewer_words_than, complaints)?);
+        let told = joint_sightings(captions);
         let faults = |text: &str| {
-            let mut faults = faults(text, &told);
+            let mut faults = fault_reasons(text, &told);
             let words = word_count(text);
             if words >= fewer_words_than {
                 faults.push(format!("it has {words} words where fewer than {fewer_words_than} were asked for"));
             }
             faults
         };
-        match self.attempt(prompt, faults)? {
-            Ok(text) => Ok(Condensed { text, by: None }),
+        match self.ask_until_faultless(prompt, faults)? {
+            Ok(text) => Ok(CondensedCaption { text, by: None }),
             Err(reasons) => {
                 let by_rules = RulesSummariser.condense(captions, fewer_words_than)?;
-                Ok(Condensed { by: Some(instead(&reasons)), ..by_rules })
+                Ok(CondensedCaption { by: Some(rules_instead(&reasons)), ..by_rules })
             }
         }
     }
 }
 
 /// The note that rules summarised instead of a model, with the reasons.
-fn instead(reasons: &[String]) -> String {
+fn rules_instead(reasons: &[String]) -> String {
     format!("rules, because {}", reasons.join("; "))
 }
 
-fn faults(text: &str, told: &[Sighting]) -> Vec<String> {
+fn fault_reasons(text: &str, told: &[ObjectSighting]) -> Vec<String> {
     caption_faults(text, told).iter().map(ToString::to_string).collect()
 }
 
 /// The sightings of all directions. A thing that one view lacks may be in the next, so a denial counts only if no view
 /// shows the thing.
-fn together(captions: &[(&str, &Caption)]) -> Vec<Sighting> {
-    let all: Vec<&Sighting> = captions.iter().flat_map(|(_, caption)| &caption.sightings).collect();
-    let seen = |name: &str| all.iter().any(|other| other.witness == Witness::Seen && agree(&other.name, name));
+fn joint_sightings(captions: &[(&str, &Caption)]) -> Vec<ObjectSighting> {
+    let all: Vec<&ObjectSighting> = captions.iter().flat_map(|(_, caption)| &caption.sightings).collect();
+    let seen =
+        |name: &str| all.iter().any(|other| other.witness == WitnessAnswer::Seen && names_agree(&other.name, name));
     all.iter()
-        .filter(|sighting| sighting.witness == Witness::Seen || !seen(&sighting.name))
+        .filter(|sighting| sighting.witness == WitnessAnswer::Seen || !seen(&sighting.name))
         .map(|sighting| (*sighting).clone())
         .collect()
 }

@@ -1,26 +1,28 @@
 use super::*;
 use crate::{
-    dialogue::{Asker, OPENING, Summariser},
-    prompts::{Manner, Prompts, trial},
-    style::{Profile, built_in},
-    writer::{Brief, FramePicture, WriteError, Writer},
+    dialogue::{CaptionSummariser, OPENING_REQUEST, QuestionAsker},
+    prompts::{PromptManner, Prompts, trial},
+    style::{StyleProfile, built_in},
+    writer::{FramePicture, InstructionWriter, WriteError, WritingBrief},
 };
 use std::sync::{Arc, Mutex};
-use wayword_core::{AnswerForm, Answerer, Ask, Exchange, Finish, Heading, Image, Motion, Pose, View};
+use wayword_core::{
+    AnswerForm, DialogueExchange, FinishReason, Heading, Image, PathMotion, Pose, View, ViewAnswerer, ViewQuestion,
+};
 
 /// A model that gives prepared replies in their order, and keeps the requests.
 pub(crate) struct Scripted {
-    replies: Mutex<Vec<Result<Reply, ModelError>>>,
-    pub(crate) heard: Mutex<Vec<Request>>,
+    replies: Mutex<Vec<Result<ModelReply, ModelError>>>,
+    pub(crate) heard: Mutex<Vec<ModelRequest>>,
 }
 
 impl Scripted {
     pub(crate) fn new(replies: &[&str]) -> Arc<Self> {
-        let said = |text: &&str| Ok(Reply { text: (*text).to_owned(), finish: Finish::Stop, usage: None });
+        let said = |text: &&str| Ok(ModelReply { text: (*text).to_owned(), finish: FinishReason::Stop, usage: None });
         Self::with(replies.iter().map(said).collect())
     }
 
-    fn with(mut replies: Vec<Result<Reply, ModelError>>) -> Arc<Self> {
+    fn with(mut replies: Vec<Result<ModelReply, ModelError>>) -> Arc<Self> {
         replies.reverse();
         Arc::new(Self { replies: Mutex::new(replies), heard: Mutex::default() })
     }
@@ -35,7 +37,7 @@ impl LanguageModel for Scripted {
         "test/scripted"
     }
 
-    fn complete(&self, requests: &[Request]) -> Vec<Result<Reply, ModelError>> {
+    fn complete_requests(&self, requests: &[ModelRequest]) -> Vec<Result<ModelReply, ModelError>> {
         self.heard.lock().unwrap().extend_from_slice(requests);
         requests.iter().map(|_| self.replies.lock().unwrap().pop().expect("it was asked too often")).collect()
     }
@@ -45,11 +47,11 @@ fn prompts() -> Arc<Prompts> {
     Arc::new(Prompts::new(&[]).unwrap())
 }
 
-fn transcript() -> Vec<Exchange> {
+fn transcript() -> Vec<DialogueExchange> {
     vec![
-        Exchange::new(OPENING, "There is a bed in the middle and a mirror on the left."),
-        Exchange::new("Which room is this?", "It is a bedroom."),
-        Exchange::new("Is there a mirror?", "No, there is no mirror."),
+        DialogueExchange::new(OPENING_REQUEST, "There is a bed in the middle and a mirror on the left."),
+        DialogueExchange::new("Which room is this?", "It is a bedroom."),
+        DialogueExchange::new("Is there a mirror?", "No, there is no mirror."),
     ]
 }
 
@@ -102,14 +104,15 @@ fn a_model_asks_with_the_dialogue_so_far() {
 
 #[test]
 fn answerer_sends_the_picture_and_repeats_cut_answers() {
-    let cut = || Ok(Reply { text: "A bed. A lamp and a".to_owned(), finish: Finish::Length, usage: None });
+    let cut = || Ok(ModelReply { text: "A bed. A lamp and a".to_owned(), finish: FinishReason::Length, usage: None });
     let model = Scripted::with(vec![cut(), cut()]);
-    let eye = ModelAnswerer::new(model.clone(), prompts(), Manner::Chat);
+    let eye = ModelAnswerer::new(model.clone(), prompts(), PromptManner::Chat);
     let image = Arc::new(Image::new(1, 1, vec![0; 3]).unwrap());
-    let view = View::new(Pose::level(wayword_core::DVec3::ZERO, Heading::NORTH), 1.0, Some(image.clone()), None);
-    let blind = View::new(Pose::level(wayword_core::DVec3::ZERO, Heading::NORTH), 1.0, None, None);
-    let ask = |view| Ask { view, question: OPENING, history: &[], answer: AnswerForm::Words };
-    let answers = eye.answer(&[ask(&blind), ask(&view)]);
+    let view =
+        View::new(Pose::looking_level(wayword_core::DVec3::ZERO, Heading::NORTH), 1.0, Some(image.clone()), None);
+    let blind = View::new(Pose::looking_level(wayword_core::DVec3::ZERO, Heading::NORTH), 1.0, None, None);
+    let ask = |view| ViewQuestion { view, question: OPENING_REQUEST, history: &[], answer: AnswerForm::Words };
+    let answers = eye.answer_questions(&[ask(&blind), ask(&view)]);
     assert!(matches!(&answers[0], Err(ModelError::NothingToSee { .. })));
     assert_eq!(answers[1].as_deref(), Ok("A bed."));
     let heard = model.heard.lock().unwrap();
@@ -120,11 +123,11 @@ fn answerer_sends_the_picture_and_repeats_cut_answers() {
 #[test]
 fn a_text_of_two_megabytes_is_refused_and_not_sent_back_whole() {
     let long = "Go past the sofa and turn left at the lamp. ".repeat(50_000);
-    let walk = trial::walk(Motion::Known).unwrap();
+    let walk = trial::trial_walk(PathMotion::Known).unwrap();
     let style = built_in("r2r").unwrap();
-    let profile = Profile::measure(&style.references);
+    let profile = StyleProfile::from_references(&style.references);
     let memory = walk.memory();
-    let brief = Brief::new(&walk, &memory, &style, &profile, 0);
+    let brief = WritingBrief::new(&walk, &memory, &style, &profile, 0);
     let writer = ModelWriter::new(Scripted::new(&[&long]), prompts());
     let Err(WriteError::Unusable { text, reason }) = writer.write(&brief) else { panic!("it is used") };
     assert!(text.len() < 1000 && text.starts_with("Go past the sofa"), "{} bytes", text.len());
@@ -150,13 +153,13 @@ fn errors_of_a_model_are_passed_on() {
 
 #[test]
 fn a_refusal_is_no_text_and_a_writer_that_sees_gets_the_pictures() {
-    let walk = trial::walk(Motion::Known).unwrap();
+    let walk = trial::trial_walk(PathMotion::Known).unwrap();
     let style = built_in("r2r").unwrap();
-    let profile = Profile::measure(&style.references);
+    let profile = StyleProfile::from_references(&style.references);
     let image = Arc::new(Image::new(1, 1, vec![0; 3]).unwrap());
     let pictures = [FramePicture { frame: 1, image: Arc::clone(&image) }];
     let memory = walk.memory();
-    let brief = Brief { pictures: &pictures, ..Brief::new(&walk, &memory, &style, &profile, 0) };
+    let brief = WritingBrief { pictures: &pictures, ..WritingBrief::new(&walk, &memory, &style, &profile, 0) };
     let model = Scripted::new(&["I'm sorry, but I can't assist with that.", "Sure! Instruction: \"Go on. Stop.\""]);
     let writer = ModelWriter::new(model.clone(), prompts());
     assert!(matches!(writer.write(&brief), Err(WriteError::Unusable { reason, .. }) if reason.contains("refused")));
@@ -168,7 +171,9 @@ fn a_refusal_is_no_text_and_a_writer_that_sees_gets_the_pictures() {
 
 #[test]
 fn a_cut_summary_is_requested_again_and_then_used_in_part() {
-    let cut = || Ok(Reply { text: "A bedroom with a bed. In the".to_owned(), finish: Finish::Length, usage: None });
+    let cut = || {
+        Ok(ModelReply { text: "A bedroom with a bed. In the".to_owned(), finish: FinishReason::Length, usage: None })
+    };
     let model = Scripted::with(vec![cut(), cut()]);
     let caption = ModelSummariser::new(model.clone(), prompts()).sum_up(&transcript(), "test").unwrap();
     assert_eq!((caption.text.as_str(), caption.by), ("A bedroom with a bed.", None));

@@ -1,12 +1,12 @@
 //! A language model that writes instructions.
 
-use super::{chatter::refuses, clean::plain, say};
+use super::{chatter::is_refusal, clean::plain_text, send_message};
 use crate::{
     prompts::Prompts,
-    writer::{Brief, WriteError, Writer},
+    writer::{InstructionWriter, WriteError, WritingBrief},
 };
 use std::sync::Arc;
-use wayword_core::{Finish, LONGEST_TEXT_BYTES, LanguageModel, Message, ModelError, Sampling};
+use wayword_core::{ChatMessage, FinishReason, LONGEST_TEXT_BYTES, LanguageModel, ModelError, SamplingOptions};
 
 /// Lets a language model write. Its prompt includes the reasons why earlier texts failed.
 #[derive(Clone)]
@@ -16,7 +16,7 @@ pub struct ModelWriter {
 }
 
 /// Warm enough that texts differ in their wording.
-const TEMPERATURE: f64 = 0.7;
+const WRITING_TEMPERATURE: f64 = 0.7;
 /// Room for the longest instruction of a fine-grained style.
 const MAX_TOKENS: u32 = 300;
 /// How much of an over-long text the next prompt shows, bytes.
@@ -30,18 +30,18 @@ impl ModelWriter {
     }
 }
 
-impl Writer for ModelWriter {
+impl InstructionWriter for ModelWriter {
     fn name(&self) -> &str {
         self.model.name()
     }
 
-    fn write(&self, brief: &Brief<'_>) -> Result<String, WriteError> {
-        let prompt = self.prompts.write(brief).map_err(ModelError::from)?;
+    fn write(&self, brief: &WritingBrief<'_>) -> Result<String, WriteError> {
+        let prompt = self.prompts.writing_prompt(brief).map_err(ModelError::from)?;
         let pictures = brief.pictures.iter().map(|picture| Arc::clone(&picture.image)).collect();
         let seed = brief.seed.wrapping_add(u64::from(brief.candidate));
-        let sampling = Sampling { temperature: TEMPERATURE, max_tokens: MAX_TOKENS, seed };
-        let reply = say(self.model.as_ref(), Message::about(prompt, pictures), sampling)?;
-        let text = plain(&reply.text, &["instruction"]);
+        let sampling = SamplingOptions { temperature: WRITING_TEMPERATURE, max_tokens: MAX_TOKENS, seed };
+        let reply = send_message(self.model.as_ref(), ChatMessage::about_images(prompt, pictures), sampling)?;
+        let text = plain_text(&reply.text, &["instruction"]);
         if text.len() > LONGEST_TEXT_BYTES {
             let reason = format!("it has {} bytes, more than {LONGEST_TEXT_BYTES}: write a few sentences", text.len());
             let text = format!("{} ...", &text[..text.floor_char_boundary(SHOWN_BYTES)]);
@@ -49,10 +49,10 @@ impl Writer for ModelWriter {
         }
         let unusable = |reason: &str| Err(WriteError::Unusable { text: text.clone(), reason: reason.to_owned() });
         match reply.finish {
-            _ if refuses(&text) => unusable("it refused instead of giving directions: write the instruction itself"),
-            Finish::Stop if text.is_empty() => unusable("it was empty"),
-            Finish::Stop => Ok(text),
-            Finish::Length => unusable("it was cut off: write a shorter text"),
+            _ if is_refusal(&text) => unusable("it refused instead of giving directions: write the instruction itself"),
+            FinishReason::Stop if text.is_empty() => unusable("it was empty"),
+            FinishReason::Stop => Ok(text),
+            FinishReason::Length => unusable("it was cut off: write a shorter text"),
         }
     }
 }

@@ -5,16 +5,18 @@
 //! missing label means "not sure" and not "no", unless the platform lists everything or a calibration decides
 //! otherwise.
 
-use super::listed::listed;
-use crate::dialogue::{Asked, Wanted, asked};
+use super::listed::labels_as_json;
+use crate::dialogue::{QuestionSubject, QuestionThing, read_question};
 use std::sync::Arc;
 use wayword_checks::open::{Calibration, is_expected};
-use wayword_core::{Answer, AnswerForm, Answerer, Ask, GroundTruth, Label, ModelError, View, Where};
-use wayword_language::lexicon::{agree, counted, normal, plural, same_room, with_article};
+use wayword_core::{
+    AnswerForm, AnswerText, GroundTruth, ModelError, ObjectLabel, View, ViewAnswerer, ViewQuestion, ViewThird,
+};
+use wayword_language::lexicon::{counted_name, names_agree, normalise_name, same_room, to_plural, with_article};
 
 /// The answerer that reads a view's labels.
 #[derive(Debug, Clone, Default)]
-pub struct Labels {
+pub struct LabelAnswerer {
     /// Whether the labels contain everything that can be seen in a view, so that a missing label means absence.
     pub list_everything: bool,
     /// For single names, whether the user's own data treats a missing label as absence.
@@ -24,55 +26,57 @@ pub struct Labels {
 /// Most kinds of objects that a description names, the nearest first.
 const MOST_NAMED: usize = 12;
 
-impl Answerer for Labels {
+impl ViewAnswerer for LabelAnswerer {
     fn name(&self) -> &str {
         "labels"
     }
 
-    fn answer(&self, asks: &[Ask<'_>]) -> Vec<Result<Answer, ModelError>> {
-        asks.iter().map(|ask| self.of(ask)).collect()
+    fn answer_questions(&self, asks: &[ViewQuestion<'_>]) -> Vec<Result<AnswerText, ModelError>> {
+        asks.iter().map(|ask| self.answer_from_labels(ask)).collect()
     }
 }
 
-impl Labels {
-    fn of(&self, ask: &Ask<'_>) -> Result<Answer, ModelError> {
-        let Ask { view, question, .. } = *ask;
+impl LabelAnswerer {
+    fn answer_from_labels(&self, ask: &ViewQuestion<'_>) -> Result<AnswerText, ModelError> {
+        let ViewQuestion { view, question, .. } = *ask;
         let truth = view.ground_truth().ok_or_else(|| ModelError::NothingToSee {
             name: "--see labels".into(),
             needs: "labels",
             hint: "name a model that sees pictures, as in --see ollama/llava (docs/MODELS.md), or use a platform with labels",
         })?;
         if ask.answer != AnswerForm::Words {
-            return Ok(listed(view, truth));
+            return Ok(labels_as_json(view, truth));
         }
-        Ok(match asked(question) {
-            Asked::Room => truth.room.as_deref().map_or_else(not_sure, |room| format!("It is {}.", with_article(room))),
-            Asked::IsRoom(name) => truth.room.as_deref().map_or_else(not_sure, |room| is_room(room, &name)),
-            Asked::Presence { wanted, or } => self.presence(view, truth, &wanted, or),
-            Asked::Colour { name, .. } => colour(truth, &name),
-            Asked::Number(wanted) => self.number(truth, &wanted),
-            Asked::Place(wanted) => self.presence(view, truth, &[wanted], false),
-            Asked::Other(Some(side)) => describe(view, truth, Some(side)),
-            Asked::Other(None) if wants_all(question) => describe(view, truth, None),
-            Asked::Other(None) => not_sure(),
+        Ok(match read_question(question) {
+            QuestionSubject::Room => {
+                truth.room.as_deref().map_or_else(not_sure, |room| format!("It is {}.", with_article(room)))
+            }
+            QuestionSubject::IsRoom(name) => truth.room.as_deref().map_or_else(not_sure, |room| is_room(room, &name)),
+            QuestionSubject::Presence { wanted, or } => self.answer_presence(view, truth, &wanted, or),
+            QuestionSubject::Colour { name, .. } => answer_colour(truth, &name),
+            QuestionSubject::Number(wanted) => self.answer_number(truth, &wanted),
+            QuestionSubject::Place(wanted) => self.answer_presence(view, truth, &[wanted], false),
+            QuestionSubject::Other(Some(side)) => describe_view(view, truth, Some(side)),
+            QuestionSubject::Other(None) if wants_all(question) => describe_view(view, truth, None),
+            QuestionSubject::Other(None) => not_sure(),
         })
     }
 
     /// "Yes, on the left.", "No, there is no lamp."; for several things, which of them are there.
-    fn presence(&self, view: &View, truth: &GroundTruth, wanted: &[Wanted], or: bool) -> Answer {
-        let found: Vec<(&Wanted, Option<&Label>)> =
-            wanted.iter().map(|wanted| (wanted, find(view, truth, wanted))).collect();
+    fn answer_presence(&self, view: &View, truth: &GroundTruth, wanted: &[QuestionThing], or: bool) -> AnswerText {
+        let found: Vec<(&QuestionThing, Option<&ObjectLabel>)> =
+            wanted.iter().map(|wanted| (wanted, find_label(view, truth, wanted))).collect();
         if let [(wanted, label)] = found.as_slice() {
             return match label {
-                Some(label) => format!("Yes, {}.", phrase(third(view, label))),
+                Some(label) => format!("Yes, {}.", place_phrase(third_of_view(view, label))),
                 None if self.is_open(truth, wanted) => not_sure(),
-                None => no(&wanted.said, wanted.several),
+                None => denial_answer(&wanted.said, wanted.several),
             };
         }
         let there: Vec<String> = found
             .iter()
             .filter_map(|(wanted, label)| {
-                Some(format!("{} {}", with_article(&wanted.name), phrase(third(view, (*label)?))))
+                Some(format!("{} {}", with_article(&wanted.name), place_phrase(third_of_view(view, (*label)?))))
             })
             .collect();
         let absent = found.iter().filter(|(_, label)| label.is_none());
@@ -80,7 +84,7 @@ impl Labels {
         let missing: Vec<&str> = missing.iter().map(|(wanted, _)| wanted.said.as_str()).collect();
         match (there.as_slice(), missing.as_slice()) {
             ([], []) if !open.is_empty() => not_sure(),
-            ([], missing) => no(&missing.join(" or "), false),
+            ([], missing) => denial_answer(&missing.join(" or "), false),
             (there, []) => format!("Yes, there is {}.", there.join(" and ")),
             (there, missing) => {
                 let begin = if or { "Yes" } else { "No" };
@@ -91,8 +95,8 @@ impl Labels {
 
     /// Whether the labels leave open that the thing is there. They do not if they contain one of another colour or in
     /// another part of the view.
-    fn is_open(&self, truth: &GroundTruth, wanted: &Wanted) -> bool {
-        let is_listed = truth.labels.iter().any(|label| agree(&label.name, &wanted.name));
+    fn is_open(&self, truth: &GroundTruth, wanted: &QuestionThing) -> bool {
+        let is_listed = truth.labels.iter().any(|label| names_agree(&label.name, &wanted.name));
         if self.list_everything || is_listed {
             return false;
         }
@@ -101,11 +105,11 @@ impl Labels {
         calibrated.unwrap_or_else(is_expected)
     }
 
-    fn number(&self, truth: &GroundTruth, wanted: &Wanted) -> Answer {
-        match truth.labels.iter().filter(|label| agree(&label.name, &wanted.name)).count() {
+    fn answer_number(&self, truth: &GroundTruth, wanted: &QuestionThing) -> AnswerText {
+        match truth.labels.iter().filter(|label| names_agree(&label.name, &wanted.name)).count() {
             0 if self.is_open(truth, wanted) => not_sure(),
-            0 => format!("There are no {}.", plural(&wanted.name)),
-            count => format!("There {} {}.", if count > 1 { "are" } else { "is" }, counted(count, &wanted.name)),
+            0 => format!("There are no {}.", to_plural(&wanted.name)),
+            count => format!("There {} {}.", if count > 1 { "are" } else { "is" }, counted_name(count, &wanted.name)),
         }
     }
 }
@@ -118,27 +122,27 @@ fn wants_all(question: &str) -> bool {
         .any(|all| asked.contains(all))
 }
 
-fn not_sure() -> Answer {
+fn not_sure() -> AnswerText {
     "I am not sure.".to_owned()
 }
 
-pub(super) fn third(view: &View, label: &Label) -> Where {
-    Where::at(view.pose.heading.turn_to(label.heading), view.horizontal_fov_rad)
+pub(super) fn third_of_view(view: &View, label: &ObjectLabel) -> ViewThird {
+    ViewThird::from_offset(view.pose.heading.turn_to(label.heading), view.horizontal_fov_rad)
 }
 
-fn phrase(third: Where) -> &'static str {
+fn place_phrase(third: ViewThird) -> &'static str {
     match third {
-        Where::Left => "on the left",
-        Where::Middle => "in the middle",
-        Where::Right => "on the right",
+        ViewThird::Left => "on the left",
+        ViewThird::Middle => "in the middle",
+        ViewThird::Right => "on the right",
     }
 }
 
 /// "There is a bed in the middle, two lamps on the left and a chair on the right."
-fn describe(view: &View, truth: &GroundTruth, only: Option<Where>) -> Answer {
-    let mut groups: Vec<(&str, Where, f64, usize)> = Vec::new();
+fn describe_view(view: &View, truth: &GroundTruth, only: Option<ViewThird>) -> AnswerText {
+    let mut groups: Vec<(&str, ViewThird, f64, usize)> = Vec::new();
     for label in &truth.labels {
-        let (third, distance_m) = (third(view, label), label.distance_m.unwrap_or(f64::INFINITY));
+        let (third, distance_m) = (third_of_view(view, label), label.distance_m.unwrap_or(f64::INFINITY));
         if only.is_some_and(|only| only != third) {
             continue;
         }
@@ -151,7 +155,7 @@ fn describe(view: &View, truth: &GroundTruth, only: Option<Where>) -> Answer {
     let items: Vec<String> = groups
         .iter()
         .take(MOST_NAMED)
-        .map(|(name, third, _, count)| format!("{} {}", counted(*count, name), phrase(*third)))
+        .map(|(name, third, _, count)| format!("{} {}", counted_name(*count, name), place_phrase(*third)))
         .collect();
     let verb = if groups.first().is_some_and(|group| group.3 > 1) { "are" } else { "is" };
     match items.as_slice() {
@@ -161,23 +165,23 @@ fn describe(view: &View, truth: &GroundTruth, only: Option<Where>) -> Answer {
     }
 }
 
-fn no(said: &str, several: bool) -> Answer {
+fn denial_answer(said: &str, several: bool) -> AnswerText {
     format!("No, there {} no {said}.", if several { "are" } else { "is" })
 }
 
 /// The label that a question asks for, of the colour and in the part of the view that it names.
-fn find<'a>(view: &View, truth: &'a GroundTruth, wanted: &Wanted) -> Option<&'a Label> {
-    let has_colour = |label: &Label| wanted.colour.is_none() || label.colour == wanted.colour;
-    let is_there = |label: &Label| wanted.place.is_none_or(|place| place == third(view, label));
-    truth.labels.iter().find(|label| agree(&label.name, &wanted.name) && has_colour(label) && is_there(label))
+fn find_label<'a>(view: &View, truth: &'a GroundTruth, wanted: &QuestionThing) -> Option<&'a ObjectLabel> {
+    let has_colour = |label: &ObjectLabel| wanted.colour.is_none() || label.colour == wanted.colour;
+    let is_there = |label: &ObjectLabel| wanted.place.is_none_or(|place| place == third_of_view(view, label));
+    truth.labels.iter().find(|label| names_agree(&label.name, &wanted.name) && has_colour(label) && is_there(label))
 }
 
-fn is_room(room: &str, name: &str) -> Answer {
+fn is_room(room: &str, name: &str) -> AnswerText {
     if same_room(room, name) { "Yes.".to_owned() } else { format!("No, it is {}.", with_article(room)) }
 }
 
-fn colour(truth: &GroundTruth, name: &str) -> Answer {
-    let label = truth.labels.iter().find(|label| normal(&label.name) == normal(name));
+fn answer_colour(truth: &GroundTruth, name: &str) -> AnswerText {
+    let label = truth.labels.iter().find(|label| normalise_name(&label.name) == normalise_name(name));
     label.and_then(|label| label.colour.as_ref()).map_or_else(not_sure, |colour| format!("The {name} is {colour}."))
 }
 
@@ -187,7 +191,7 @@ mod tests {
     use wayword_core::{DVec3, Heading, ObjectId, Pose};
 
     fn view() -> View {
-        let label = |id: &str, name: &str, deg: f64, colour: Option<&str>| Label {
+        let label = |id: &str, name: &str, deg: f64, colour: Option<&str>| ObjectLabel {
             object: ObjectId::new(id).unwrap(),
             name: name.into(),
             heading: Heading::new(deg.to_radians()).unwrap(),
@@ -204,13 +208,13 @@ mod tests {
             label("4", "oven", 35.0, None),
         ];
         let truth = GroundTruth { labels, lists_objects: true, room: Some("office".into()) };
-        View::new(Pose::level(DVec3::ZERO, Heading::NORTH), std::f64::consts::FRAC_PI_2, None, Some(truth))
+        View::new(Pose::looking_level(DVec3::ZERO, Heading::NORTH), std::f64::consts::FRAC_PI_2, None, Some(truth))
     }
 
     fn ask(question: &str) -> String {
         let view = view();
-        Labels::default()
-            .answer(&[Ask { view: &view, question, history: &[], answer: AnswerForm::Words }])
+        LabelAnswerer::default()
+            .answer_questions(&[ViewQuestion { view: &view, question, history: &[], answer: AnswerForm::Words }])
             .remove(0)
             .unwrap()
     }
@@ -218,7 +222,7 @@ mod tests {
     #[test]
     fn labels_affirm_and_deny() {
         assert_eq!(
-            ask(crate::dialogue::OPENING),
+            ask(crate::dialogue::OPENING_REQUEST),
             "There is a sofa in the middle, two lamps on the left and an oven on the right."
         );
         assert_eq!(ask("Which room is this?"), "It is an office.");
@@ -257,8 +261,8 @@ mod tests {
         truth.room = Some("dining room".into());
         let view = View::new(known.pose, known.horizontal_fov_rad, None, Some(truth));
         let ask = |question: &str| {
-            Labels::default()
-                .answer(&[Ask { view: &view, question, history: &[], answer: AnswerForm::Words }])
+            LabelAnswerer::default()
+                .answer_questions(&[ViewQuestion { view: &view, question, history: &[], answer: AnswerForm::Words }])
                 .remove(0)
                 .unwrap()
         };
@@ -276,15 +280,21 @@ mod tests {
         truth.room = Some("dining room".into());
         let view = View::new(known.pose, known.horizontal_fov_rad, None, Some(truth));
         let question = "Is there a dining table?";
-        let answer = |labels: Labels| {
-            labels.answer(&[Ask { view: &view, question, history: &[], answer: AnswerForm::Words }]).remove(0).unwrap()
+        let answer = |labels: LabelAnswerer| {
+            labels
+                .answer_questions(&[ViewQuestion { view: &view, question, history: &[], answer: AnswerForm::Words }])
+                .remove(0)
+                .unwrap()
         };
-        assert_eq!(answer(Labels { list_everything: true, ..Labels::default() }), "No, there is no dining table.");
+        assert_eq!(
+            answer(LabelAnswerer { list_everything: true, ..LabelAnswerer::default() }),
+            "No, there is no dining table."
+        );
         let calibrated = |close: &str| {
             let head = "platform = \"matterport\"\nfrom = \"a.json\"\ntexts = 1\n[names.\"dining table\"]\n";
             let calibration: Calibration =
                 toml::from_str(&format!("{head}close = {close}\nfar = 0.0\nnowhere = 0.0")).unwrap();
-            answer(Labels { calibration: Some(Arc::new(calibration)), ..Labels::default() })
+            answer(LabelAnswerer { calibration: Some(Arc::new(calibration)), ..LabelAnswerer::default() })
         };
         assert_eq!(calibrated("2.0"), "No, there is no dining table.");
         assert_eq!(calibrated("0.1"), "I am not sure.", "a small offset decides nothing");
@@ -294,9 +304,14 @@ mod tests {
 
     #[test]
     fn a_view_without_labels_is_an_error() {
-        let blind = View::new(Pose::level(DVec3::ZERO, Heading::NORTH), 1.0, None, None);
-        let error = Labels::default()
-            .answer(&[Ask { view: &blind, question: "Which room is this?", history: &[], answer: AnswerForm::Words }])
+        let blind = View::new(Pose::looking_level(DVec3::ZERO, Heading::NORTH), 1.0, None, None);
+        let error = LabelAnswerer::default()
+            .answer_questions(&[ViewQuestion {
+                view: &blind,
+                question: "Which room is this?",
+                history: &[],
+                answer: AnswerForm::Words,
+            }])
             .remove(0);
         let message = error.unwrap_err().to_string();
         assert!(message.starts_with("--see labels needs labels, but this view has none: name a model"));

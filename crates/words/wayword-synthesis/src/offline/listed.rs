@@ -1,26 +1,28 @@
 //! Writes the labels of a view as the JSON of a structured answer, so that labels can stand in for a model.
 
-use super::labels::third;
+use super::labels::third_of_view;
 use crate::seeing::FAR_M;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
-use wayword_core::{GroundTruth, Label, View, Where};
-use wayword_language::lexicon::{Class, plural, thing};
+use wayword_core::{GroundTruth, ObjectLabel, View, ViewThird};
+use wayword_language::lexicon::{ThingClass, find_thing, to_plural};
 
 /// Most things in the answer, the nearest first.
 const MOST_LISTED: usize = 14;
 
-/// The labels of a view as JSON in the form of [`crate::seeing::SCHEMA`].
-pub(super) fn listed(view: &View, truth: &GroundTruth) -> String {
-    let mut labels: Vec<(&Label, Where)> = truth.labels.iter().map(|label| (label, third(view, label))).collect();
-    let distance = |label: &Label| label.distance_m.unwrap_or(f64::INFINITY);
+/// The labels of a view as JSON in the form of [`crate::seeing::VIEW_SCHEMA`].
+pub(super) fn labels_as_json(view: &View, truth: &GroundTruth) -> String {
+    let mut labels: Vec<(&ObjectLabel, ViewThird)> =
+        truth.labels.iter().map(|label| (label, third_of_view(view, label))).collect();
+    let distance = |label: &ObjectLabel| label.distance_m.unwrap_or(f64::INFINITY);
     labels.sort_by(|(a, _), (b, _)| distance(a).total_cmp(&distance(b)));
-    let mut counts: BTreeMap<(&str, Where), usize> = BTreeMap::new();
+    let mut counts: BTreeMap<(&str, ViewThird), usize> = BTreeMap::new();
     for (label, place) in &labels {
         *counts.entry((&label.name, *place)).or_default() += 1;
     }
-    let is_door =
-        |label: &Label| matches!(thing(&label.name).map(|thing| thing.class), Some(Class::Door | Class::Stairs));
+    let is_door = |label: &ObjectLabel| {
+        matches!(find_thing(&label.name).map(|thing| thing.class), Some(ThingClass::Door | ThingClass::Stairs))
+    };
     let ways: Vec<Value> = labels
         .iter()
         .filter(|(label, _)| is_door(label))
@@ -31,7 +33,7 @@ pub(super) fn listed(view: &View, truth: &GroundTruth) -> String {
         let Some(count) = counts.remove(&(label.name.as_str(), place)) else { continue };
         let far = if label.distance_m.is_some_and(|metres| metres > FAR_M) { "far" } else { "near" };
         things.push(json!({
-            "name": if count > 1 { plural(&label.name) } else { label.name.clone() },
+            "name": if count > 1 { to_plural(&label.name) } else { label.name.clone() },
             "colours": label.colour.iter().collect::<Vec<_>>(),
             "material": "",
             "side": place,

@@ -6,6 +6,6 @@ mod distinguish;
 mod labels;
 mod listed;
 
-pub use describe::{Listing, describe};
-pub use distinguish::around;
-pub use labels::Labels;
+pub use describe::{BuildingListing, describe_target};
+pub use distinguish::list_around_frame;
+pub use labels::LabelAnswerer;

@@ -31,7 +31,7 @@ const MOST_JOINS: usize = 64;
 const ITEM_BYTES: usize = 32;
 
 /// The statements that prompts offer.
-const STATEMENTS: [&str; 6] = ["for", "endfor", "if", "elif", "else", "endif"];
+const OFFERED_STATEMENTS: [&str; 6] = ["for", "endfor", "if", "elif", "else", "endif"];
 
 pub(super) fn too_many_bytes() -> String {
     format!("it writes more than {MOST_BYTES} bytes")
@@ -42,7 +42,7 @@ pub(super) fn too_many_steps() -> String {
 }
 
 /// Refuses a template that uses an unlimited construct.
-pub(super) fn allow(name: &str, source: &str) -> Result<(), PromptError> {
+pub(super) fn check_template(name: &str, source: &str) -> Result<(), PromptError> {
     let refused = |line: usize, what: String| Err(PromptError::Refused { name: name.to_owned(), line, what });
     if source.len() > SOURCE_BYTES {
         return refused(1, format!("it is longer than {SOURCE_BYTES} bytes"));
@@ -54,8 +54,8 @@ pub(super) fn allow(name: &str, source: &str) -> Result<(), PromptError> {
         let Ok((token, span)) = token else { return Ok(()) };
         let line = usize::from(span.start_line);
         match (&before, &token) {
-            (Some(Token::BlockStart), Token::Ident(statement)) if !STATEMENTS.contains(statement) => {
-                let offered = STATEMENTS.join(", ");
+            (Some(Token::BlockStart), Token::Ident(statement)) if !OFFERED_STATEMENTS.contains(statement) => {
+                let offered = OFFERED_STATEMENTS.join(", ");
                 return refused(line, format!("`{statement}` is not offered in prompts; these are: {offered}"));
             }
             (Some(Token::Pipe), Token::Ident(filter)) if !FILTERS.contains(filter) => {
@@ -78,13 +78,13 @@ pub(super) fn allow(name: &str, source: &str) -> Result<(), PromptError> {
 }
 
 /// The environment in which prompts are filled: with limits, and only with filters that keep to them.
-pub(super) fn environment() -> Environment<'static> {
+pub(super) fn bounded_environment() -> Environment<'static> {
     let mut environment = Environment::new();
     environment.set_fuel(Some(MOST_STEPS));
     for name in ["debug", "dict", "namespace"] {
         environment.remove_global(name);
     }
-    environment.add_function("range", range);
+    environment.add_function("range", bounded_range);
     for name in NOT_OFFERED {
         environment.remove_filter(name);
     }
@@ -132,7 +132,7 @@ filters! {
 /// Applies a filter, and counts the bytes of its input and output.
 fn counted(state: &State<'_, '_>, filter: &str, value: Value, more: &[Value]) -> Result<Value, Error> {
     if let Some(text) = value.as_str() {
-        write(state, text.len())?;
+        count_bytes(state, text.len())?;
     }
     if filter == "map itself" && more.iter().any(|name| name.as_str().is_some_and(|name| name.ends_with(" itself"))) {
         return Err(Error::from(ErrorKind::UnknownFilter));
@@ -142,7 +142,7 @@ fn counted(state: &State<'_, '_>, filter: &str, value: Value, more: &[Value]) ->
         Some(text) => text.len(),
         None => made.len().unwrap_or_default().saturating_mul(ITEM_BYTES),
     };
-    write(state, bytes)?;
+    count_bytes(state, bytes)?;
     Ok(made)
 }
 
@@ -151,16 +151,16 @@ fn join(state: &State<'_, '_>, value: &Value, between: Option<Value>) -> Result<
     let mut text = Counted { state, text: String::new() };
     for (at, item) in value.try_iter()?.enumerate() {
         if at > 0 {
-            text.add(&between)?;
+            text.push_display(&between)?;
         }
-        text.add(item)?;
+        text.push_display(item)?;
     }
     Ok(text.text)
 }
 
 fn replace(state: &State<'_, '_>, value: &Value, from: &Value, to: &Value) -> Result<String, Error> {
     let (text, from, to) = (text_of(state, value)?, text_of(state, from)?, text_of(state, to)?);
-    write(state, text.matches(from.as_str()).count().saturating_mul(to.len()))?;
+    count_bytes(state, text.matches(from.as_str()).count().saturating_mul(to.len()))?;
     Ok(text.replace(&from, &to))
 }
 
@@ -179,7 +179,7 @@ fn indent(
     named.assert_all_used()?;
     let text = text_of(state, value)?;
     let lines = text.strip_suffix('\n').unwrap_or(&text).split('\n');
-    write(state, lines.clone().count().saturating_mul(width))?;
+    count_bytes(state, lines.clone().count().saturating_mul(width))?;
     let margin = " ".repeat(width);
     let stays = |at: usize, line: &str| if at == 0 { !first } else { line.is_empty() && !blank };
     let indented =
@@ -188,9 +188,9 @@ fn indent(
 }
 
 fn tojson(state: &State<'_, '_>, value: &Value) -> Result<Value, Error> {
-    let mut size = Text::default();
+    let mut size = PromptText::default();
     serde_json::to_writer(&mut size, value).map_err(|_| too_much())?;
-    write(state, size.into_string().len())?;
+    count_bytes(state, size.into_string().len())?;
     filters::tojson(value, None, Kwargs::from_iter::<[(&str, Value); 0]>([]))
 }
 
@@ -199,7 +199,7 @@ fn string(state: &State<'_, '_>, value: &Value) -> Result<String, Error> {
 }
 
 /// At most a thousand numbers.
-fn range(lower: isize, upper: Option<isize>, step: Option<isize>) -> Result<Value, Error> {
+fn bounded_range(lower: isize, upper: Option<isize>, step: Option<isize>) -> Result<Value, Error> {
     let numbers = minijinja::functions::range(lower, upper, step)?;
     if numbers.len().is_none_or(|count| count > MOST_NUMBERS) {
         let why = format!("a `range` has at most {MOST_NUMBERS} numbers in prompts");
@@ -214,19 +214,19 @@ fn text_of(state: &State<'_, '_>, value: &Value) -> Result<String, Error> {
         return Err(Error::from(ErrorKind::UndefinedError));
     }
     let mut text = Counted { state, text: String::new() };
-    text.add(value)?;
+    text.push_display(value)?;
     Ok(text.text)
 }
 
 /// The bytes that the filters of one prompt have made.
 #[derive(Debug, Default)]
-struct Made(AtomicUsize);
+struct FilterByteCount(AtomicUsize);
 
-impl Object for Made {}
+impl Object for FilterByteCount {}
 
 /// Counts bytes that a filter makes, and fails beyond the limit.
-fn write(state: &State<'_, '_>, bytes: usize) -> Result<(), Error> {
-    let made = state.get_or_set_temp_object("made by filters", Made::default);
+fn count_bytes(state: &State<'_, '_>, bytes: usize) -> Result<(), Error> {
+    let made = state.get_or_set_temp_object("made by filters", FilterByteCount::default);
     let before = made.0.fetch_add(bytes.min(MOST_BYTES + 1), Ordering::Relaxed);
     if before.saturating_add(bytes) > MOST_BYTES { Err(too_much()) } else { Ok(()) }
 }
@@ -242,14 +242,14 @@ struct Counted<'a, 'b, 'c> {
 }
 
 impl Counted<'_, '_, '_> {
-    fn add(&mut self, what: impl fmt::Display) -> Result<(), Error> {
+    fn push_display(&mut self, what: impl fmt::Display) -> Result<(), Error> {
         write!(self, "{what}").map_err(|_| too_much())
     }
 }
 
 impl fmt::Write for Counted<'_, '_, '_> {
     fn write_str(&mut self, more: &str) -> fmt::Result {
-        write(self.state, more.len()).map_err(|_| fmt::Error)?;
+        count_bytes(self.state, more.len()).map_err(|_| fmt::Error)?;
         self.text.push_str(more);
         Ok(())
     }
@@ -257,15 +257,15 @@ impl fmt::Write for Counted<'_, '_, '_> {
 
 /// The output of a prompt, limited in length.
 #[derive(Debug, Default)]
-pub(super) struct Text(Vec<u8>);
+pub(super) struct PromptText(Vec<u8>);
 
-impl Text {
+impl PromptText {
     pub(super) fn into_string(self) -> String {
         String::from_utf8(self.0).unwrap_or_else(|error| String::from_utf8_lossy(error.as_bytes()).into_owned())
     }
 }
 
-impl io::Write for Text {
+impl io::Write for PromptText {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         if self.0.len() + bytes.len() > MOST_BYTES {
             return Err(io::Error::other(too_many_bytes()));

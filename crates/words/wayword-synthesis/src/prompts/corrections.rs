@@ -1,75 +1,77 @@
 //! Explains to the model why its text failed, and what would be right, as far as the walk shows it.
 
-use super::writing::{frame_of_move, way};
-use crate::writer::{Brief, Complaint};
-use wayword_core::{Check, Climb, Finding, Move, Side, Turn, Verdict};
+use super::writing::{frame_of_move, turn_words};
+use crate::writer::{TextComplaint, WritingBrief};
+use wayword_core::{CheckFinding, CheckKind, ClimbDirection, PathMove, Side, TurnKind, Verdict};
 use wayword_language::{
-    lexicon::agree,
-    reading::{What, read},
+    lexicon::names_agree,
+    reading::{EventContent, read_instruction},
 };
 
 /// Most things in one sentence about where they are.
 const MOST_NAMED: usize = 3;
 
 /// The reasons why a text failed, each with the words concerned and with a correction.
-pub(super) fn reasons(brief: &Brief<'_>, complaint: &Complaint) -> Vec<String> {
+pub(super) fn refusal_reasons(brief: &WritingBrief<'_>, complaint: &TextComplaint) -> Vec<String> {
     let failed = complaint.findings.iter().filter(|finding| finding.verdict == Verdict::Fail);
-    failed.map(|finding| reason(brief, &complaint.text, finding)).collect()
+    failed.map(|finding| number_finding(brief, &complaint.text, finding)).collect()
 }
 
-fn reason(brief: &Brief<'_>, text: &str, finding: &Finding) -> String {
+fn number_finding(brief: &WritingBrief<'_>, text: &str, finding: &CheckFinding) -> String {
     let words = finding.span.and_then(|[from, to]| text.get(from..to));
     let told = match words {
         Some(words) if !finding.reason.contains(words) => format!("you wrote {words:?}: {}", finding.reason),
         _ => finding.reason.clone(),
     };
-    match right(brief, text, finding, words) {
+    match describe_right(brief, text, finding, words) {
         Some(right) => format!("{told} ({right})"),
         None => told,
     }
 }
 
 /// The correction for a finding, if the walk shows it.
-fn right(brief: &Brief<'_>, text: &str, finding: &Finding, words: Option<&str>) -> Option<String> {
-    if !brief.walk.path.motion.is_known() && matches!(finding.check, Check::Turns | Check::Floors | Check::Order) {
+fn describe_right(brief: &WritingBrief<'_>, text: &str, finding: &CheckFinding, words: Option<&str>) -> Option<String> {
+    if !brief.walk.path.motion.is_known()
+        && matches!(finding.check, CheckKind::Turns | CheckKind::Floors | CheckKind::Order)
+    {
         return None;
     }
     match finding.check {
-        Check::Turns => Some(turns(brief, text, finding.span)),
-        Check::Floors => Some(climbs(&brief.walk.moves)),
-        Check::Landmarks | Check::Order => where_seen(brief, words?),
-        Check::Leak => Some("say it in other words".to_owned()),
-        Check::Coverage => Some("use plain words for ways, rooms and things".to_owned()),
-        Check::Form | Check::Task | Check::Route => None,
+        CheckKind::Turns => Some(describe_turns(brief, text, finding.span)),
+        CheckKind::Floors => Some(describe_climbs(&brief.walk.moves)),
+        CheckKind::Landmarks | CheckKind::Order => where_seen(brief, words?),
+        CheckKind::Leak => Some("say it in other words".to_owned()),
+        CheckKind::Coverage => Some("use plain words for ways, rooms and things".to_owned()),
+        CheckKind::Form | CheckKind::Task | CheckKind::Route => None,
     }
 }
 
 /// The turn of the walk that corresponds to this turn of the text; all turns of the walk if the text has more or fewer.
-fn turns(brief: &Brief<'_>, text: &str, span: Option<[usize; 2]>) -> String {
-    let moves = brief.walk.moves.iter().enumerate().filter(|(_, step)| step.turn() != Turn::Straight);
-    let walked: Vec<(usize, &Move)> = moves.collect();
-    let read = read(text, &std::collections::BTreeSet::new());
-    let told = read.events.iter().filter(|event| matches!(event.what, What::Turn(_)) && !event.denied);
+fn describe_turns(brief: &WritingBrief<'_>, text: &str, span: Option<[usize; 2]>) -> String {
+    let moves = brief.walk.moves.iter().enumerate().filter(|(_, step)| step.turn() != TurnKind::Straight);
+    let walked: Vec<(usize, &PathMove)> = moves.collect();
+    let read = read_instruction(text, &std::collections::BTreeSet::new());
+    let told = read.events.iter().filter(|event| matches!(event.what, EventContent::Turn(_)) && !event.denied);
     let told: Vec<[usize; 2]> = told.map(|event| event.span).collect();
     let overlaps = |other: &[usize; 2]| span.is_some_and(|span| span[0] < other[1] && other[0] < span[1]);
     let at = told.iter().position(overlaps).filter(|_| told.len() == walked.len());
     if let Some((frame, step)) = at.and_then(|at| walked.get(at)) {
-        return format!("the walk {} there, at {}", way(step.turn()), frame_of_move(*frame));
+        return format!("the walk {} there, at {}", turn_words(step.turn()), frame_of_move(*frame));
     }
     if walked.is_empty() {
         return "the walk goes straight on and never turns".to_owned();
     }
-    let all = walked.iter().map(|(frame, step)| format!("{} at {}", way(step.turn()), frame_of_move(*frame)));
+    let all = walked.iter().map(|(frame, step)| format!("{} at {}", turn_words(step.turn()), frame_of_move(*frame)));
     format!("the turns of the walk are, in order: {}", all.collect::<Vec<_>>().join(", "))
 }
 
 /// Where the walk climbs.
-fn climbs(moves: &[Move]) -> String {
+fn describe_climbs(moves: &[PathMove]) -> String {
     let climbs = moves.iter().enumerate().filter_map(|(frame, step)| {
         let way = match step.climb() {
-            Climb::Level => return None,
-            Climb::Up => "up",
-            Climb::Down => "down",
+            ClimbDirection::Level => return None,
+            ClimbDirection::Up => "up",
+            ClimbDirection::Down => "down",
         };
         Some(format!("it goes {way} stairs from {}", frame_of_move(frame)))
     });
@@ -78,11 +80,11 @@ fn climbs(moves: &[Move]) -> String {
 }
 
 /// The frames that show the named thing, and how it looks there; advice if none does.
-fn where_seen(brief: &Brief<'_>, words: &str) -> Option<String> {
+fn where_seen(brief: &WritingBrief<'_>, words: &str) -> Option<String> {
     let name = words.trim_start_matches("the ").trim();
     let frames = 0..brief.walk.observations.len();
-    let seen = frames.flat_map(|frame| brief.walk.seen(frame).map(move |seen| (frame, seen)));
-    let seen = seen.filter(|(_, seen)| agree(&seen.sighting.name, name)).take(MOST_NAMED);
+    let seen = frames.flat_map(|frame| brief.walk.seen_from(frame).map(move |seen| (frame, seen)));
+    let seen = seen.filter(|(_, seen)| names_agree(&seen.sighting.name, name)).take(MOST_NAMED);
     let seen: Vec<String> = seen
         .map(|(frame, seen)| {
             let colour = seen.sighting.colour.as_ref().map_or(String::new(), |colour| format!("{colour} "));

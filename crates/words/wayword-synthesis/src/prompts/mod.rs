@@ -12,9 +12,9 @@ mod writing;
 
 use minijinja::{Environment, ErrorKind, UndefinedBehavior, context};
 use sha2::{Digest, Sha256};
-use wayword_core::{Exchange, ModelError, Sighting, Witness};
+use wayword_core::{DialogueExchange, ModelError, ObjectSighting, WitnessAnswer};
 
-use crate::{dialogue::is_opening, writer::Brief};
+use crate::{dialogue::is_opening, writer::WritingBrief};
 
 /// The templates: name and source.
 const BUILT_IN: [(&str, &str); 8] = [
@@ -30,7 +30,7 @@ const BUILT_IN: [(&str, &str); 8] = [
 
 /// The form of prompt that a vision model expects.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum Manner {
+pub enum PromptManner {
     /// It follows instructions: the prompt explains how to answer (`answer`).
     #[default]
     Chat,
@@ -101,7 +101,7 @@ impl Prompts {
         if let Some((name, _)) = own.iter().find(|(name, _)| !BUILT_IN.iter().any(|(built_in, _)| built_in == name)) {
             return Err(PromptError::Unknown { name: name.clone() });
         }
-        let mut templates = bounds::environment();
+        let mut templates = bounds::bounded_environment();
         // A template that asks for a variable that it does not get is an error, because the prompt would have a gap.
         templates.set_undefined_behavior(UndefinedBehavior::Strict);
         let mut hash = Sha256::new();
@@ -112,7 +112,7 @@ impl Prompts {
             hash.update(source);
             hash.update([0]);
             let failed = |source| PromptError::Template { name: name.to_owned(), source };
-            bounds::allow(name, source)?;
+            bounds::check_template(name, source)?;
             templates.add_template_owned(name, source.to_owned()).map_err(failed)?;
         }
         let hash = hash.finalize().iter().take(8).map(|byte| format!("{byte:02x}")).collect();
@@ -132,13 +132,13 @@ impl Prompts {
         &self.hash
     }
 
-    fn fill(&self, name: &str, with: minijinja::Value) -> Result<String, PromptError> {
+    fn fill_template(&self, name: &str, with: minijinja::Value) -> Result<String, PromptError> {
         let failed = |source: minijinja::Error| match source.kind() {
             ErrorKind::OutOfFuel => PromptError::TooMuch { name: name.to_owned(), what: bounds::too_many_steps() },
             ErrorKind::WriteFailure => PromptError::TooMuch { name: name.to_owned(), what: bounds::too_many_bytes() },
             _ => PromptError::Template { name: name.to_owned(), source },
         };
-        let mut text = bounds::Text::default();
+        let mut text = bounds::PromptText::default();
         let template = self.templates.get_template(name).map_err(failed)?;
         template.render_captured_to(with, &mut text).map_err(failed)?;
         Ok(text.into_string().trim().to_owned())
@@ -148,29 +148,34 @@ impl Prompts {
     ///
     /// # Errors
     /// When an overridden template cannot be filled.
-    pub fn question(&self, transcript: &[Exchange]) -> Result<String, PromptError> {
-        self.fill("question", context! { transcript })
+    pub fn question_prompt(&self, transcript: &[DialogueExchange]) -> Result<String, PromptError> {
+        self.fill_template("question", context! { transcript })
     }
 
     /// Puts a question to a vision model.
     ///
     /// # Errors
     /// When an overridden template cannot be filled.
-    pub fn answer(&self, manner: Manner, question: &str, history: &[Exchange]) -> Result<String, PromptError> {
+    pub fn answer_prompt(
+        &self,
+        manner: PromptManner,
+        question: &str,
+        history: &[DialogueExchange],
+    ) -> Result<String, PromptError> {
         let name = match manner {
-            Manner::Chat => "answer",
-            Manner::Question => "answer_question",
-            Manner::Completion => "answer_completion",
+            PromptManner::Chat => "answer",
+            PromptManner::Question => "answer_question",
+            PromptManner::Completion => "answer_completion",
         };
-        self.fill(name, context! { question, history, is_opening => is_opening(question) })
+        self.fill_template(name, context! { question, history, is_opening => is_opening(question) })
     }
 
     /// Asks a vision model for everything that a view shows, as JSON. `complaint` is the fault of its last answer.
     ///
     /// # Errors
     /// When an overridden template cannot be filled.
-    pub fn see(&self, complaint: Option<&str>) -> Result<String, PromptError> {
-        self.fill("see", context! { complaint => complaint.unwrap_or_default() })
+    pub fn view_prompt(&self, complaint: Option<&str>) -> Result<String, PromptError> {
+        self.fill_template("see", context! { complaint => complaint.unwrap_or_default() })
     }
 
     /// Asks a language model to summarise a dialogue. The prompt lists the denied objects, so that they stay out, and
@@ -178,40 +183,40 @@ impl Prompts {
     ///
     /// # Errors
     /// When an overridden template cannot be filled.
-    pub fn summary(
+    pub fn summary_prompt(
         &self,
-        transcript: &[Exchange],
-        told: &[Sighting],
+        transcript: &[DialogueExchange],
+        told: &[ObjectSighting],
         complaints: &[String],
     ) -> Result<String, PromptError> {
         let denied: Vec<&str> = told
             .iter()
-            .filter(|sighting| sighting.witness == Witness::Denied)
+            .filter(|sighting| sighting.witness == WitnessAnswer::Denied)
             .map(|sighting| sighting.name.as_str())
             .collect();
-        self.fill("summary", context! { transcript, denied, complaints })
+        self.fill_template("summary", context! { transcript, denied, complaints })
     }
 
     /// Asks a language model to condense captions of several directions.
     ///
     /// # Errors
     /// When an overridden template cannot be filled.
-    pub fn condense(
+    pub fn condense_prompt(
         &self,
         captions: &[(&str, &str)],
         fewer_words_than: usize,
         complaints: &[String],
     ) -> Result<String, PromptError> {
         let captions: Vec<_> = captions.iter().map(|(direction, text)| context! { direction, text }).collect();
-        self.fill("condense", context! { captions, fewer_words_than, complaints })
+        self.fill_template("condense", context! { captions, fewer_words_than, complaints })
     }
 
     /// Asks a language model to write an instruction, or to write it again.
     ///
     /// # Errors
     /// When an overridden template cannot be filled.
-    pub fn write(&self, brief: &Brief<'_>) -> Result<String, PromptError> {
-        self.fill("write", writing::context(brief))
+    pub fn writing_prompt(&self, brief: &WritingBrief<'_>) -> Result<String, PromptError> {
+        self.fill_template("write", writing::writing_context(brief))
     }
 }
 

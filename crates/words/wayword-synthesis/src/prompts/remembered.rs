@@ -1,7 +1,7 @@
 //! Describes the memory of a walk for the writing prompt: rooms, doors, bends, and things that are seen from several
 //! frames, one line each.
 
-use wayword_checks::memory::{Bend, Memory, Opening, Remembered, Stay};
+use wayword_checks::memory::{RememberedThing, RoomOpening, RoomStay, WalkBend, WalkMemory};
 use wayword_core::Side;
 
 /// Most lines for things.
@@ -10,27 +10,27 @@ const MOST_THINGS: usize = 16;
 const NEAR_END_M: f64 = 3.0;
 
 /// The lines for all rooms, doors, bends and things that are worth mentioning.
-pub(super) fn remembered(memory: &Memory) -> Vec<String> {
-    let mut told: Vec<String> = rooms(&memory.stays).into_iter().collect();
-    told.extend(memory.openings.iter().filter(|opening| opening.has_door).map(door));
-    told.extend(memory.bends.iter().filter_map(bend));
+pub(super) fn remembered_lines(memory: &WalkMemory) -> Vec<String> {
+    let mut told: Vec<String> = rooms_line(&memory.stays).into_iter().collect();
+    told.extend(memory.openings.iter().filter(|opening| opening.has_door).map(door_line));
+    told.extend(memory.bends.iter().filter_map(bend_line));
     let things = memory.things.iter().filter_map(|thing| told_thing(memory, thing));
     told.extend(things.take(MOST_THINGS));
     told
 }
 
-fn rooms(stays: &[Stay]) -> Option<String> {
-    let told = stays.iter().map(|stay| format!("{} ({})", stay.room, frames(stay.entered, stay.left)));
+fn rooms_line(stays: &[RoomStay]) -> Option<String> {
+    let told = stays.iter().map(|stay| format!("{} ({})", stay.room, frame_range(stay.entered, stay.left)));
     (stays.len() > 1).then(|| format!("rooms, in order: {}", told.collect::<Vec<_>>().join(", ")))
 }
 
-fn door(opening: &Opening) -> String {
-    let Opening { before, behind, from, to, .. } = opening;
+fn door_line(opening: &RoomOpening) -> String {
+    let RoomOpening { before, behind, from, to, .. } = opening;
     format!("between Frame {before} and Frame {behind} a door leads from the {from} into the {to}")
 }
 
 /// The line for a bend of several moves, which a text should describe as one turn.
-fn bend(bend: &Bend) -> Option<String> {
+fn bend_line(bend: &WalkBend) -> Option<String> {
     let way = match bend.side() {
         Side::Left => "to the left",
         Side::Right => "to the right",
@@ -38,23 +38,23 @@ fn bend(bend: &Bend) -> Option<String> {
     };
     let slight = if bend.is_slight() { "slight " } else { "" };
     (bend.last > bend.first)
-        .then(|| format!("the turns from {} are one {slight}bend {way}", frames(bend.first, bend.last)))
+        .then(|| format!("the turns from {} are one {slight}bend {way}", frame_range(bend.first, bend.last)))
 }
 
 /// The line for a thing that the walk passes, that is seen from several frames, or that is near the end.
-fn told_thing(memory: &Memory, thing: &Remembered) -> Option<String> {
-    let end = memory.frames().saturating_sub(1);
+fn told_thing(memory: &WalkMemory, thing: &RememberedThing) -> Option<String> {
+    let end = memory.frame_count().saturating_sub(1);
     let at_end = memory.distance_m(thing, end).filter(|distance_m| *distance_m < NEAR_END_M);
     if thing.passed.is_none() && thing.glimpses.len() < 2 && at_end.is_none() {
         return None;
     }
     let colour = thing.colour.as_ref().filter(|colour| !thing.name.contains(colour.as_str()));
     let colour = colour.map_or(String::new(), |colour| format!("{colour} "));
-    let mut told = format!("{colour}{}: seen from {}", thing.name, frames(thing.first_seen(), thing.last_seen()));
+    let mut told = format!("{colour}{}: seen from {}", thing.name, frame_range(thing.first_seen(), thing.last_seen()));
     if let Some(passed) = thing.passed {
         let side = if passed.side == Side::Left { "left" } else { "right" };
         told += &format!(", passed on the {side} at Frame {}", passed.frame);
-        if let Some((place, all)) = memory.ordinal(thing).filter(|(_, all)| *all > 1) {
+        if let Some((place, all)) = memory.ordinal_among_alike(thing).filter(|(_, all)| *all > 1) {
             told += &format!(" (number {place} of {all} on that side)");
         }
     }
@@ -64,6 +64,6 @@ fn told_thing(memory: &Memory, thing: &Remembered) -> Option<String> {
     Some(told)
 }
 
-fn frames(first: usize, last: usize) -> String {
+fn frame_range(first: usize, last: usize) -> String {
     if first == last { format!("Frame {first}") } else { format!("Frames {first} to {last}") }
 }

@@ -1,66 +1,74 @@
 use super::*;
 use crate::{
-    dialogue::OPENING,
-    style::{Profile, built_in},
-    walk::Walk,
-    writer::Complaint,
+    dialogue::OPENING_REQUEST,
+    style::{StyleProfile, built_in},
+    walk::ObservedWalk,
+    writer::TextComplaint,
 };
 use wayword_core::{
-    Caption, Check, DVec3, Distinction, Finding, Gaze, Look, Motion, ObjectId, Observation, Path, SceneId, Side, Style,
-    Target, Verdict, Where, path::Stop,
+    Caption, CaptionedView, CheckFinding, CheckKind, DVec3, FrameObservation, InstructionStyle, ObjectDistinction,
+    ObjectId, Path, PathMotion, PathTarget, SceneId, Side, Verdict, ViewGaze, ViewThird, path::PathStop,
 };
 
-fn transcript() -> Vec<Exchange> {
+fn transcript() -> Vec<DialogueExchange> {
     [
         ("Describe in detail what you see.", "There is a bed in the middle."),
         ("Is there a mirror?", "No, there is no mirror."),
     ]
-    .map(|(question, answer)| Exchange::new(question, answer))
+    .map(|(question, answer)| DialogueExchange::new(question, answer))
     .to_vec()
 }
 
-fn walk() -> Walk {
-    let stop = |x: f64, y: f64, z: f64| Stop { position: DVec3::new(x, y, z), viewpoint: None, level: None };
+fn walk() -> ObservedWalk {
+    let stop = |x: f64, y: f64, z: f64| PathStop { position: DVec3::new(x, y, z), viewpoint: None, level: None };
     let frames = Path::frames_along(
         vec![stop(0.0, 0.0, 1.5), stop(0.0, 3.0, 1.5), stop(2.0, 3.0, 1.5), stop(4.0, 3.0, 4.3)],
         None,
     );
-    let target = Target {
+    let target = PathTarget {
         object: ObjectId::new("7").unwrap(),
         name: "lamp".into(),
-        told_by: vec![Distinction::NextTo { neighbour: "bed".into() }],
+        told_by: vec![ObjectDistinction::NextTo { neighbour: "bed".into() }],
         has_namesake: true,
         descriptions: Vec::new(),
         hangs: false,
         storeys: 0,
     };
-    let path =
-        Path { id: "p".into(), scene: SceneId::new("s").unwrap(), frames, motion: Motion::Known, target: Some(target) };
+    let path = Path {
+        id: "p".into(),
+        scene: SceneId::new("s").unwrap(),
+        frames,
+        motion: PathMotion::Known,
+        target: Some(target),
+    };
     let summaries =
         ["A hallway with a picture.", "A hallway with a plant.", "Some stairs.", "A bedroom with a bed and two lamps."];
-    Walk::new(path, summaries.map(|summary| Observation { summary: summary.into(), ..Observation::default() }).to_vec())
+    ObservedWalk::new(
+        path,
+        summaries.map(|summary| FrameObservation { summary: summary.into(), ..FrameObservation::default() }).to_vec(),
+    )
 }
 
 #[test]
 fn the_dialogue_prompts() {
     let prompts = Prompts::new(&[]).unwrap();
-    insta::assert_snapshot!("question", prompts.question(&transcript()).unwrap());
-    let answer = |manner| prompts.answer(manner, "What colour is the bed?", &transcript()).unwrap();
-    insta::assert_snapshot!("answer", answer(Manner::Chat));
-    assert_eq!(answer(Manner::Question), "What colour is the bed?");
+    insta::assert_snapshot!("question", prompts.question_prompt(&transcript()).unwrap());
+    let answer = |manner| prompts.answer_prompt(manner, "What colour is the bed?", &transcript()).unwrap();
+    insta::assert_snapshot!("answer", answer(PromptManner::Chat));
+    assert_eq!(answer(PromptManner::Question), "What colour is the bed?");
     assert_eq!(
-        answer(Manner::Completion),
+        answer(PromptManner::Completion),
         "Question: Is there a mirror? Answer: No, there is no mirror. Question: What colour is the bed? Answer:"
     );
-    assert_eq!(prompts.answer(Manner::Question, OPENING, &[]).unwrap(), "");
-    assert_eq!(prompts.answer(Manner::Completion, OPENING, &[]).unwrap(), "a photo of");
-    let told = crate::dialogue::sightings(&transcript(), "test");
-    insta::assert_snapshot!("summary", prompts.summary(&transcript(), &told, &[]).unwrap());
+    assert_eq!(prompts.answer_prompt(PromptManner::Question, OPENING_REQUEST, &[]).unwrap(), "");
+    assert_eq!(prompts.answer_prompt(PromptManner::Completion, OPENING_REQUEST, &[]).unwrap(), "a photo of");
+    let told = crate::dialogue::dialogue_sightings(&transcript(), "test");
+    insta::assert_snapshot!("summary", prompts.summary_prompt(&transcript(), &told, &[]).unwrap());
     let complaints = ["it names a mirror, which was denied".to_owned()];
-    insta::assert_snapshot!("summary_again", prompts.summary(&transcript(), &told, &complaints).unwrap());
+    insta::assert_snapshot!("summary_again", prompts.summary_prompt(&transcript(), &told, &complaints).unwrap());
     insta::assert_snapshot!(
         "condense",
-        prompts.condense(&[("north", "a bed"), ("east", "a window")], 20, &[]).unwrap()
+        prompts.condense_prompt(&[("north", "a bed"), ("east", "a window")], 20, &[]).unwrap()
     );
 }
 
@@ -70,32 +78,32 @@ fn the_writing_prompts() {
     let walk = walk();
     for name in ["r2r", "reverie"] {
         let style = built_in(name).unwrap();
-        let profile = Profile::measure(&style.references);
-        let findings = vec![Finding {
-            check: Check::Form,
+        let profile = StyleProfile::from_references(&style.references);
+        let findings = vec![CheckFinding {
+            check: CheckKind::Form,
             verdict: Verdict::Fail,
             reason: "22 words where the style asks for fewer than 20".into(),
             span: None,
         }];
-        let complaints = [Complaint { text: "Go up.".into(), findings }];
+        let complaints = [TextComplaint { text: "Go up.".into(), findings }];
         let complaints = if name == "reverie" { &complaints[..] } else { &[] };
         let memory = walk.memory();
-        let brief = Brief { complaints, ..Brief::new(&walk, &memory, &style, &profile, 0) };
-        insta::assert_snapshot!(format!("write_{name}"), prompts.write(&brief).unwrap());
+        let brief = WritingBrief { complaints, ..WritingBrief::new(&walk, &memory, &style, &profile, 0) };
+        insta::assert_snapshot!(format!("write_{name}"), prompts.writing_prompt(&brief).unwrap());
     }
 }
 
 #[test]
 fn writing_prompt_without_poses_forbids_invented_motion() {
     let mut path = walk().path;
-    path.motion = Motion::Unknown;
-    path.target.as_mut().unwrap().told_by = vec![Distinction::OnSide { side: Side::Left }];
-    let walk = Walk::new(path, walk().observations);
+    path.motion = PathMotion::Unknown;
+    path.target.as_mut().unwrap().told_by = vec![ObjectDistinction::OnSide { side: Side::Left }];
+    let walk = ObservedWalk::new(path, walk().observations);
     let style = built_in("reverie").unwrap();
-    let profile = Profile::measure(&style.references);
+    let profile = StyleProfile::from_references(&style.references);
     let memory = walk.memory();
-    let brief = Brief::new(&walk, &memory, &style, &profile, 0);
-    insta::assert_snapshot!("write_without_poses", Prompts::new(&[]).unwrap().write(&brief).unwrap());
+    let brief = WritingBrief::new(&walk, &memory, &style, &profile, 0);
+    insta::assert_snapshot!("write_without_poses", Prompts::new(&[]).unwrap().writing_prompt(&brief).unwrap());
 }
 
 #[test]
@@ -103,52 +111,55 @@ fn a_style_without_tasks_is_given_none_to_end_in() {
     let (prompts, walk) = (Prompts::new(&[]).unwrap(), walk());
     let tells_task = |name: &str| {
         let style = built_in(name).unwrap();
-        let profile = Profile::measure(&style.references);
+        let profile = StyleProfile::from_references(&style.references);
         let memory = walk.memory();
-        let brief = Brief::new(&walk, &memory, &style, &profile, 0);
-        prompts.write(&brief).unwrap().contains("ends in a task")
+        let brief = WritingBrief::new(&walk, &memory, &style, &profile, 0);
+        prompts.writing_prompt(&brief).unwrap().contains("ends in a task")
     };
     assert!(!tells_task("r2r") && tells_task("reverie"));
 }
 
 /// The prompt after one refusal, about some words of the refused text.
-fn after_refusal(text: &str, check: Check, words: &str, reason: &str) -> String {
+fn after_refusal(text: &str, check: CheckKind, words: &str, reason: &str) -> String {
     let start = text.find(words).unwrap();
     let span = Some([start, start + words.len()]);
-    let finding = Finding { check, verdict: Verdict::Fail, reason: reason.into(), span };
-    let complaints = [Complaint { text: text.into(), findings: vec![finding] }];
+    let finding = CheckFinding { check, verdict: Verdict::Fail, reason: reason.into(), span };
+    let complaints = [TextComplaint { text: text.into(), findings: vec![finding] }];
     let (walk, style) = (walk(), built_in("r2r").unwrap());
-    let profile = Profile::measure(&style.references);
+    let profile = StyleProfile::from_references(&style.references);
     let memory = walk.memory();
-    let brief = Brief { complaints: &complaints, ..Brief::new(&walk, &memory, &style, &profile, 0) };
-    Prompts::new(&[]).unwrap().write(&brief).unwrap()
+    let brief = WritingBrief { complaints: &complaints, ..WritingBrief::new(&walk, &memory, &style, &profile, 0) };
+    Prompts::new(&[]).unwrap().writing_prompt(&brief).unwrap()
 }
 
 #[test]
 fn reasons_of_a_refusal_contain_the_correction() {
     let reason = "the path does not turn left there";
-    let one = after_refusal("Walk on. Turn left. Go up the stairs.", Check::Turns, "Turn left", reason);
+    let one = after_refusal("Walk on. Turn left. Go up the stairs.", CheckKind::Turns, "Turn left", reason);
     assert!(
         one.contains(
             "you wrote \"Turn left\": the path does not turn left there (the walk turns right there, at Frame 1)"
         ),
         "{one}"
     );
-    let two = after_refusal("Turn left. Turn left. Stop.", Check::Turns, "Turn left", reason);
+    let two = after_refusal("Turn left. Turn left. Stop.", CheckKind::Turns, "Turn left", reason);
     assert!(two.contains("the turns of the walk are, in order: turns right at Frame 1"), "{two}");
-    let down = after_refusal("Go down the stairs.", Check::Floors, "down the stairs", "it does not go down");
+    let down = after_refusal("Go down the stairs.", CheckKind::Floors, "down the stairs", "it does not go down");
     assert!(down.contains("it goes up stairs from Frame 2"), "{down}");
-    let piano = after_refusal("Go past the piano.", Check::Landmarks, "piano", "no frame of the path shows \"piano\"");
+    let piano =
+        after_refusal("Go past the piano.", CheckKind::Landmarks, "piano", "no frame of the path shows \"piano\"");
     assert!(piano.contains("name something that the frames show"), "{piano}");
 }
 
 #[test]
 fn a_prompt_shows_at_most_24_references_whatever_the_style_has() {
     let references: Vec<String> = (0..500).map(|at| format!("Walk past chair {at}.")).collect();
-    let style = Style { references, ..built_in("r2r").unwrap() };
-    let (walk, profile) = (walk(), Profile::measure(&style.references));
+    let style = InstructionStyle { references, ..built_in("r2r").unwrap() };
+    let (walk, profile) = (walk(), StyleProfile::from_references(&style.references));
     let memory = walk.memory();
-    let of = |seed| Prompts::new(&[]).unwrap().write(&Brief::new(&walk, &memory, &style, &profile, seed)).unwrap();
+    let of = |seed| {
+        Prompts::new(&[]).unwrap().writing_prompt(&WritingBrief::new(&walk, &memory, &style, &profile, seed)).unwrap()
+    };
     assert_eq!(of(1).matches("Walk past chair").count(), 24);
     assert_eq!(of(1), of(1));
     assert_ne!(of(1), of(2));
@@ -157,26 +168,30 @@ fn a_prompt_shows_at_most_24_references_whatever_the_style_has() {
 #[test]
 fn writing_prompt_lists_things_of_frames_and_marks_an_unseen_target() {
     let style = built_in("reverie").unwrap();
-    let profile = Profile::measure(&style.references);
-    let prompt =
-        |walk: &Walk| Prompts::new(&[]).unwrap().write(&Brief::new(walk, &walk.memory(), &style, &profile, 0)).unwrap();
+    let profile = StyleProfile::from_references(&style.references);
+    let prompt = |walk: &ObservedWalk| {
+        Prompts::new(&[])
+            .unwrap()
+            .writing_prompt(&WritingBrief::new(walk, &walk.memory(), &style, &profile, 0))
+            .unwrap()
+    };
     let mut seen = walk();
     let target = seen.path.target.as_mut().unwrap();
     (target.has_namesake, target.name) = (false, "lamp".into());
     assert!(prompt(&seen).contains("lamp (no description mentions it"), "{}", prompt(&seen));
-    let sighting = |name: &str, witness, place| Sighting {
+    let sighting = |name: &str, witness, place| ObjectSighting {
         place,
         colour: Some("white".into()),
-        ..Sighting::new(name, witness, "test")
+        ..ObjectSighting::new(name, witness, "test")
     };
     let sightings = vec![
-        sighting("lamp", Witness::Seen, Some(Where::Left)),
-        sighting("bed", Witness::Seen, None),
-        sighting("mirror", Witness::Denied, None),
-        sighting("soft", Witness::Seen, None),
+        sighting("lamp", WitnessAnswer::Seen, Some(ViewThird::Left)),
+        sighting("bed", WitnessAnswer::Seen, None),
+        sighting("mirror", WitnessAnswer::Denied, None),
+        sighting("soft", WitnessAnswer::Seen, None),
     ];
-    let gaze = Gaze::quarter(seen.path.frames[3].pose.heading);
-    seen.observations[3].looks = vec![Look { gaze, caption: Caption { sightings, ..Caption::default() } }];
+    let gaze = ViewGaze::quarter_view(seen.path.frames[3].pose.heading);
+    seen.observations[3].looks = vec![CaptionedView { gaze, caption: Caption { sightings, ..Caption::default() } }];
     let prompt = prompt(&seen);
     assert!(!prompt.contains("no description mentions it"), "{prompt}");
     assert!(prompt.contains("Landmarks: white lamp (left), white bed\n"), "{prompt}");
@@ -186,22 +201,29 @@ fn writing_prompt_lists_things_of_frames_and_marks_an_unseen_target() {
 #[test]
 fn writing_prompt_describes_each_thing_and_room_once() {
     let mut walk = walk();
-    let looks =
-        [("hallway", Where::Left), ("hallway", Where::Left), ("hallway", Where::Right), ("bedroom", Where::Middle)];
+    let looks = [
+        ("hallway", ViewThird::Left),
+        ("hallway", ViewThird::Left),
+        ("hallway", ViewThird::Right),
+        ("bedroom", ViewThird::Middle),
+    ];
     for (at, (room, place)) in looks.into_iter().enumerate() {
-        let gaze = Gaze::quarter(walk.path.frames[at].pose.heading);
-        let sofa = Sighting {
+        let gaze = ViewGaze::quarter_view(walk.path.frames[at].pose.heading);
+        let sofa = ObjectSighting {
             place: Some(place),
             colour: Some("grey".into()),
-            ..Sighting::new("sofa", Witness::Seen, "test")
+            ..ObjectSighting::new("sofa", WitnessAnswer::Seen, "test")
         };
         let sightings = if at < 2 { vec![sofa] } else { Vec::new() };
         let caption = Caption { room: Some(room.into()), sightings, ..Caption::default() };
-        walk.observations[at].looks = vec![Look { gaze, caption }];
+        walk.observations[at].looks = vec![CaptionedView { gaze, caption }];
     }
     let style = built_in("r2r").unwrap();
-    let profile = Profile::measure(&style.references);
-    let prompt = Prompts::new(&[]).unwrap().write(&Brief::new(&walk, &walk.memory(), &style, &profile, 0)).unwrap();
+    let profile = StyleProfile::from_references(&style.references);
+    let prompt = Prompts::new(&[])
+        .unwrap()
+        .writing_prompt(&WritingBrief::new(&walk, &walk.memory(), &style, &profile, 0))
+        .unwrap();
     let told = prompt.split("each thing once:").nth(1).unwrap().split("These are reference").next().unwrap();
     assert!(told.contains("- rooms, in order: hallway (Frames 0 to 2), bedroom (Frame 3)"), "{told}");
     assert!(told.contains("- between Frame 2 and Frame 3 a door leads from the hallway into the bedroom"), "{told}");
@@ -212,16 +234,16 @@ fn writing_prompt_describes_each_thing_and_room_once() {
 #[test]
 fn unanswered_questions_are_left_out_of_prompts() {
     let prompts = Prompts::new(&[]).unwrap();
-    let history = [Exchange::new(OPENING, "A bed."), Exchange::new("Is there a rug?", "")];
-    for manner in [Manner::Chat, Manner::Completion] {
-        assert!(!prompts.answer(manner, "Is there a lamp?", &history).unwrap().contains("rug"));
+    let history = [DialogueExchange::new(OPENING_REQUEST, "A bed."), DialogueExchange::new("Is there a rug?", "")];
+    for manner in [PromptManner::Chat, PromptManner::Completion] {
+        assert!(!prompts.answer_prompt(manner, "Is there a lamp?", &history).unwrap().contains("rug"));
     }
 }
 
 #[test]
 fn a_user_prompt_replaces_the_built_in_one_and_changes_the_hash() {
     let own = Prompts::new(&[("answer".into(), "{{ question }}!".into())]).unwrap();
-    assert_eq!(own.answer(Manner::Chat, "What", &[]).unwrap(), "What!");
+    assert_eq!(own.answer_prompt(PromptManner::Chat, "What", &[]).unwrap(), "What!");
     assert_ne!(own.hash(), Prompts::new(&[]).unwrap().hash());
 }
 
@@ -277,25 +299,25 @@ fn common_filters_are_offered() {
                   {{ history | map(attribute='answer') | join('; ') | indent(2, true) | trim }} {{ question | tojson }} \
                   {{ [3, 1, 2] | sort | first }}{{ nothing | default(4) }}{% raw %} {{ a * b }}{% endraw %}";
     let own = Prompts::new(&[("answer".into(), source.into())]).unwrap();
-    let history = [Exchange::new("Where?", "In a hall."), Exchange::new("What?", "A <rug>.")];
+    let history = [DialogueExchange::new("Where?", "In a hall."), DialogueExchange::new("What?", "A <rug>.")];
     assert_eq!(
-        own.answer(Manner::Chat, "what", &history).unwrap(),
+        own.answer_prompt(PromptManner::Chat, "what", &history).unwrap(),
         "**A** * WHbT! 3 In a hall.; A <rug>. \"what\" 14 {{ a * b }}"
     );
 }
 
 #[test]
 fn the_longest_style_and_walk_that_are_allowed_fit_into_a_prompt() {
-    let style = Style { references: vec!["a ".repeat(2000); 1000], ..built_in("r2r").unwrap() };
-    let profile = Profile::measure(&built_in("r2r").unwrap().references);
+    let style = InstructionStyle { references: vec!["a ".repeat(2000); 1000], ..built_in("r2r").unwrap() };
+    let profile = StyleProfile::from_references(&built_in("r2r").unwrap().references);
     let mut long = walk();
     long.path.frames = long.path.frames.iter().cycle().take(1000).cloned().collect();
     let summary = "A hallway with a picture. ".repeat(40);
-    let observations = vec![Observation { summary, ..Observation::default() }; 1000];
-    let walk = Walk::new(long.path, observations);
+    let observations = vec![FrameObservation { summary, ..FrameObservation::default() }; 1000];
+    let walk = ObservedWalk::new(long.path, observations);
     let memory = walk.memory();
-    let brief = Brief::new(&walk, &memory, &style, &profile, 0);
-    assert!(Prompts::new(&[]).unwrap().write(&brief).is_ok());
+    let brief = WritingBrief::new(&walk, &memory, &style, &profile, 0);
+    assert!(Prompts::new(&[]).unwrap().writing_prompt(&brief).is_ok());
 }
 
 #[test]

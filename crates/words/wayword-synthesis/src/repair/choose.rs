@@ -1,8 +1,8 @@
 //! Chooses among several candidate texts of one walk the one by which a follower finds the way most surely.
 
-use super::{Order, Outcome, attempts};
-use crate::{observe::Observers, writer::Writer};
-use wayword_core::{Chosen, ChosenBy, Instruction, ModelError, Verdict};
+use super::{InstructionOrder, WritingOutcome, write_until_good};
+use crate::{observe::ObservationRoles, writer::InstructionWriter};
+use wayword_core::{ChosenBy, Instruction, ModelError, TextSelection, Verdict};
 use wayword_language::text::word_count;
 
 /// The cost of a word in natural logs of the probability to arrive: of two texts that lead there equally surely the
@@ -10,36 +10,40 @@ use wayword_language::text::word_count;
 const COST_OF_A_WORD: f64 = 0.005;
 
 /// Writes all candidates, each with its repairs, and returns the best.
-pub(super) fn written(writer: &dyn Writer, observers: Observers<'_>, order: Order<'_>) -> Result<Outcome, ModelError> {
-    let mut accepted: Vec<Candidate> = Vec::new();
-    let mut rejected: Option<Outcome> = None;
+pub(super) fn write_best(
+    writer: &dyn InstructionWriter,
+    observers: ObservationRoles<'_>,
+    order: InstructionOrder<'_>,
+) -> Result<WritingOutcome, ModelError> {
+    let mut accepted: Vec<TextCandidate> = Vec::new();
+    let mut rejected: Option<WritingOutcome> = None;
     let mut passed = 0;
     let all = 0..order.candidates.max(1);
     for number in order.only.map_or(all, |only| only..only + 1) {
-        match attempts(writer, observers, order, number)? {
-            Outcome::Accepted(instruction) => {
+        match write_until_good(writer, observers, order, number)? {
+            WritingOutcome::Accepted(instruction) => {
                 passed += 1;
                 if accepted.iter().all(|other| other.instruction.text != instruction.text) {
-                    accepted.push(Candidate { number, instruction });
+                    accepted.push(TextCandidate { number, instruction });
                 }
             }
-            outcome @ Outcome::Rejected { .. } => rejected = rejected.or(Some(outcome)),
+            outcome @ WritingOutcome::Rejected { .. } => rejected = rejected.or(Some(outcome)),
         }
     }
-    let (best, by) = best(accepted, order);
+    let (best, by) = best_candidate(accepted, order);
     Ok(match (best, rejected) {
-        (Some(Candidate { number, mut instruction }), _) => {
-            let chosen = Chosen { among: order.candidates, passed, number, by };
+        (Some(TextCandidate { number, mut instruction }), _) => {
+            let chosen = TextSelection { among: order.candidates, passed, number, by };
             instruction.provenance.chosen = (order.candidates > 1).then_some(chosen);
-            Outcome::Accepted(instruction)
+            WritingOutcome::Accepted(instruction)
         }
         (None, Some(rejected)) => rejected,
-        (None, None) => Outcome::Rejected { last: None, reason: "no text was written".to_owned() },
+        (None, None) => WritingOutcome::Rejected { last: None, reason: "no text was written".to_owned() },
     })
 }
 
 /// One of several texts for a walk.
-struct Candidate {
+struct TextCandidate {
     /// Its number, from 0.
     number: u32,
     instruction: Instruction,
@@ -47,18 +51,18 @@ struct Candidate {
 
 /// The best candidate, and how it was chosen. A text that passes all checks is preferred to one with something
 /// unverified.
-fn best(accepted: Vec<Candidate>, order: Order<'_>) -> (Option<Candidate>, ChosenBy) {
+fn best_candidate(accepted: Vec<TextCandidate>, order: InstructionOrder<'_>) -> (Option<TextCandidate>, ChosenBy) {
     let verdict = accepted.iter().map(|candidate| candidate.instruction.verdict).min().unwrap_or(Verdict::Pass);
     let mut alike = accepted.into_iter().filter(|candidate| candidate.instruction.verdict == verdict);
     let Some(follower) = order.follower.filter(|_| order.candidates > 1) else {
         return (alike.next(), ChosenBy::Checks);
     };
-    let score = |Candidate { instruction, .. }: &Candidate| {
-        follower.leads_there(&instruction.text).map(|share| worth(share, instruction))
+    let score = |TextCandidate { instruction, .. }: &TextCandidate| {
+        follower.leads_there(&instruction.text).map(|share| text_worth(share, instruction))
     };
-    let scored: Vec<(Option<f64>, Candidate)> = alike.map(|candidate| (score(&candidate), candidate)).collect();
+    let scored: Vec<(Option<f64>, TextCandidate)> = alike.map(|candidate| (score(&candidate), candidate)).collect();
     let by = if scored.iter().any(|(score, _)| score.is_some()) { ChosenBy::Follower } else { ChosenBy::Checks };
-    let mut best: Option<(Option<f64>, Candidate)> = None;
+    let mut best: Option<(Option<f64>, TextCandidate)> = None;
     for (score, candidate) in scored {
         // Of equal ones the first is chosen.
         if best.as_ref().is_none_or(|(before, _)| score > *before) {
@@ -70,7 +74,7 @@ fn best(accepted: Vec<Candidate>, order: Order<'_>) -> (Option<Candidate>, Chose
 
 /// The value of a text that leads to the end with probability `share`, natural logs: this probability times the chance
 /// to take the right object there, less the cost of its words.
-fn worth(share: f64, instruction: &Instruction) -> f64 {
+fn text_worth(share: f64, instruction: &Instruction) -> f64 {
     let objects = instruction.ambiguity.as_ref().map_or(1, |ambiguity| ambiguity.objects.max(1));
     share.max(f64::MIN_POSITIVE).ln() - (objects as f64).ln() - COST_OF_A_WORD * word_count(&instruction.text) as f64
 }
@@ -80,23 +84,23 @@ mod tests {
     use super::*;
     use crate::{
         dialogue::RulesAsker,
-        offline::Labels,
+        offline::LabelAnswerer,
         repair::{
-            Follow,
+            TextFollower,
             tests::{GOOD, Scripted, observers, order, walk},
         },
-        style::{Profile, built_in},
+        style::{StyleProfile, built_in},
     };
-    use wayword_checks::Checked;
-    use wayword_core::Ambiguity;
+    use wayword_checks::TextFindings;
+    use wayword_core::TextAmbiguity;
 
     /// A follower that finds the end the more surely the more often a text contains "lamp", and cannot follow one that
     /// names the sofa.
     struct LampFinder;
 
-    impl Follow for LampFinder {
-        fn follow(&self, _: &str, _: &mut Checked) -> Ambiguity {
-            Ambiguity { objects: 1, ..Ambiguity::default() }
+    impl TextFollower for LampFinder {
+        fn follow(&self, _: &str, _: &mut TextFindings) -> TextAmbiguity {
+            TextAmbiguity { objects: 1, ..TextAmbiguity::default() }
         }
 
         fn leads_there(&self, text: &str) -> Option<f64> {
@@ -108,21 +112,22 @@ mod tests {
     const ON: &str = "Walk straight ahead and turn right. Stop at the sink.";
     const TO_A_PIANO: &str = "Walk to the piano and turn right. Stop at the sink.";
 
-    fn kept(texts: &[&str], follower: Option<&dyn Follow>) -> Instruction {
+    fn kept(texts: &[&str], follower: Option<&dyn TextFollower>) -> Instruction {
         let walk = walk();
         let evidence = walk.evidence().unwrap();
         let style = built_in("r2r").unwrap();
-        let profile = Profile::of(&style);
+        let profile = StyleProfile::for_style(&style);
         let memory = walk.memory();
         let candidates = u32::try_from(texts.len()).unwrap();
-        let order = Order { repairs: 0, candidates, follower, ..order(&walk, &memory, &evidence, &style, &profile) };
+        let order =
+            InstructionOrder { repairs: 0, candidates, follower, ..order(&walk, &memory, &evidence, &style, &profile) };
         let asker = RulesAsker::default();
-        let labels = Labels::default();
+        let labels = LabelAnswerer::default();
         let observers = observers(&asker, &labels);
         let writer = Scripted::new(texts.iter().map(|text| Ok((*text).to_owned())).collect());
-        match written(&writer, observers, order).unwrap() {
-            Outcome::Accepted(instruction) => instruction,
-            Outcome::Rejected { reason, .. } => panic!("{reason}"),
+        match write_best(&writer, observers, order).unwrap() {
+            WritingOutcome::Accepted(instruction) => instruction,
+            WritingOutcome::Rejected { reason, .. } => panic!("{reason}"),
         }
     }
 
@@ -130,16 +135,22 @@ mod tests {
     fn write_best_chooses_the_text_that_leads_there_most_surely() {
         let kept = kept(&[ON, TO_A_PIANO, TO_THE_LAMP, GOOD], Some(&LampFinder));
         assert_eq!(kept.text, TO_THE_LAMP);
-        assert_eq!(kept.provenance.chosen, Some(Chosen { among: 4, passed: 3, number: 2, by: ChosenBy::Follower }));
+        assert_eq!(
+            kept.provenance.chosen,
+            Some(TextSelection { among: 4, passed: 3, number: 2, by: ChosenBy::Follower })
+        );
     }
 
     #[test]
     fn write_best_chooses_by_checks_without_a_usable_follower() {
-        let follower: &dyn Follow = &LampFinder;
+        let follower: &dyn TextFollower = &LampFinder;
         for follower in [None, Some(follower)] {
             let kept = kept(&[TO_A_PIANO, GOOD], follower);
             assert_eq!(kept.text, GOOD);
-            assert_eq!(kept.provenance.chosen, Some(Chosen { among: 2, passed: 1, number: 1, by: ChosenBy::Checks }));
+            assert_eq!(
+                kept.provenance.chosen,
+                Some(TextSelection { among: 2, passed: 1, number: 1, by: ChosenBy::Checks })
+            );
         }
     }
 

@@ -4,29 +4,31 @@
 mod choose;
 
 use crate::{
-    dialogue::Mode,
-    observe::Observers,
-    style::Profile,
-    walk::Walk,
-    writer::{Brief, Complaint, FramePicture, RulesWriter, WriteError, Writer},
+    dialogue::DialogueMode,
+    observe::ObservationRoles,
+    style::StyleProfile,
+    walk::ObservedWalk,
+    writer::{FramePicture, InstructionWriter, RulesWriter, TextComplaint, WriteError, WritingBrief},
 };
-use wayword_checks::{Checked, Evidence, Memory, Subject, check_own};
-use wayword_core::{Ambiguity, Check, Finding, Instruction, ModelError, Provenance, Style, Verdict, seed};
-use wayword_language::text::words;
+use wayword_checks::{CheckSubject, Evidence, TextFindings, WalkMemory, check_own};
+use wayword_core::{
+    CheckFinding, CheckKind, Instruction, InstructionStyle, ModelError, TextAmbiguity, TextProvenance, Verdict, seed,
+};
+use wayword_language::text::split_words;
 
 /// Everything that an instruction is made from.
 #[derive(Clone, Copy)]
-pub struct Order<'a> {
+pub struct InstructionOrder<'a> {
     /// The path and what was seen along it.
-    pub walk: &'a Walk,
+    pub walk: &'a ObservedWalk,
     /// What stays in mind of the walk, for the writer.
-    pub memory: &'a Memory,
+    pub memory: &'a WalkMemory,
     /// The evidence that the text is checked against.
     pub evidence: &'a Evidence,
     /// The style to write in.
-    pub style: &'a Style,
+    pub style: &'a InstructionStyle,
     /// The measured properties of the style's references.
-    pub profile: &'a Profile,
+    pub profile: &'a StyleProfile,
     /// The style's hash, for provenance.
     pub style_hash: &'a str,
     /// The run's seed.
@@ -38,7 +40,7 @@ pub struct Order<'a> {
     /// The number of the only candidate to write, if just one is wanted.
     pub only: Option<u32>,
     /// The follower for each text that passed its checks; `None` to skip this.
-    pub follower: Option<&'a dyn Follow>,
+    pub follower: Option<&'a dyn TextFollower>,
     /// Texts that the walk already has in this style. The new one has to differ from them.
     pub earlier: &'a [String],
     /// Pictures of frames, for a writer that sees.
@@ -46,9 +48,9 @@ pub struct Order<'a> {
 }
 
 /// Follows texts on the map around their path.
-pub trait Follow {
+pub trait TextFollower {
     /// Adds a finding to the checked text if it leads elsewhere, and returns what it may mean.
-    fn follow(&self, text: &str, checked: &mut Checked) -> Ambiguity;
+    fn follow(&self, text: &str, checked: &mut TextFindings) -> TextAmbiguity;
 
     /// How likely a text leads to the end of its walk, from 0 to 1, for the choice between texts. This uses another
     /// follower than [`Self::follow`], so that the text is not judged by the one that chose it. `None` if the text
@@ -58,16 +60,16 @@ pub trait Follow {
 
 /// The writer of an instruction, and the one that takes over if it fails.
 #[derive(Clone, Copy)]
-pub struct Writers<'a> {
+pub struct WriterPair<'a> {
     /// Writes first, and again with the reasons if its text fails.
-    pub writer: &'a dyn Writer,
+    pub writer: &'a dyn InstructionWriter,
     /// Writes if every text of the first writer failed; the provenance records it.
-    pub finisher: Option<&'a dyn Writer>,
+    pub finisher: Option<&'a dyn InstructionWriter>,
 }
 
 /// The result for one instruction: accepted, or rejected with the reasons.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Outcome {
+pub enum WritingOutcome {
     /// No check failed. A text with a check that could not be decided is accepted too; its verdict is then
     /// "unverified".
     Accepted(Instruction),
@@ -85,20 +87,20 @@ pub enum Outcome {
 /// # Errors
 /// When the writing model fails.
 pub fn write_and_repair(
-    writers: Writers<'_>,
-    observers: Observers<'_>,
-    order: Order<'_>,
-) -> Result<Outcome, ModelError> {
-    let first = choose::written(writers.writer, observers, order)?;
-    let (Outcome::Rejected { .. }, Some(finisher)) = (&first, writers.finisher) else { return Ok(first) };
-    let free = Order { repairs: order.repairs.max(FREE_REPAIRS), ..order };
-    let finished = choose::written(finisher, observers, free)?;
+    writers: WriterPair<'_>,
+    observers: ObservationRoles<'_>,
+    order: InstructionOrder<'_>,
+) -> Result<WritingOutcome, ModelError> {
+    let first = choose::write_best(writers.writer, observers, order)?;
+    let (WritingOutcome::Rejected { .. }, Some(finisher)) = (&first, writers.finisher) else { return Ok(first) };
+    let free = InstructionOrder { repairs: order.repairs.max(FREE_REPAIRS), ..order };
+    let finished = choose::write_best(finisher, observers, free)?;
     Ok(match finished {
-        Outcome::Accepted(mut instruction) => {
+        WritingOutcome::Accepted(mut instruction) => {
             instruction.provenance.finished_for = Some(writers.writer.name().to_owned());
-            Outcome::Accepted(instruction)
+            WritingOutcome::Accepted(instruction)
         }
-        Outcome::Rejected { .. } => first,
+        WritingOutcome::Rejected { .. } => first,
     })
 }
 
@@ -106,73 +108,78 @@ pub fn write_and_repair(
 const FREE_REPAIRS: u32 = 8;
 
 /// Lets one writer write until a text passes; `candidate` is the number of the candidate.
-fn attempts(
-    writer: &dyn Writer,
-    observers: Observers<'_>,
-    order: Order<'_>,
+fn write_until_good(
+    writer: &dyn InstructionWriter,
+    observers: ObservationRoles<'_>,
+    order: InstructionOrder<'_>,
     candidate: u32,
-) -> Result<Outcome, ModelError> {
-    let mut complaints: Vec<Complaint> = Vec::new();
+) -> Result<WritingOutcome, ModelError> {
+    let mut complaints: Vec<TextComplaint> = Vec::new();
     let mut least_bad: Option<Instruction> = None;
     for repairs in 0..=order.repairs {
-        let text = match writer.write(&brief(order, candidate, &complaints)) {
+        let text = match writer.write(&brief_for_attempt(order, candidate, &complaints)) {
             Ok(text) if is_there(&text, order.earlier) => {
-                complaints.push(unusable(text, "this way already has this text: write another one".to_owned()));
+                complaints
+                    .push(unusable_complaint(text, "this way already has this text: write another one".to_owned()));
                 continue;
             }
             Ok(text) => text,
             Err(error @ WriteError::NoObject) => {
-                return Ok(Outcome::Rejected { last: least_bad, reason: error.to_string() });
+                return Ok(WritingOutcome::Rejected { last: least_bad, reason: error.to_string() });
             }
             Err(WriteError::Unusable { text, reason }) => {
-                complaints.push(unusable(text, reason));
+                complaints.push(unusable_complaint(text, reason));
                 continue;
             }
             Err(WriteError::Model(error)) => return Err(error),
         };
-        let instruction = checked(text, provenance(writer, observers, order, repairs), order);
+        let instruction = check_text(text, text_provenance(writer, observers, order, repairs), order);
         // Attempts by rules are free, so they go on until every check passes. A model only writes again what failed a
         // check.
         let good_enough = if writer.name() == RulesWriter.name() { Verdict::Pass } else { Verdict::Unverified };
         if instruction.verdict <= good_enough {
-            return Ok(Outcome::Accepted(instruction));
+            return Ok(WritingOutcome::Accepted(instruction));
         }
-        complaints.push(Complaint { text: instruction.text.clone(), findings: instruction.findings.clone() });
+        complaints.push(TextComplaint { text: instruction.text.clone(), findings: instruction.findings.clone() });
         if least_bad.as_ref().is_none_or(|before| instruction.verdict < before.verdict) {
             least_bad = Some(instruction);
         }
     }
     Ok(match least_bad {
-        Some(instruction) if instruction.verdict == Verdict::Unverified => Outcome::Accepted(instruction),
-        last => Outcome::Rejected { reason: reasons(last.as_ref(), &complaints), last },
+        Some(instruction) if instruction.verdict == Verdict::Unverified => WritingOutcome::Accepted(instruction),
+        last => WritingOutcome::Rejected { reason: failure_reasons(last.as_ref(), &complaints), last },
     })
 }
 
-fn brief<'a>(order: Order<'a>, candidate: u32, complaints: &'a [Complaint]) -> Brief<'a> {
-    let Order { walk, memory, style, profile, earlier, pictures, .. } = order;
+fn brief_for_attempt<'a>(
+    order: InstructionOrder<'a>,
+    candidate: u32,
+    complaints: &'a [TextComplaint],
+) -> WritingBrief<'a> {
+    let InstructionOrder { walk, memory, style, profile, earlier, pictures, .. } = order;
     // A later text of the same walk gets its own seed.
     let seed = match earlier.len() {
         0 => order.seed,
-        number => seed::derive(order.seed, &["text", &number.to_string()]),
+        number => seed::derive_seed(order.seed, &["text", &number.to_string()]),
     };
-    Brief { candidate, complaints, earlier, pictures, ..Brief::new(walk, memory, style, profile, seed) }
+    WritingBrief { candidate, complaints, earlier, pictures, ..WritingBrief::new(walk, memory, style, profile, seed) }
 }
 
 /// Whether one of the earlier texts has the same words.
 fn is_there(text: &str, earlier: &[String]) -> bool {
-    let said = words(text);
-    earlier.iter().any(|other| words(other) == said)
+    let said = split_words(text);
+    earlier.iter().any(|other| split_words(other) == said)
 }
 
-fn unusable(text: String, reason: String) -> Complaint {
-    let finding = Finding { check: Check::Form, verdict: Verdict::Fail, reason, span: None };
-    Complaint { text, findings: vec![finding] }
+fn unusable_complaint(text: String, reason: String) -> TextComplaint {
+    let finding = CheckFinding { check: CheckKind::Form, verdict: Verdict::Fail, reason, span: None };
+    TextComplaint { text, findings: vec![finding] }
 }
 
-fn checked(text: String, provenance: Provenance, order: Order<'_>) -> Instruction {
+fn check_text(text: String, provenance: TextProvenance, order: InstructionOrder<'_>) -> Instruction {
     let target = order.walk.path.target.as_ref();
-    let subject = Subject::closed(order.evidence, order.style, target).with_copies(&order.profile.copies);
-    let mut checked = check_own(&text, Subject { writer_sees: !order.pictures.is_empty(), ..subject });
+    let subject = CheckSubject::closed_world(order.evidence, order.style, target).with_copies(&order.profile.copies);
+    let mut checked = check_own(&text, CheckSubject { writer_sees: !order.pictures.is_empty(), ..subject });
     // A failed text is written again anyway, so it is not followed.
     let follower = order.follower.filter(|_| checked.verdict() != Verdict::Fail);
     let ambiguity = follower.map(|follower| follower.follow(&text, &mut checked));
@@ -189,25 +196,30 @@ fn checked(text: String, provenance: Provenance, order: Order<'_>) -> Instructio
 
 /// The checks that the best text fails, with the reasons; if there is no text, the reason why the last reply was
 /// unusable.
-fn reasons(best: Option<&Instruction>, complaints: &[Complaint]) -> String {
+fn failure_reasons(best: Option<&Instruction>, complaints: &[TextComplaint]) -> String {
     let unusable = || complaints.last().map_or(&[][..], |complaint| &complaint.findings);
     let findings = best.map_or_else(unusable, |instruction| &instruction.findings);
     let failed = findings.iter().filter(|finding| finding.verdict == Verdict::Fail);
     failed.map(|finding| format!("{}: {}", finding.check.name(), finding.reason)).collect::<Vec<_>>().join("; ")
 }
 
-fn provenance(writer: &dyn Writer, observers: Observers<'_>, order: Order<'_>, repairs: u32) -> Provenance {
+fn text_provenance(
+    writer: &dyn InstructionWriter,
+    observers: ObservationRoles<'_>,
+    order: InstructionOrder<'_>,
+    repairs: u32,
+) -> TextProvenance {
     let asker = match observers.mode {
-        Mode::Dialogue { .. } => observers.asker.name(),
-        Mode::Fixed => "fixed queries",
-        Mode::Single => "one fixed request",
-        Mode::Structured { .. } => "one structured request",
+        DialogueMode::Dialogue { .. } => observers.asker.name(),
+        DialogueMode::Fixed => "fixed queries",
+        DialogueMode::Single => "one fixed request",
+        DialogueMode::Structured { .. } => "one structured request",
     };
     // Several looks of a frame are summarised even if a single answer described each.
     let condensed = order.walk.observations.iter().any(|observation| observation.looks.len() > 1);
-    let summed_up = observers.mode != Mode::Single || condensed;
+    let summed_up = observers.mode != DialogueMode::Single || condensed;
     let summariser = if summed_up { observers.summariser.name() } else { "nobody" };
-    Provenance {
+    TextProvenance {
         wayword: env!("CARGO_PKG_VERSION").to_owned(),
         asker: asker.to_owned(),
         answerer: observers.answerer.name().to_owned(),

@@ -1,14 +1,15 @@
 use super::*;
 use crate::{
     dialogue::{RulesAsker, RulesSummariser},
-    offline::Labels,
+    offline::LabelAnswerer,
     style::built_in,
     writer::RulesWriter,
 };
 use proptest::prelude::*;
 use std::sync::{Arc, Mutex};
 use wayword_core::{
-    Caption, DVec3, Gaze, Image, Look, Motion, Observation, Path, SceneId, Sighting, Where, Witness, path::Stop,
+    Caption, CaptionedView, DVec3, FrameObservation, Image, ObjectSighting, Path, PathMotion, SceneId, ViewGaze,
+    ViewThird, WitnessAnswer, path::PathStop,
 };
 
 /// A writer that gives prepared texts in their order, and counts the complaints that it gets.
@@ -24,50 +25,53 @@ impl Scripted {
     }
 }
 
-impl Writer for Scripted {
+impl InstructionWriter for Scripted {
     fn name(&self) -> &str {
         "test/scripted"
     }
 
-    fn write(&self, brief: &Brief<'_>) -> Result<String, WriteError> {
+    fn write(&self, brief: &WritingBrief<'_>) -> Result<String, WriteError> {
         self.complaints.lock().unwrap().push(brief.complaints.len());
         self.texts.lock().unwrap().pop().expect("it was asked too often")
     }
 }
 
-pub(super) fn walk() -> Walk {
+pub(super) fn walk() -> ObservedWalk {
     along(&[(0.0, 0.0), (0.0, 3.0), (3.0, 3.0)], &["sofa", "lamp", "sink"])
 }
 
 /// A walk over places, from each of which one thing is seen.
-fn along(places: &[(f64, f64)], things: &[&str]) -> Walk {
-    let stop = |(x, y): &(f64, f64)| Stop { position: DVec3::new(*x, *y, 1.5), viewpoint: None, level: None };
+fn along(places: &[(f64, f64)], things: &[&str]) -> ObservedWalk {
+    let stop = |(x, y): &(f64, f64)| PathStop { position: DVec3::new(*x, *y, 1.5), viewpoint: None, level: None };
     let path = Path {
         id: "p".into(),
         scene: SceneId::new("s").unwrap(),
         frames: Path::frames_along(places.iter().map(stop).collect(), None),
-        motion: Motion::Known,
+        motion: PathMotion::Known,
         target: None,
     };
-    let seen = |name: &str| Sighting { place: Some(Where::Middle), ..Sighting::new(name, Witness::Seen, "test") };
+    let seen = |name: &str| ObjectSighting {
+        place: Some(ViewThird::Middle),
+        ..ObjectSighting::new(name, WitnessAnswer::Seen, "test")
+    };
     let observations = path.frames.iter().zip(things).map(|(frame, name)| {
         let caption = Caption { text: format!("A {name}."), sightings: vec![seen(name)], ..Caption::default() };
-        let look = Look { gaze: Gaze::quarter(frame.pose.heading), caption };
-        Observation { summary: look.caption.text.clone(), looks: vec![look], by: None }
+        let look = CaptionedView { gaze: ViewGaze::quarter_view(frame.pose.heading), caption };
+        FrameObservation { summary: look.caption.text.clone(), looks: vec![look], by: None }
     });
     let observations = observations.collect();
-    Walk::new(path, observations)
+    ObservedWalk::new(path, observations)
 }
 
 /// An order for a single text about a walk, without further wishes.
 pub(super) fn order<'a>(
-    walk: &'a Walk,
-    memory: &'a Memory,
+    walk: &'a ObservedWalk,
+    memory: &'a WalkMemory,
     evidence: &'a Evidence,
-    style: &'a Style,
-    profile: &'a Profile,
-) -> Order<'a> {
-    Order {
+    style: &'a InstructionStyle,
+    profile: &'a StyleProfile,
+) -> InstructionOrder<'a> {
+    InstructionOrder {
         walk,
         memory,
         evidence,
@@ -85,44 +89,51 @@ pub(super) fn order<'a>(
 }
 
 /// Observers that ask by fixed queries; labels answer.
-pub(super) fn observers<'a>(asker: &'a RulesAsker, answerer: &'a Labels) -> Observers<'a> {
-    Observers { asker, answerer, summariser: &RulesSummariser, mode: Mode::Fixed, prompts_hash: None, detector: None }
+pub(super) fn observers<'a>(asker: &'a RulesAsker, answerer: &'a LabelAnswerer) -> ObservationRoles<'a> {
+    ObservationRoles {
+        asker,
+        answerer,
+        summariser: &RulesSummariser,
+        mode: DialogueMode::Fixed,
+        prompts_hash: None,
+        detector: None,
+    }
 }
 
 fn outcome(
     texts: Vec<Result<String, WriteError>>,
     finisher: bool,
     repairs: u32,
-) -> (Result<Outcome, ModelError>, Vec<usize>) {
+) -> (Result<WritingOutcome, ModelError>, Vec<usize>) {
     let walk = walk();
     let evidence = walk.evidence().unwrap();
-    outcome_against(&walk, &evidence, Mode::Dialogue { questions: 9 }, texts, finisher, repairs)
+    outcome_against(&walk, &evidence, DialogueMode::Dialogue { questions: 9 }, texts, finisher, repairs)
 }
 
 fn outcome_against(
-    walk: &Walk,
+    walk: &ObservedWalk,
     evidence: &Evidence,
-    mode: Mode,
+    mode: DialogueMode,
     texts: Vec<Result<String, WriteError>>,
     finisher: bool,
     repairs: u32,
-) -> (Result<Outcome, ModelError>, Vec<usize>) {
+) -> (Result<WritingOutcome, ModelError>, Vec<usize>) {
     let style = built_in("r2r").unwrap();
-    let profile = Profile::measure(&style.references);
+    let profile = StyleProfile::from_references(&style.references);
     let memory = walk.memory();
-    let order = Order { repairs, ..order(walk, &memory, evidence, &style, &profile) };
+    let order = InstructionOrder { repairs, ..order(walk, &memory, evidence, &style, &profile) };
     let asker = RulesAsker::default();
-    let observers = Observers {
+    let observers = ObservationRoles {
         asker: &asker,
-        answerer: &Labels::default(),
+        answerer: &LabelAnswerer::default(),
         summariser: &RulesSummariser,
         mode,
         prompts_hash: Some("hash"),
         detector: None,
     };
     let writer = Scripted::new(texts);
-    let finisher = finisher.then_some(&RulesWriter as &dyn Writer);
-    let outcome = write_and_repair(Writers { writer: &writer, finisher }, observers, order);
+    let finisher = finisher.then_some(&RulesWriter as &dyn InstructionWriter);
+    let outcome = write_and_repair(WriterPair { writer: &writer, finisher }, observers, order);
     (outcome, writer.complaints.into_inner().unwrap())
 }
 
@@ -137,7 +148,7 @@ const WITH_A_PIANO: &str = "Walk past the piano to the lamp and turn right. Stop
 fn a_text_with_a_hallucinated_object_goes_back_with_the_reason_until_it_is_right() {
     let cut_off = Err(WriteError::Unusable { text: "Walk past".into(), reason: "it was cut off".into() });
     let (outcome, complaints) = outcome(vec![said(WITH_A_PIANO), cut_off, said(GOOD)], true, 3);
-    let Outcome::Accepted(instruction) = outcome.unwrap() else { panic!("it was rejected") };
+    let WritingOutcome::Accepted(instruction) = outcome.unwrap() else { panic!("it was rejected") };
     assert_eq!((instruction.text.as_str(), instruction.provenance.repairs), (GOOD, 2));
     assert_eq!(instruction.provenance.writer, "test/scripted");
     assert_eq!(instruction.provenance.prompts_hash.as_deref(), Some("hash"));
@@ -148,7 +159,7 @@ fn a_text_with_a_hallucinated_object_goes_back_with_the_reason_until_it_is_right
 #[test]
 fn finisher_by_rules_takes_over_and_is_recorded() {
     let (outcome, complaints) = outcome(vec![said(WITH_A_PIANO), said(WITH_A_PIANO)], true, 1);
-    let Outcome::Accepted(instruction) = outcome.unwrap() else { panic!("it was rejected") };
+    let WritingOutcome::Accepted(instruction) = outcome.unwrap() else { panic!("it was rejected") };
     assert!(!instruction.text.contains("piano"), "{}", instruction.text);
     assert_eq!(instruction.provenance.writer, "rules");
     assert_eq!(instruction.provenance.finished_for.as_deref(), Some("test/scripted"));
@@ -158,7 +169,7 @@ fn finisher_by_rules_takes_over_and_is_recorded() {
 #[test]
 fn without_a_finisher_it_is_rejected_with_the_reason() {
     let (outcome, _) = outcome(vec![said(WITH_A_PIANO)], false, 0);
-    let Outcome::Rejected { last, reason } = outcome.unwrap() else { panic!("it was accepted") };
+    let WritingOutcome::Rejected { last, reason } = outcome.unwrap() else { panic!("it was accepted") };
     assert!(reason.contains("piano") && last.unwrap().text == WITH_A_PIANO, "{reason}");
 }
 
@@ -166,7 +177,7 @@ fn without_a_finisher_it_is_rejected_with_the_reason() {
 fn an_empty_text_is_rejected_with_the_reason() {
     let empty = || Err(WriteError::Unusable { text: String::new(), reason: "it was empty".into() });
     let (outcome, _) = outcome(vec![empty(), empty()], false, 1);
-    let Outcome::Rejected { last: None, reason } = outcome.unwrap() else { panic!("there is a text") };
+    let WritingOutcome::Rejected { last: None, reason } = outcome.unwrap() else { panic!("there is a text") };
     assert!(reason.contains("it was empty"), "{reason}");
 }
 
@@ -181,19 +192,19 @@ fn a_failing_model_ends_the_writing() {
 fn a_model_is_not_asked_again_for_an_unverified_text() {
     let walk = walk();
     let nothing = Evidence::of_path_alone(&walk.path);
-    let mode = Mode::Dialogue { questions: 9 };
+    let mode = DialogueMode::Dialogue { questions: 9 };
     let (outcome, complaints) = outcome_against(&walk, &nothing, mode, vec![said(WITH_A_PIANO)], true, 3);
-    let Outcome::Accepted(instruction) = outcome.unwrap() else { panic!("it was rejected") };
+    let WritingOutcome::Accepted(instruction) = outcome.unwrap() else { panic!("it was rejected") };
     assert_eq!((instruction.verdict, complaints.len()), (Verdict::Unverified, 1));
 }
 
 #[test]
 fn provenance_names_the_summariser_of_panoramas_without_a_dialogue() {
     let mut walk = walk();
-    let summariser = |walk: &Walk| {
+    let summariser = |walk: &ObservedWalk| {
         let evidence = walk.evidence().unwrap();
-        let (outcome, _) = outcome_against(walk, &evidence, Mode::Single, vec![said(GOOD)], false, 0);
-        let Outcome::Accepted(instruction) = outcome.unwrap() else { panic!("it was rejected") };
+        let (outcome, _) = outcome_against(walk, &evidence, DialogueMode::Single, vec![said(GOOD)], false, 0);
+        let WritingOutcome::Accepted(instruction) = outcome.unwrap() else { panic!("it was rejected") };
         instruction.provenance.summariser
     };
     assert_eq!(summariser(&walk), "nobody");
@@ -204,11 +215,11 @@ fn provenance_names_the_summariser_of_panoramas_without_a_dialogue() {
 
 #[test]
 fn a_path_of_one_viewpoint_gets_a_text_without_movement() {
-    let observers = Observers {
+    let observers = ObservationRoles {
         asker: &RulesAsker::default(),
-        answerer: &Labels::default(),
+        answerer: &LabelAnswerer::default(),
         summariser: &RulesSummariser,
-        mode: Mode::Fixed,
+        mode: DialogueMode::Fixed,
         prompts_hash: None,
         detector: None,
     };
@@ -217,17 +228,17 @@ fn a_path_of_one_viewpoint_gets_a_text_without_movement() {
         walk.observations[0].looks[0].caption.room = room.map(str::to_owned);
         let evidence = walk.evidence().unwrap();
         for style in ["r2r", "reverie"].map(|name| built_in(name).unwrap()) {
-            let profile = Profile::measure(&style.references);
+            let profile = StyleProfile::from_references(&style.references);
             for seed in 0..40 {
                 let memory = walk.memory();
-                let order = Order { seed, repairs: 0, ..order(&walk, &memory, &evidence, &style, &profile) };
-                let writers = Writers { writer: &RulesWriter, finisher: None };
+                let order = InstructionOrder { seed, repairs: 0, ..order(&walk, &memory, &evidence, &style, &profile) };
+                let writers = WriterPair { writer: &RulesWriter, finisher: None };
                 let outcome = write_and_repair(writers, observers, order).unwrap();
-                let Outcome::Accepted(instruction) = outcome else { panic!("{outcome:?}") };
+                let WritingOutcome::Accepted(instruction) = outcome else { panic!("{outcome:?}") };
                 assert_eq!(instruction.verdict, Verdict::Pass, "{instruction:?}");
                 for word in ["go", "walk", "head", "enter", "straight", "move", "proceed", "step"] {
                     assert!(
-                        !wayword_language::text::words(&instruction.text).contains(&word.to_owned()),
+                        !wayword_language::text::split_words(&instruction.text).contains(&word.to_owned()),
                         "{}",
                         instruction.text
                     );
@@ -244,14 +255,14 @@ fn a_text_that_the_walk_already_has_is_written_again() {
     let memory = walk.memory();
     let evidence = walk.evidence().unwrap();
     let style = built_in("r2r").unwrap();
-    let profile = Profile::measure(&style.references);
+    let profile = StyleProfile::from_references(&style.references);
     let asker = RulesAsker::default();
-    let labels = Labels::default();
+    let labels = LabelAnswerer::default();
     let observers = observers(&asker, &labels);
-    let write = |writer: &dyn Writer, earlier: &[String]| {
-        let order = Order { earlier, ..order(&walk, &memory, &evidence, &style, &profile) };
-        match write_and_repair(Writers { writer, finisher: None }, observers, order).unwrap() {
-            Outcome::Accepted(instruction) => instruction,
+    let write = |writer: &dyn InstructionWriter, earlier: &[String]| {
+        let order = InstructionOrder { earlier, ..order(&walk, &memory, &evidence, &style, &profile) };
+        match write_and_repair(WriterPair { writer, finisher: None }, observers, order).unwrap() {
+            WritingOutcome::Accepted(instruction) => instruction,
             rejected => panic!("{rejected:?}"),
         }
     };
@@ -271,24 +282,24 @@ fn a_text_that_the_walk_already_has_is_written_again() {
 fn a_writer_with_pictures_may_name_things_beyond_captions() {
     let (walk, style) = (walk(), built_in("r2r").unwrap());
     let (evidence, memory) = (walk.evidence().unwrap(), walk.memory());
-    let profile = Profile::of(&style);
+    let profile = StyleProfile::for_style(&style);
     let image = Arc::new(Image::new(1, 1, vec![0; 3]).unwrap());
     let asker = RulesAsker::default();
-    let labels = Labels::default();
+    let labels = LabelAnswerer::default();
     let observers = observers(&asker, &labels);
     let is_accepted = |pictures: &[FramePicture]| {
-        let order = Order { repairs: 0, pictures, ..order(&walk, &memory, &evidence, &style, &profile) };
+        let order = InstructionOrder { repairs: 0, pictures, ..order(&walk, &memory, &evidence, &style, &profile) };
         let writer = Scripted::new(vec![said("Walk past the sofa to the piano and turn right. Stop at the sink.")]);
-        let outcome = write_and_repair(Writers { writer: &writer, finisher: None }, observers, order).unwrap();
-        matches!(outcome, Outcome::Accepted(instruction) if instruction.verdict == Verdict::Unverified)
+        let outcome = write_and_repair(WriterPair { writer: &writer, finisher: None }, observers, order).unwrap();
+        matches!(outcome, WritingOutcome::Accepted(instruction) if instruction.verdict == Verdict::Unverified)
     };
     assert!(!is_accepted(&[]));
     assert!(is_accepted(&[FramePicture { frame: 0, image }]));
 }
 
 /// The same pictures as a video shows them: in their order, and without poses.
-fn on_video(walk: &Walk) -> Walk {
-    Walk::new(Path { motion: Motion::Unknown, ..walk.path.clone() }, walk.observations.clone())
+fn on_video(walk: &ObservedWalk) -> ObservedWalk {
+    ObservedWalk::new(Path { motion: PathMotion::Unknown, ..walk.path.clone() }, walk.observations.clone())
 }
 
 #[test]
@@ -296,17 +307,17 @@ fn an_invented_turn_goes_back_with_the_reason() {
     let walk = on_video(&walk());
     let evidence = walk.evidence().unwrap();
     let told = "Walk past the sofa to the lamp. Stop at the sink.";
-    let mode = Mode::Dialogue { questions: 9 };
+    let mode = DialogueMode::Dialogue { questions: 9 };
     let (outcome, complaints) = outcome_against(&walk, &evidence, mode, vec![said(GOOD), said(told)], false, 3);
-    let Outcome::Accepted(instruction) = outcome.unwrap() else { panic!("it was rejected") };
+    let WritingOutcome::Accepted(instruction) = outcome.unwrap() else { panic!("it was rejected") };
     assert_eq!((instruction.text.as_str(), instruction.verdict, complaints.len()), (told, Verdict::Pass, 2));
     let (outcome, _) = outcome_against(&walk, &evidence, mode, vec![said(GOOD)], false, 0);
-    let Outcome::Rejected { reason, .. } = outcome.unwrap() else { panic!("it was accepted") };
+    let WritingOutcome::Rejected { reason, .. } = outcome.unwrap() else { panic!("it was accepted") };
     assert!(reason.contains("it is not known how the path turns"), "{reason}");
     // A turn counts as made up even where there is no evidence at all.
     let nothing = Evidence::of_path_alone(&walk.path);
     let (outcome, _) = outcome_against(&walk, &nothing, mode, vec![said(GOOD)], false, 0);
-    assert!(matches!(outcome.unwrap(), Outcome::Rejected { .. }));
+    assert!(matches!(outcome.unwrap(), WritingOutcome::Rejected { .. }));
 }
 
 /// Random rooms and things for the frames of a video; either may be missing.
@@ -327,27 +338,27 @@ proptest! {
             caption.room = room.map(str::to_owned);
             caption.sightings.retain(|_| thing.is_some());
             // As if the picture had it on a side.
-            caption.sightings.iter_mut().for_each(|sighting| sighting.place = Some(Where::Left));
+            caption.sightings.iter_mut().for_each(|sighting| sighting.place = Some(ViewThird::Left));
         }
         let evidence = walk.evidence().unwrap_or_else(|| Evidence::of_path_alone(&walk.path));
         let asker = RulesAsker::default();
-        let labels = Labels::default();
+        let labels = LabelAnswerer::default();
         let observers = observers(&asker, &labels);
         for style in ["r2r", "reverie"].map(|name| built_in(name).unwrap()) {
-            let profile = Profile::measure(&style.references);
+            let profile = StyleProfile::from_references(&style.references);
             let memory = walk.memory();
-            let order = Order { seed, ..order(&walk, &memory, &evidence, &style, &profile) };
-            let writers = Writers { writer: &RulesWriter, finisher: None };
+            let order = InstructionOrder { seed, ..order(&walk, &memory, &evidence, &style, &profile) };
+            let writers = WriterPair { writer: &RulesWriter, finisher: None };
             let text = match write_and_repair(writers, observers, order).unwrap() {
-                Outcome::Accepted(instruction) => instruction.text,
-                Outcome::Rejected { reason, .. } => {
+                WritingOutcome::Accepted(instruction) => instruction.text,
+                WritingOutcome::Rejected { reason, .. } => {
                     prop_assert!(!reason.contains("it is not known"), "{}", reason);
                     continue;
                 }
             };
             let told = text.to_lowercase().replace("stop right there", "stop");
             for word in ["left", "right", "straight", "forward", "around", "upstairs", "downstairs", "floor", "level"] {
-                prop_assert!(!wayword_language::text::words(&told).contains(&word.to_owned()), "{}", text);
+                prop_assert!(!wayword_language::text::split_words(&told).contains(&word.to_owned()), "{}", text);
             }
             let stays = text.to_lowercase().split_whitespace().any(|word| word == "stay" || word == "remain");
             prop_assert_eq!(stays, sights.len() == 1, "{}", text);

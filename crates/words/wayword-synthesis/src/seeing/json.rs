@@ -8,7 +8,7 @@ pub(super) const MOST_BYTES: usize = 32 * 1024;
 
 /// The JSON of an answer.
 #[derive(Debug, PartialEq)]
-pub(super) struct Found {
+pub(super) struct AnswerJson {
     pub(super) value: Value,
     /// Whether the answer breaks off within the JSON. The value then has only the complete part.
     pub(super) is_cut: bool,
@@ -18,18 +18,18 @@ pub(super) struct Found {
 ///
 /// # Errors
 /// When there is none, or the answer is too long; the message is meant for the model.
-pub(super) fn find(answer: &str) -> Result<Found, String> {
+pub(super) fn find_json(answer: &str) -> Result<AnswerJson, String> {
     if answer.len() > MOST_BYTES {
         return Err(format!("it has {} bytes, more than {MOST_BYTES}", answer.len()));
     }
     let start = answer.find('{').ok_or("there is no JSON in it")?;
     let text = &answer[start..];
     if let Some(Ok(value)) = Deserializer::from_str(text).into_iter::<Value>().next() {
-        return Ok(Found { value, is_cut: false });
+        return Ok(AnswerJson { value, is_cut: false });
     }
-    let (mended, is_cut) = mended(text);
+    let (mended, is_cut) = mend_json(text);
     match Deserializer::from_str(&mended).into_iter::<Value>().next() {
-        Some(Ok(value)) => Ok(Found { value, is_cut }),
+        Some(Ok(value)) => Ok(AnswerJson { value, is_cut }),
         Some(Err(error)) => Err(format!("it is no valid JSON ({error})")),
         None => Err("there is no JSON in it".to_owned()),
     }
@@ -37,7 +37,7 @@ pub(super) fn find(answer: &str) -> Result<Found, String> {
 
 /// The state of a repair: the output so far, and the brackets that are open.
 #[derive(Default)]
-struct Mending {
+struct JsonMender {
     out: String,
     open: Vec<char>,
     /// The length of the last complete part, and the brackets that were open there.
@@ -45,30 +45,30 @@ struct Mending {
 }
 
 /// Deepest nesting of brackets; JSON of the schema has four levels.
-const DEEPEST: usize = 32;
+const MAX_BRACKET_DEPTH: usize = 32;
 
 /// Repairs JSON: removes commas before closing brackets, replaces the words and quotes of other languages, and closes
 /// it where it breaks off. The flag is true if it breaks off.
-fn mended(text: &str) -> (String, bool) {
-    let mut mending = Mending::default();
+fn mend_json(text: &str) -> (String, bool) {
+    let mut mending = JsonMender::default();
     let mut rest = text;
     while let Some(next) = rest.chars().next() {
         let taken = match next {
-            '"' | '\'' | '“' => match string(rest, next) {
+            '"' | '\'' | '“' => match read_string(rest, next) {
                 Some((said, taken)) => {
                     mending.out.push_str(&Value::String(said).to_string());
                     taken
                 }
                 None => break,
             },
-            '{' | '[' if mending.open.len() == DEEPEST => break,
+            '{' | '[' if mending.open.len() == MAX_BRACKET_DEPTH => break,
             '{' | '[' => {
                 mending.open.push(if next == '{' { '}' } else { ']' });
                 mending.out.push(next);
                 1
             }
             '}' | ']' => {
-                mending.close(next);
+                mending.close_bracket(next);
                 if mending.open.is_empty() {
                     return (mending.out, false);
                 }
@@ -77,7 +77,7 @@ fn mended(text: &str) -> (String, bool) {
             '/' if rest.starts_with("//") => rest.find('\n').unwrap_or(rest.len()),
             _ if next.is_ascii_alphabetic() => {
                 let taken = rest.find(|c: char| !c.is_ascii_alphanumeric() && c != '_').unwrap_or(rest.len());
-                mending.out.push_str(&word(&rest[..taken]));
+                mending.out.push_str(&json_word(&rest[..taken]));
                 taken
             }
             _ => {
@@ -87,11 +87,11 @@ fn mended(text: &str) -> (String, bool) {
         };
         rest = &rest[taken..];
     }
-    mending.ended()
+    mending.finish_cut()
 }
 
-impl Mending {
-    fn close(&mut self, bracket: char) {
+impl JsonMender {
+    fn close_bracket(&mut self, bracket: char) {
         self.without_comma();
         if self.open.last() == Some(&bracket) {
             self.open.pop();
@@ -106,7 +106,7 @@ impl Mending {
     }
 
     /// Cuts the output to its last complete part and closes the open brackets.
-    fn ended(mut self) -> (String, bool) {
+    fn finish_cut(mut self) -> (String, bool) {
         let Some((length, open)) = self.whole.take() else { return (String::new(), true) };
         self.out.truncate(length);
         self.out.extend(open.iter().rev());
@@ -115,7 +115,7 @@ impl Mending {
 }
 
 /// The string at the beginning of a text, without its quotes, and its length with them. `None` if it is not closed.
-fn string(text: &str, quote: char) -> Option<(String, usize)> {
+fn read_string(text: &str, quote: char) -> Option<(String, usize)> {
     let end = if quote == '“' { '”' } else { quote };
     let mut said = String::new();
     let mut characters = text.char_indices().skip(1);
@@ -133,7 +133,7 @@ fn string(text: &str, quote: char) -> Option<(String, usize)> {
 }
 
 /// The JSON for a word without quotes: a constant, or else a string.
-fn word(word: &str) -> String {
+fn json_word(word: &str) -> String {
     match word.to_ascii_lowercase().as_str() {
         "true" => "true".to_owned(),
         "false" => "false".to_owned(),
@@ -161,7 +161,7 @@ mod tests {
             r#"{room: "hall", things: [{name: sofa, sure: true}]}"#,
             "{\"room\": \"hall\", // where one stands\n \"things\": [{\"name\": \"sofa\", \"sure\": true}]}",
         ] {
-            assert_eq!(find(answer), Ok(Found { value: wanted.clone(), is_cut: false }), "{answer}");
+            assert_eq!(find_json(answer), Ok(AnswerJson { value: wanted.clone(), is_cut: false }), "{answer}");
         }
     }
 
@@ -169,17 +169,19 @@ mod tests {
     fn find_json_returns_the_complete_part_of_a_cut_answer() {
         let cut = r#"{"room": "hall", "things": [{"name": "sofa"}, {"name": "lamp"}, {"name": "tab"#;
         let value = json!({ "room": "hall", "things": [{ "name": "sofa" }, { "name": "lamp" }] });
-        assert_eq!(find(cut), Ok(Found { value, is_cut: true }));
-        assert!(find(r#"{"room": "ha"#).is_err());
+        assert_eq!(find_json(cut), Ok(AnswerJson { value, is_cut: true }));
+        assert!(find_json(r#"{"room": "ha"#).is_err());
     }
 
     #[test]
     fn no_answer_takes_long_or_panics() {
         for answer in ["", "I'm sorry, I can't help with that.", "{", "}{", "{'", "{\"a\": \\", "[[[[", "{“", "{\u{0}"]
         {
-            assert!(find(answer).is_err(), "{answer}");
+            assert!(find_json(answer).is_err(), "{answer}");
         }
-        assert!(find(&"{\"a\":".repeat(5_000)).is_err());
-        assert!(find(&format!("{{\"room\": \"{}\"}}", "x".repeat(2_000_000))).unwrap_err().contains("2000012 bytes"));
+        assert!(find_json(&"{\"a\":".repeat(5_000)).is_err());
+        assert!(
+            find_json(&format!("{{\"room\": \"{}\"}}", "x".repeat(2_000_000))).unwrap_err().contains("2000012 bytes")
+        );
     }
 }

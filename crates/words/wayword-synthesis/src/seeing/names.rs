@@ -4,7 +4,7 @@
 use crate::dialogue::colour_at;
 use wayword_language::{
     answers::{ANYTHING, BUNCHES, GUESSING, MATERIALS, NO_OBJECTS, NUMBERS, QUALITIES, TELLS_NOTHING},
-    lexicon::{is_room, is_thing, normal, says_several, singular, thing},
+    lexicon::{find_thing, is_room, is_thing, normalise_name, says_several, to_singular},
     reading::vocabulary::{ABSTRACT, ADJECTIVES, BREAKERS},
 };
 
@@ -17,7 +17,7 @@ const MOST_NAMES: usize = 3;
 
 /// A name taken apart.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub(crate) struct Named {
+pub(crate) struct NameReading {
     /// The names that it may mean, each in the singular; a single one if the witness knows which.
     pub(crate) names: Vec<String>,
     pub(crate) is_guess: bool,
@@ -27,9 +27,9 @@ pub(crate) struct Named {
 }
 
 /// Reads a name; the result has no names if the text is none.
-pub(crate) fn named(said: &str) -> Named {
+pub(crate) fn read_name(said: &str) -> NameReading {
     let said = &said[..said.floor_char_boundary(4 * MOST_BYTES)].to_lowercase().replace('’', "'");
-    let mut named = Named { is_guess: said.contains('?'), ..Named::default() };
+    let mut named = NameReading { is_guess: said.contains('?'), ..NameReading::default() };
     let plain = said.split('(').next().unwrap_or_default().replace('/', " or ");
     let words: Vec<&str> = plain.split(|c: char| !(c.is_alphanumeric() || "-'".contains(c))).collect();
     let words: Vec<&str> = words.into_iter().filter(|word| !word.is_empty()).collect();
@@ -43,11 +43,11 @@ pub(crate) fn named(said: &str) -> Named {
     named
 }
 
-fn one_name(words: &[&str], named: &mut Named) -> Option<String> {
+fn one_name(words: &[&str], named: &mut NameReading) -> Option<String> {
     let mut words = before_the_place(words);
     loop {
         let (first, rest) = words.split_first()?;
-        if is_thing(&normal(&words.join(" "))) {
+        if is_thing(&normalise_name(&words.join(" "))) {
             break;
         }
         if GUESSING.contains(first) {
@@ -72,11 +72,11 @@ fn one_name(words: &[&str], named: &mut Named) -> Option<String> {
     let name = words.join(" ");
     let several = says_several(&name);
     named.several |= several;
-    let name = if several { singular(&name) } else { name };
+    let name = if several { to_singular(&name) } else { name };
     is_name(&name).then_some(name)
 }
 
-impl Named {
+impl NameReading {
     pub(crate) fn add_colour(&mut self, colour: String) {
         if !self.colours.contains(&colour) && self.colours.len() < 4 {
             self.colours.push(colour);
@@ -91,7 +91,7 @@ fn before_the_place<'a, 'b>(words: &'a [&'b str]) -> &'a [&'b str] {
         BREAKERS.contains(&words[*at]) && *at > 0 && !of_bunch && !is_quality(words[*at])
     };
     let end = (1..words.len()).find(ends).unwrap_or(words.len());
-    let longer = (end..=words.len()).rev().find(|end| is_thing(&normal(&words[..*end].join(" "))));
+    let longer = (end..=words.len()).rev().find(|end| is_thing(&normalise_name(&words[..*end].join(" "))));
     &words[..longer.unwrap_or(end)]
 }
 
@@ -103,20 +103,20 @@ fn is_quality(word: &str) -> bool {
 fn is_name(name: &str) -> bool {
     let head = name.rsplit(' ').next().unwrap_or_default();
     let is_nothing = |word: &str| {
-        let word = &normal(word);
+        let word = &normalise_name(word);
         let lists: [&[&str]; 4] = [&NO_OBJECTS, &ANYTHING, &ABSTRACT, &BUNCHES];
         lists.iter().any(|list| list.contains(&word.as_str())) || is_quality(word) || MATERIALS.contains(&word.as_str())
     };
     let fits = name.len() <= MOST_BYTES
         && name.split(' ').count() <= MOST_WORDS
         && name.chars().filter(|c| c.is_alphabetic()).count() >= 2;
-    let in_lexicon =
-        is_thing(&normal(name)) && thing(name).is_some_and(|thing| thing.name != "picture" || head != "image");
+    let in_lexicon = is_thing(&normalise_name(name))
+        && find_thing(name).is_some_and(|thing| thing.name != "picture" || head != "image");
     fits && (in_lexicon || !(is_nothing(head) || colour_at(&[head]).is_some()))
 }
 
 /// The rooms that a text may mean, and whether it is a guess.
-pub(crate) fn rooms(said: &str) -> (Vec<String>, bool) {
+pub(crate) fn read_rooms(said: &str) -> (Vec<String>, bool) {
     let said = &said[..said.floor_char_boundary(4 * MOST_BYTES)].to_lowercase();
     let words: Vec<&str> =
         said.split(|c: char| !(c.is_alphanumeric() || c == '\'')).filter(|word| !word.is_empty()).collect();
@@ -125,7 +125,7 @@ pub(crate) fn rooms(said: &str) -> (Vec<String>, bool) {
     for one in words.split(|word| *word == "or") {
         let tells = |word: &&str| !GUESSING.contains(word) && !matches!(*word, "a" | "an" | "the");
         let one: Vec<&str> = one.iter().copied().filter(tells).collect();
-        if let Some(name) = room(&one).filter(|name| !names.contains(name))
+        if let Some(name) = read_room(&one).filter(|name| !names.contains(name))
             && names.len() < MOST_NAMES
         {
             names.push(name);
@@ -135,13 +135,13 @@ pub(crate) fn rooms(said: &str) -> (Vec<String>, bool) {
 }
 
 /// The longest known room at the end of words, or the words themselves where they are few.
-fn room(words: &[&str]) -> Option<String> {
-    const NOTHING: [&str; 12] =
+fn read_room(words: &[&str]) -> Option<String> {
+    const NO_ROOM_WORDS: [&str; 12] =
         ["unknown", "unclear", "none", "n", "null", "not", "cannot", "no", "nowhere", "room", "another", "indoors"];
-    if words.iter().any(|word| NOTHING.contains(word)) && words.last() != Some(&"room") || words == ["room"] {
+    if words.iter().any(|word| NO_ROOM_WORDS.contains(word)) && words.last() != Some(&"room") || words == ["room"] {
         return None;
     }
-    let known = |from: usize, to: usize| is_room(&normal(&words[from..to].join(" ")));
+    let known = |from: usize, to: usize| is_room(&normalise_name(&words[from..to].join(" ")));
     for length in (1..=words.len().min(MOST_WORDS)).rev() {
         if let Some(from) = (0..=words.len() - length).rev().find(|from| known(*from, from + length)) {
             return Some(words[from..from + length].join(" "));
@@ -178,16 +178,16 @@ mod tests {
             ("12", vec![]),
             ("\u{1f6cb}", vec![]),
         ] {
-            assert_eq!(named(said).names, names, "{said}");
+            assert_eq!(read_name(said).names, names, "{said}");
         }
     }
 
     #[test]
     fn read_name_returns_colours_material_number_and_doubt() {
-        let told = named("possibly two dark grey leather armchairs");
+        let told = read_name("possibly two dark grey leather armchairs");
         assert!(told.is_guess && told.several);
         assert_eq!((told.colours, told.material), (vec!["dark grey".to_owned()], Some("leather".to_owned())));
-        assert!(named("piano?").is_guess && !named("piano").is_guess);
+        assert!(read_name("piano?").is_guess && !read_name("piano").is_guess);
     }
 
     #[test]
@@ -203,7 +203,7 @@ mod tests {
             ("music room", vec!["music room"], false),
             ("I'm sorry, I cannot tell", vec![], false),
         ] {
-            assert_eq!(rooms(said), (wanted.into_iter().map(str::to_owned).collect(), guess), "{said}");
+            assert_eq!(read_rooms(said), (wanted.into_iter().map(str::to_owned).collect(), guess), "{said}");
         }
     }
 }

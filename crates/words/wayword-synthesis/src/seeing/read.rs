@@ -2,14 +2,14 @@
 
 use super::{
     json,
-    names::{Named, named, rooms},
+    names::{NameReading, read_name, read_rooms},
 };
 use crate::dialogue::colour_at;
 use serde_json::{Map, Value};
-use wayword_core::{WayOut, Where};
+use wayword_core::{ViewThird, WayOut};
 use wayword_language::{
     answers::MATERIALS,
-    lexicon::{Class, agree, thing},
+    lexicon::{ThingClass, find_thing, names_agree},
 };
 
 /// Most things that are taken from one answer.
@@ -21,20 +21,20 @@ const MOST_COLOUR_WORDS: usize = 12;
 
 /// The content of a structured answer about a view.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub(super) struct Seen {
+pub(super) struct ViewReading {
     /// The rooms that it may be; one if the model is sure.
     pub(super) rooms: Vec<String>,
     pub(super) room_is_sure: bool,
     pub(super) ways: Vec<WayOut>,
-    pub(super) things: Vec<Thing>,
+    pub(super) things: Vec<ViewThing>,
 }
 
 /// A thing in a structured answer.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub(super) struct Thing {
-    pub(super) told: Named,
+pub(super) struct ViewThing {
+    pub(super) told: NameReading,
     pub(super) is_sure: bool,
-    pub(super) place: Option<Where>,
+    pub(super) place: Option<ViewThird>,
     pub(super) is_far: bool,
     pub(super) stands_out: bool,
 }
@@ -43,46 +43,47 @@ pub(super) struct Thing {
 ///
 /// # Errors
 /// With the fault in words for the model.
-pub(super) fn read(answer: &str, takes_part: bool) -> Result<Seen, String> {
-    let json::Found { value, is_cut } = json::find(answer)?;
+pub(super) fn read_view_answer(answer: &str, takes_part: bool) -> Result<ViewReading, String> {
+    let json::AnswerJson { value, is_cut } = json::find_json(answer)?;
     if is_cut && !takes_part {
         return Err("it was cut off: name fewer things".to_owned());
     }
     let Value::Object(fields) = value else { return Err("it is no JSON object".to_owned()) };
-    let room = field(&fields, &["room", "roomtype", "location", "scene"]);
-    let listed = field(&fields, &["things", "objects", "items", "thing"]);
+    let room = find_field(&fields, &["room", "roomtype", "location", "scene"]);
+    let listed = find_field(&fields, &["things", "objects", "items", "thing"]);
     if room.is_none() && listed.is_none() {
         return Err("it has neither \"room\" nor \"things\"".to_owned());
     }
-    let cues: Vec<Named> = field(&fields, &["standsout", "standout", "landmarks", "salient"])
-        .map(texts)
+    let cues: Vec<NameReading> = find_field(&fields, &["standsout", "standout", "landmarks", "salient"])
+        .map(value_texts)
         .unwrap_or_default()
         .iter()
-        .map(|cue| named(cue))
+        .map(|cue| read_name(cue))
         .collect();
-    let things: Vec<Thing> = listed
-        .map(entries)
+    let things: Vec<ViewThing> = listed
+        .map(list_entries)
         .unwrap_or_default()
         .into_iter()
         .filter_map(|entry| thing_of(entry, &cues))
         .take(MOST_THINGS)
         .collect();
     if let Some(listed) = listed.filter(|listed| things.is_empty() && !is_empty(listed)) {
-        return Err(format!("\"things\" is no list of things with names: {}", short(listed)));
+        return Err(format!("\"things\" is no list of things with names: {}", shorten_value(listed)));
     }
-    let (rooms, is_guess) = rooms(&room.map(text).unwrap_or_default());
-    let says_sure = field(&fields, &["roomsure", "roomcertainty"]).is_none_or(is_sure);
-    let ways = field(&fields, &["waysout", "exits", "ways", "openings", "doors"]).map(entries).unwrap_or_default();
-    Ok(Seen {
+    let (rooms, is_guess) = read_rooms(&room.map(value_text).unwrap_or_default());
+    let says_sure = find_field(&fields, &["roomsure", "roomcertainty"]).is_none_or(is_sure);
+    let ways =
+        find_field(&fields, &["waysout", "exits", "ways", "openings", "doors"]).map(list_entries).unwrap_or_default();
+    Ok(ViewReading {
         room_is_sure: rooms.len() == 1 && says_sure && !is_guess,
         rooms,
-        ways: ways.into_iter().filter_map(way).take(MOST_WAYS).collect(),
+        ways: ways.into_iter().filter_map(read_way_out).take(MOST_WAYS).collect(),
         things: each_once(things),
     })
 }
 
 /// The first of these fields that is present. Case and underscores do not matter.
-fn field<'a>(fields: &'a Map<String, Value>, names: &[&str]) -> Option<&'a Value> {
+fn find_field<'a>(fields: &'a Map<String, Value>, names: &[&str]) -> Option<&'a Value> {
     let plain = |key: &str| key.chars().filter(|c| c.is_alphanumeric()).collect::<String>().to_lowercase();
     names.iter().find_map(|name| {
         fields.iter().find(|(key, value)| plain(key) == *name && !value.is_null()).map(|(_, value)| value)
@@ -90,30 +91,30 @@ fn field<'a>(fields: &'a Map<String, Value>, names: &[&str]) -> Option<&'a Value
 }
 
 /// A value as text: the first text within it.
-fn text(value: &Value) -> String {
+fn value_text(value: &Value) -> String {
     match value {
         Value::String(text) => text.clone(),
         Value::Number(number) => number.to_string(),
         Value::Bool(flag) => flag.to_string(),
-        Value::Array(values) => values.first().map(text).unwrap_or_default(),
-        Value::Object(fields) => {
-            field(fields, &["name", "label", "object", "thing", "kind", "type", "room"]).map(text).unwrap_or_default()
-        }
+        Value::Array(values) => values.first().map(value_text).unwrap_or_default(),
+        Value::Object(fields) => find_field(fields, &["name", "label", "object", "thing", "kind", "type", "room"])
+            .map(value_text)
+            .unwrap_or_default(),
         Value::Null => String::new(),
     }
 }
 
-fn texts(value: &Value) -> Vec<String> {
+fn value_texts(value: &Value) -> Vec<String> {
     match value {
-        Value::Array(values) => values.iter().take(MOST_THINGS).map(text).collect(),
+        Value::Array(values) => values.iter().take(MOST_THINGS).map(value_text).collect(),
         Value::Null => Vec::new(),
         Value::String(text) => text.split([',', ';']).take(MOST_THINGS).map(str::to_owned).collect(),
-        other => vec![text(other)],
+        other => vec![value_text(other)],
     }
 }
 
 /// The entries of a list. A single entry, and names with commas between them, are lists too.
-fn entries(value: &Value) -> Vec<&Value> {
+fn list_entries(value: &Value) -> Vec<&Value> {
     match value {
         Value::Array(values) => values.iter().take(4 * MOST_THINGS).collect(),
         Value::Null => Vec::new(),
@@ -130,22 +131,22 @@ fn is_empty(value: &Value) -> bool {
     }
 }
 
-fn thing_of(entry: &Value, cues: &[Named]) -> Option<Thing> {
+fn thing_of(entry: &Value, cues: &[NameReading]) -> Option<ViewThing> {
     let mut told = match entry {
         Value::Number(_) | Value::Bool(_) => return None,
-        entry => named(&text(entry)),
+        entry => read_name(&value_text(entry)),
     };
     let empty = Map::new();
     let fields = entry.as_object().unwrap_or(&empty);
-    for colour in field(fields, &["colours", "colors", "colour", "color"])
-        .map(texts)
+    for colour in find_field(fields, &["colours", "colors", "colour", "color"])
+        .map(value_texts)
         .unwrap_or_default()
         .iter()
-        .flat_map(|said| colours(said))
+        .flat_map(|said| read_colours(said))
     {
         told.add_colour(colour);
     }
-    let material = field(fields, &["material", "materials"]).map(text).unwrap_or_default().to_lowercase();
+    let material = find_field(fields, &["material", "materials"]).map(value_text).unwrap_or_default().to_lowercase();
     told.material = material
         .split(|c: char| !c.is_alphabetic())
         .find(|word| MATERIALS.contains(word))
@@ -157,15 +158,19 @@ fn thing_of(entry: &Value, cues: &[Named]) -> Option<Thing> {
     if told.names.is_empty() {
         return None;
     }
-    let count = field(fields, &["count", "number", "how many", "several"]).map(text).unwrap_or_default();
+    let count = find_field(fields, &["count", "number", "how many", "several"]).map(value_text).unwrap_or_default();
     told.several |= count.parse::<u32>().is_ok_and(|count| count > 1)
         || matches!(count.as_str(), "true" | "several" | "many" | "two");
-    let is_far = field(fields, &["distance", "nearorfar", "far", "depth"]).map(text).unwrap_or_default().to_lowercase();
-    Some(Thing {
+    let is_far = find_field(fields, &["distance", "nearorfar", "far", "depth"])
+        .map(value_text)
+        .unwrap_or_default()
+        .to_lowercase();
+    Some(ViewThing {
         is_sure: told.names.len() == 1
             && !told.is_guess
-            && field(fields, &["sure", "certainty", "confidence", "howsure", "certain"]).is_none_or(is_sure),
-        place: field(fields, &["side", "position", "where", "place", "location"]).and_then(|side| place(&text(side))),
+            && find_field(fields, &["sure", "certainty", "confidence", "howsure", "certain"]).is_none_or(is_sure),
+        place: find_field(fields, &["side", "position", "where", "place", "location"])
+            .and_then(|side| read_place(&value_text(side))),
         is_far: is_far.contains("far") || is_far.contains("back") || is_far == "true",
         stands_out,
         told,
@@ -173,8 +178,8 @@ fn thing_of(entry: &Value, cues: &[Named]) -> Option<Thing> {
 }
 
 /// Whether a cue ("stands out") means a thing. "Brick wall" does not mean a white wall.
-fn is_cue(cue: &Named, told: &Named) -> bool {
-    let names = cue.names.iter().any(|cue| told.names.iter().any(|name| agree(cue, name)));
+fn is_cue(cue: &NameReading, told: &NameReading) -> bool {
+    let names = cue.names.iter().any(|cue| told.names.iter().any(|name| names_agree(cue, name)));
     let is_everywhere = told.names.iter().any(|name| is_everywhere(name));
     let material = cue.material.is_none() || cue.material == told.material;
     if is_everywhere {
@@ -184,10 +189,10 @@ fn is_cue(cue: &Named, told: &Named) -> bool {
 }
 
 fn is_everywhere(name: &str) -> bool {
-    thing(name).is_some_and(|thing| matches!(thing.name, "wall" | "floor" | "ceiling" | "corner"))
+    find_thing(name).is_some_and(|thing| matches!(thing.name, "wall" | "floor" | "ceiling" | "corner"))
 }
 
-fn colours(said: &str) -> Vec<String> {
+fn read_colours(said: &str) -> Vec<String> {
     let said = said.to_lowercase();
     let words: Vec<&str> =
         said.split(|c: char| !c.is_alphabetic()).filter(|word| !word.is_empty()).take(MOST_COLOUR_WORDS).collect();
@@ -207,7 +212,7 @@ fn is_sure(value: &Value) -> bool {
         Value::Bool(flag) => *flag,
         Value::Number(number) => number.as_f64().is_some_and(|share| share >= 0.75),
         other => {
-            let said = text(other).to_lowercase();
+            let said = value_text(other).to_lowercase();
             let doubts = [
                 "perhaps",
                 "unsure",
@@ -229,48 +234,49 @@ fn is_sure(value: &Value) -> bool {
 }
 
 /// The third of the view that a text names; `None` if it names none or several.
-fn place(said: &str) -> Option<Where> {
+fn read_place(said: &str) -> Option<ViewThird> {
     let said = said.to_lowercase();
     let has = |words: &[&str]| words.iter().any(|word| said.contains(word));
     let middle = has(&["middle", "cent", "ahead", "front"]);
     match (has(&["left"]), has(&["right"]), middle) {
-        (true, false, _) => Some(Where::Left),
-        (false, true, _) => Some(Where::Right),
-        (false, false, true) => Some(Where::Middle),
+        (true, false, _) => Some(ViewThird::Left),
+        (false, true, _) => Some(ViewThird::Right),
+        (false, false, true) => Some(ViewThird::Middle),
         _ => None,
     }
 }
 
-fn way(entry: &Value) -> Option<WayOut> {
-    let told = named(&text(entry));
+fn read_way_out(entry: &Value) -> Option<WayOut> {
+    let told = read_name(&value_text(entry));
     let empty = Map::new();
     let fields = entry.as_object().unwrap_or(&empty);
-    let leads_to = field(fields, &["leadsto", "to", "room", "behind"]).map(text).unwrap_or_default();
-    let (mut rooms, is_guess) = rooms(&leads_to);
+    let leads_to = find_field(fields, &["leadsto", "to", "room", "behind"]).map(value_text).unwrap_or_default();
+    let (mut rooms, is_guess) = read_rooms(&leads_to);
     let room = if rooms.len() == 1 && !is_guess { rooms.pop() } else { None };
     let name = told.names.into_iter().next().filter(|name| {
-        let class = thing(name).map(|thing| thing.class);
-        let fits = matches!(class, Some(Class::Door | Class::Stairs)) || is_opening(name);
+        let class = find_thing(name).map(|thing| thing.class);
+        let fits = matches!(class, Some(ThingClass::Door | ThingClass::Stairs)) || is_opening(name);
         fits && !told.is_guess
     });
     // A hallway that one looks along is a way out, but no thing.
     let name = name.or_else(|| room.is_some().then(|| "opening".to_owned()))?;
-    let place = field(fields, &["side", "position", "where", "place"]).and_then(|side| place(&text(side)));
+    let place =
+        find_field(fields, &["side", "position", "where", "place"]).and_then(|side| read_place(&value_text(side)));
     Some(WayOut { name, place, leads_to: room })
 }
 
 fn is_opening(name: &str) -> bool {
-    thing(name).is_some_and(|thing| matches!(thing.name, "doorway" | "arch" | "archway"))
+    find_thing(name).is_some_and(|thing| matches!(thing.name, "doorway" | "arch" | "archway"))
         || ["doorway", "archway", "opening", "entrance", "exit", "gate", "elevator"]
             .iter()
             .any(|kind| name.ends_with(kind))
 }
 
 /// Joins things of the same name and side into one that counts as several.
-fn each_once(things: Vec<Thing>) -> Vec<Thing> {
-    let mut kept: Vec<Thing> = Vec::new();
+fn each_once(things: Vec<ViewThing>) -> Vec<ViewThing> {
+    let mut kept: Vec<ViewThing> = Vec::new();
     for thing in things {
-        let same = |other: &&mut Thing| other.told.names == thing.told.names && other.place == thing.place;
+        let same = |other: &&mut ViewThing| other.told.names == thing.told.names && other.place == thing.place;
         match kept.iter_mut().find(same) {
             Some(other)
                 if other.told.colours == thing.told.colours
@@ -288,6 +294,6 @@ fn each_once(things: Vec<Thing>) -> Vec<Thing> {
     kept
 }
 
-fn short(value: &Value) -> String {
+fn shorten_value(value: &Value) -> String {
     value.to_string().chars().take(80).collect()
 }

@@ -1,10 +1,10 @@
 use super::*;
 use crate::{
-    dialogue::{Mode, RulesAsker},
+    dialogue::{DialogueMode, RulesAsker},
     observe::talk_about,
 };
 use std::sync::Mutex;
-use wayword_core::{Answer, Answerer, DVec3, Heading, Pose, WayOut, Where};
+use wayword_core::{AnswerText, DVec3, Heading, Pose, ViewAnswerer, ViewThird, WayOut};
 
 /// An answerer that gives these answers in order and records its questions.
 struct Scripted {
@@ -12,13 +12,13 @@ struct Scripted {
     asked: Mutex<Vec<String>>,
 }
 
-impl Answerer for Scripted {
+impl ViewAnswerer for Scripted {
     fn name(&self) -> &str {
         "test/eye"
     }
 
-    fn answer(&self, asks: &[Ask<'_>]) -> Vec<Result<Answer, ModelError>> {
-        let one = |ask: &Ask<'_>| {
+    fn answer_questions(&self, asks: &[ViewQuestion<'_>]) -> Vec<Result<AnswerText, ModelError>> {
+        let one = |ask: &ViewQuestion<'_>| {
             self.asked.lock().unwrap().push(ask.question.to_owned());
             Ok(self.answers.lock().unwrap().remove(0))
         };
@@ -32,12 +32,12 @@ fn seen(answers: &[&str], questions: usize) -> (Caption, Vec<String>) {
         answers: Mutex::new(answers.iter().map(|answer| (*answer).to_owned()).collect()),
         asked: Mutex::default(),
     };
-    let view = View::new(Pose::level(DVec3::ZERO, Heading::NORTH), 1.0, None, None);
-    let observers = Observers {
+    let view = View::new(Pose::looking_level(DVec3::ZERO, Heading::NORTH), 1.0, None, None);
+    let observers = ObservationRoles {
         asker: &RulesAsker::default(),
         answerer: &answerer,
         summariser: &RulesSummariser,
-        mode: Mode::Structured { questions },
+        mode: DialogueMode::Structured { questions },
         prompts_hash: None,
         detector: None,
     };
@@ -56,7 +56,7 @@ const GOOD: &str = r#"{"room": "living room", "room_sure": "sure",
       {"name": "lamps", "colours": [], "material": "", "side": "middle", "distance": "near", "sure": "sure"}],
     "stands_out": ["brick wall"]}"#;
 
-fn of<'a>(caption: &'a Caption, name: &str) -> &'a Sighting {
+fn of<'a>(caption: &'a Caption, name: &str) -> &'a ObjectSighting {
     caption.sightings.iter().find(|sighting| sighting.name == name).unwrap_or_else(|| panic!("{name}: {caption:?}"))
 }
 
@@ -65,16 +65,16 @@ fn an_answer_becomes_evidence_and_a_caption_in_one_call() {
     let (caption, asked) = seen(&[GOOD], 0);
     assert_eq!((asked.len(), caption.form, caption.room.as_deref()), (1, None, Some("living room")));
     let sofa = of(&caption, "sofa");
-    assert_eq!((sofa.witness, sofa.place, sofa.is_far), (Witness::Seen, Some(Where::Left), false));
+    assert_eq!((sofa.witness, sofa.place, sofa.is_far), (WitnessAnswer::Seen, Some(ViewThird::Left), false));
     assert_eq!((sofa.colour.as_deref(), sofa.more_colours.as_slice()), (Some("dark grey"), &["white".to_owned()][..]));
     assert_eq!(sofa.material.as_deref(), Some("leather"));
     for doubtful in ["armchair", "stool", "piano"] {
-        assert_eq!(of(&caption, doubtful).witness, Witness::Unsure, "{doubtful}");
+        assert_eq!(of(&caption, doubtful).witness, WitnessAnswer::Unsure, "{doubtful}");
     }
     assert!(of(&caption, "lamp").several && of(&caption, "wall").stands_out);
     let walls = caption.sightings.iter().filter(|sighting| sighting.name == "wall");
     assert_eq!(walls.map(|wall| wall.material.as_deref()).collect::<Vec<_>>(), [Some("brick")]);
-    let kitchen = WayOut { name: "doorway".into(), place: Some(Where::Right), leads_to: Some("kitchen".into()) };
+    let kitchen = WayOut { name: "doorway".into(), place: Some(ViewThird::Right), leads_to: Some("kitchen".into()) };
     assert_eq!(caption.ways[0], kitchen);
     assert_eq!(
         caption.text,
@@ -98,7 +98,7 @@ fn answers_with_other_names_case_and_types_are_parsed() {
         let (caption, asked) = seen(&[&answer], 0);
         assert_eq!((asked.len(), caption.form), (1, None), "{answer}");
         let sofa = of(&caption, "sofa");
-        assert_eq!((sofa.place, sofa.colour.as_deref()), (Some(Where::Left), Some("dark grey")), "{answer}");
+        assert_eq!((sofa.place, sofa.colour.as_deref()), (Some(ViewThird::Left), Some("dark grey")), "{answer}");
     }
 }
 
@@ -121,9 +121,9 @@ fn an_answer_that_breaks_the_form_is_asked_for_once_more() {
     ];
     for bad in bad {
         let (caption, asked) = seen(&[bad, GOOD], 0);
-        assert_eq!((asked.len(), caption.form), (2, Some(Form::Mended)), "{bad}");
-        assert!(complaint(&asked[1]).is_some_and(|why| !why.is_empty()), "{asked:?}");
-        let trouble = if bad.starts_with("I'm sorry") { Trouble::Refusal } else { Trouble::Form };
+        assert_eq!((asked.len(), caption.form), (2, Some(FormOutcome::Mended)), "{bad}");
+        assert!(complaint_in_question(&asked[1]).is_some_and(|why| !why.is_empty()), "{asked:?}");
+        let trouble = if bad.starts_with("I'm sorry") { AnswerTrouble::Refusal } else { AnswerTrouble::Form };
         assert_eq!(caption.transcript[1].trouble, Some(trouble));
         assert_eq!(caption.transcript[0].answer, bad);
     }
@@ -132,10 +132,10 @@ fn an_answer_that_breaks_the_form_is_asked_for_once_more() {
 #[test]
 fn an_answer_that_breaks_it_twice_is_read_as_words() {
     let (caption, asked) = seen(&["Hm.", "It is a kitchen with a red table on the left and a fridge."], 0);
-    assert_eq!((asked.len(), caption.form, caption.room.as_deref()), (2, Some(Form::Broken), Some("kitchen")));
+    assert_eq!((asked.len(), caption.form, caption.room.as_deref()), (2, Some(FormOutcome::Broken), Some("kitchen")));
     assert_eq!(of(&caption, "table").colour.as_deref(), Some("red"));
     let (refused, _) = seen(&["I'm sorry, I can't assist with that."; 2], 0);
-    assert_eq!((refused.form, refused.sightings.len(), refused.room), (Some(Form::Broken), 0, None));
+    assert_eq!((refused.form, refused.sightings.len(), refused.room), (Some(FormOutcome::Broken), 0, None));
     assert_eq!(refused.text, "A place.");
 }
 
@@ -143,15 +143,15 @@ fn an_answer_that_breaks_it_twice_is_read_as_words() {
 fn an_answer_cut_twice_yields_its_complete_part() {
     let cut = &GOOD[..GOOD.find("\"piano\"").unwrap()];
     let (caption, _) = seen(&[cut, cut], 0);
-    assert_eq!((caption.form, caption.room.as_deref()), (Some(Form::Broken), Some("living room")));
-    assert_eq!(of(&caption, "sofa").witness, Witness::Seen);
+    assert_eq!((caption.form, caption.room.as_deref()), (Some(FormOutcome::Broken), Some("living room")));
+    assert_eq!(of(&caption, "sofa").witness, WitnessAnswer::Seen);
 }
 
 #[test]
 fn an_answer_of_two_megabytes_is_refused_and_cut_in_the_transcript() {
     let long = format!("{{\"things\": [{}]}}", "\"sofa\", ".repeat(250_000));
     let (caption, asked) = seen(&[&long, &long], 0);
-    assert_eq!(caption.form, Some(Form::Broken));
+    assert_eq!(caption.form, Some(FormOutcome::Broken));
     assert!(asked[1].contains("bytes, more than"), "{}", asked[1]);
     assert!(caption.transcript.iter().all(|exchange| exchange.answer.len() <= MOST_KEPT));
     let many =
@@ -166,8 +166,8 @@ fn open_questions_are_asked_up_to_the_limit() {
     let (caption, asked) = seen(&[open, "It is a music room.", "Yes, on the left.", "No."], 3);
     assert_eq!(asked[1..], ["Which room is this?", "Is there a piano?", "Is there a harp?"]);
     assert_eq!(caption.room.as_deref(), Some("music room"));
-    assert_eq!(of(&caption, "piano").witness, Witness::Seen);
-    assert_eq!(of(&caption, "harp").witness, Witness::Denied);
+    assert_eq!(of(&caption, "piano").witness, WitnessAnswer::Seen);
+    assert_eq!(of(&caption, "harp").witness, WitnessAnswer::Denied);
     assert_eq!(caption.text, "A music room with a sofa and a piano.");
 }
 
@@ -179,9 +179,12 @@ fn a_refused_question_is_repeated_once_and_then_left_open() {
     let (caption, asked) = seen(&[open, no, no, "Yes, there is.", no], 3);
     assert_eq!(asked.len(), 5);
     assert!(asked[3].ends_with("Is there a piano?") && asked[3].starts_with("Look again"), "{asked:?}");
-    assert_eq!((of(&caption, "piano").witness, of(&caption, "harp").witness), (Witness::Seen, Witness::Unsure));
+    assert_eq!(
+        (of(&caption, "piano").witness, of(&caption, "harp").witness),
+        (WitnessAnswer::Seen, WitnessAnswer::Unsure)
+    );
     let told: Vec<_> = caption.transcript[1..].iter().map(|one| (one.answer.as_str(), one.trouble)).collect();
-    assert_eq!(told, [("Yes, there is.", Some(Trouble::Refusal)), ("", Some(Trouble::Refusal))]);
+    assert_eq!(told, [("Yes, there is.", Some(AnswerTrouble::Refusal)), ("", Some(AnswerTrouble::Refusal))]);
 }
 
 #[test]

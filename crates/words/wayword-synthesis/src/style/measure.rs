@@ -2,57 +2,57 @@
 
 use super::{
     names, verbs,
-    wording::{Shares, Wording},
+    wording::{PlaceWording, WordingShares},
 };
 use std::collections::BTreeMap;
 use wayword_language::{
     lexicon::room_name,
     reading::{
-        Reading, ordinal,
+        TextReading, ordinal_word,
         vocabulary::{DETERMINERS, WALKING},
     },
-    text::words,
+    text::split_words,
 };
 
 /// Counts of constructions, by table.
 #[derive(Default)]
-pub(super) struct Counts(pub(super) BTreeMap<String, Shares>);
+pub(super) struct WordingCounts(pub(super) BTreeMap<String, WordingShares>);
 
-impl Counts {
+impl WordingCounts {
     pub(super) fn add(&mut self, table: &str, key: &str) {
         *self.0.entry(table.to_owned()).or_default().entry(key.to_owned()).or_default() += 1.0;
     }
 }
 
 /// Measures the wording of reference texts for places and tasks.
-pub(super) fn measure<'a>(texts: impl Iterator<Item = (&'a str, &'a Reading)>) -> Wording {
-    let (mut counts, mut number) = (Counts::default(), 0.0);
+pub(super) fn measure_wording<'a>(texts: impl Iterator<Item = (&'a str, &'a TextReading)>) -> PlaceWording {
+    let (mut counts, mut number) = (WordingCounts::default(), 0.0);
     for (text, reading) in texts {
         number += 1.0;
-        count(text, reading, &mut counts);
+        count_text(text, reading, &mut counts);
     }
     verbs::retain_common_verbs(&mut counts);
-    Wording::smoothed(counts.0, number)
+    PlaceWording::from_counts(counts.0, number)
 }
 
 /// A text split into the part with the way or the room and the part with the task.
-struct Parts {
+struct PlaceTextParts {
     order: &'static str,
     room: String,
     task: String,
 }
 
-fn count(text: &str, reading: &Reading, counts: &mut Counts) {
-    let words = words(text);
+fn count_text(text: &str, reading: &TextReading, counts: &mut WordingCounts) {
+    let words = split_words(text);
     let all = format!(" {} ", words.join(" "));
-    let parts = parts(&words, reading);
+    let parts = split_text(&words, reading);
     counts.add("order", parts.order);
     if parts.order == "move" {
-        opener(&words, counts);
+        count_opener(&words, counts);
     }
-    let level = storeys(&parts.room).or_else(|| storeys(&parts.task));
+    let level = storey_slots(&parts.room).or_else(|| storey_slots(&parts.task));
     let of_room = [("room by", "room by"), ("room with", "room with")];
-    let known = Wording::built_in();
+    let known = PlaceWording::built_in();
     for (table, share) in of_room {
         if let Some(key) = first_of(known.table(table), &parts.room) {
             counts.add(table, key);
@@ -63,7 +63,7 @@ fn count(text: &str, reading: &Reading, counts: &mut Counts) {
         counts.add("level", key);
         counts.add("share", "level");
     }
-    object(&parts.task, counts);
+    count_object(&parts.task, counts);
     if let Some(key) = first_of(known.table("wall"), &parts.task) {
         counts.add("wall", key);
         counts.add("share", "wall");
@@ -71,8 +71,8 @@ fn count(text: &str, reading: &Reading, counts: &mut Counts) {
     if all.starts_with(" please ") {
         counts.add("share", "please");
     }
-    verbs::verb(&words, reading, counts);
-    names::names(reading, counts);
+    verbs::count_verb(&words, reading, counts);
+    names::count_names(reading, counts);
 }
 
 /// The tables of properties that a text can mention of an object.
@@ -95,9 +95,9 @@ const OF_OBJECT: [&str; 15] = [
 ];
 
 /// Counts the properties of its object that a task mentions.
-fn object(task: &str, counts: &mut Counts) {
-    let known = Wording::built_in();
-    let task = storeys(task).unwrap_or_else(|| task.to_owned());
+fn count_object(task: &str, counts: &mut WordingCounts) {
+    let known = PlaceWording::built_in();
+    let task = storey_slots(task).unwrap_or_else(|| task.to_owned());
     // "The top of the table" and "to the left of the sofa" do not place the object in a row.
     let parts_of = ["left", "right", "left side", "right side", "top", "bottom", "middle"];
     let whole = parts_of.iter().fold(task.clone(), |text, part| text.replace(&format!(" {part} of "), " "));
@@ -125,13 +125,18 @@ fn object(task: &str, counts: &mut Counts) {
 
 /// The construction of a table that a text contains with all its fixed words; of several, the one with the longest
 /// fixed words.
-fn first_of<'a>(table: &'a Shares, text: &str) -> Option<&'a str> {
-    let holds = |key: &&String| literals(key).all(|part| text.contains(&part)) && literals(key).next().is_some();
-    table.keys().filter(holds).max_by_key(|key| literals(key).map(|part| part.len()).sum::<usize>()).map(String::as_str)
+fn first_of<'a>(table: &'a WordingShares, text: &str) -> Option<&'a str> {
+    let holds =
+        |key: &&String| literal_runs(key).all(|part| text.contains(&part)) && literal_runs(key).next().is_some();
+    table
+        .keys()
+        .filter(holds)
+        .max_by_key(|key| literal_runs(key).map(|part| part.len()).sum::<usize>())
+        .map(String::as_str)
 }
 
 /// The fixed words of a construction between its slots, each run with a space before and after.
-fn literals(construction: &str) -> impl Iterator<Item = String> {
+fn literal_runs(construction: &str) -> impl Iterator<Item = String> {
     let is_slot = |word: &str| word.starts_with('{') && !matches!(word, "{n}" | "{th}");
     let words: Vec<&str> = construction.split(' ').collect();
     let runs: Vec<String> = words
@@ -143,7 +148,7 @@ fn literals(construction: &str) -> impl Iterator<Item = String> {
 }
 
 /// The text with slots for the numbers of storeys; `None` if it names none.
-fn storeys(text: &str) -> Option<String> {
+fn storey_slots(text: &str) -> Option<String> {
     let words: Vec<&str> = text.split_whitespace().collect();
     let is_storey = |word: Option<&&str>| word.is_some_and(|word| matches!(*word, "level" | "floor"));
     let mut found = text.contains(" upstairs ") || text.contains(" downstairs ");
@@ -163,15 +168,15 @@ fn storeys(text: &str) -> Option<String> {
 }
 
 /// Splits a text where the way ends and the task begins, or the other way round.
-fn parts(words: &[String], reading: &Reading) -> Parts {
+fn split_text(words: &[String], reading: &TextReading) -> PlaceTextParts {
     let part = |words: &[String]| format!(" {} ", words.join(" "));
     let first = words.iter().find(|word| *word != "please").map_or("", String::as_str);
     let verb = reading.task.as_ref().map(|task| task.verb.as_str());
     if matches!(first, "in" | "on" | "at" | "inside") {
         let to = words.iter().rposition(|word| Some(word.as_str()) == verb).unwrap_or(words.len());
-        return Parts { order: "in", room: part(&words[..to]), task: part(&words[to..]) };
+        return PlaceTextParts { order: "in", room: part(&words[..to]), task: part(&words[to..]) };
     }
-    let goes = Wording::built_in().table("opener").keys().any(|opener| opener.split(' ').next() == Some(first));
+    let goes = PlaceWording::built_in().table("opener").keys().any(|opener| opener.split(' ').next() == Some(first));
     let walks = goes && !matches!(first, "get" | "move" | "make" | "find")
         || WALKING.contains(&first)
             && !matches!(
@@ -182,7 +187,7 @@ fn parts(words: &[String], reading: &Reading) -> Parts {
         || verb.is_some_and(|verb| verb != first) && words.iter().any(|word| word == "and") && WALKING.contains(&first)
     {
         let to = words.iter().rposition(|word| Some(word.as_str()) == verb).unwrap_or(words.len());
-        return Parts { order: "move", room: part(&words[..to]), task: part(&words[to..]) };
+        return PlaceTextParts { order: "move", room: part(&words[..to]), task: part(&words[to..]) };
     }
     // "Clean the mirror in the bathroom": the room begins at the first "in", "from" or "on" that a room's name follows.
     let begins = |at: &usize| {
@@ -193,14 +198,17 @@ fn parts(words: &[String], reading: &Reading) -> Parts {
                 .any(|word| room_name(word).is_some() || word == "room" || word == "level" || word == "floor")
     };
     let at = (1..words.len().saturating_sub(1)).find(begins).unwrap_or(words.len());
-    Parts { order: "task", room: part(&words[at..]), task: part(&words[..at]) }
+    PlaceTextParts { order: "task", room: part(&words[at..]), task: part(&words[..at]) }
 }
 
 /// Counts the words before the room ("go to", "proceed to").
-fn opener(words: &[String], counts: &mut Counts) {
-    let known = Wording::built_in().table("opener");
+fn count_opener(words: &[String], counts: &mut WordingCounts) {
+    let known = PlaceWording::built_in().table("opener");
     let ends = |word: &&String| {
-        DETERMINERS.contains(&word.as_str()) || room_name(word).is_some() || ordinal(word).is_some() || *word == "level"
+        DETERMINERS.contains(&word.as_str())
+            || room_name(word).is_some()
+            || ordinal_word(word).is_some()
+            || *word == "level"
     };
     let Some(end) = words.iter().take(6).position(|word| ends(&word)) else { return };
     let said = words[..end].join(" ");
@@ -212,11 +220,11 @@ fn opener(words: &[String], counts: &mut Counts) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::style::Profile;
+    use crate::style::StyleProfile;
     use rand::SeedableRng;
     use rand_chacha::ChaCha8Rng;
     use std::collections::BTreeSet;
-    use wayword_language::reading::{What, read};
+    use wayword_language::reading::{EventContent, read_instruction};
 
     #[test]
     fn measure_wording_counts_the_constructions_of_references() {
@@ -230,23 +238,23 @@ mod tests {
                 )
             })
             .collect();
-        let wording = Profile::measure(&texts).wording;
+        let wording = StyleProfile::from_references(&texts).wording;
         assert!(wording.table("opener")["proceed to"] > 0.9, "{:?}", wording.table("opener"));
-        assert!(wording.share("level") > 0.9 && wording.share("room with") < 0.1);
+        assert!(wording.share_of_texts("level") > 0.9 && wording.share_of_texts("room with") < 0.1);
         assert!(wording.table("near")["beside the {x}"] > 0.9, "{:?}", wording.table("near"));
         let mut rng = ChaCha8Rng::seed_from_u64(1);
-        let verbs: BTreeSet<&str> = (0..50).map(|_| wording.verb("rug", 1.0, &mut rng)).collect();
+        let verbs: BTreeSet<&str> = (0..50).map(|_| wording.draw_verb("rug", 1.0, &mut rng)).collect();
         assert!(verbs.contains("shake out {o}"), "{verbs:?}");
     }
 
     #[test]
     fn the_reader_understands_every_construction() {
-        let built_in = Wording::built_in();
+        let built_in = PlaceWording::built_in();
         let understood = |text: &str, object: &str| {
-            let reading = read(text, &BTreeSet::new());
+            let reading = read_instruction(text, &BTreeSet::new());
             let at = reading.task.as_ref().and_then(|task| task.object);
             let is_object = at.is_some_and(
-                |at| matches!(&reading.events[at].what, What::Place(place) if place.name.ends_with(object)),
+                |at| matches!(&reading.events[at].what, EventContent::Place(place) if place.name.ends_with(object)),
             );
             is_object && reading.clauses.iter().all(|clause| clause.understood || clause.span[0] == clause.span[1])
         };
@@ -273,7 +281,7 @@ mod tests {
 
     #[test]
     fn no_share_of_the_built_in_wording_is_missing() {
-        let built_in = Wording::built_in();
+        let built_in = PlaceWording::built_in();
         for table in
             OF_OBJECT.iter().chain(&["order", "opener", "level", "room by", "room with", "told", "link", "wall"])
         {

@@ -9,16 +9,16 @@ pub mod way;
 mod wording;
 
 use sha2::{Digest, Sha256};
-use wayword_core::Style;
+use wayword_core::InstructionStyle;
 
-pub use profile::Profile;
-pub use wording::{Shares, Wording};
+pub use profile::StyleProfile;
+pub use wording::{PlaceWording, WordingShares};
 
 const BUILT_IN: [(&str, &str); 2] =
     [("r2r", include_str!("builtin/r2r.toml")), ("reverie", include_str!("builtin/reverie.toml"))];
 
 /// The built-in wording of places: constructions with their shares.
-const PLACE: &str = include_str!("builtin/place.toml");
+const PLACE_WORDING_TOML: &str = include_str!("builtin/place.toml");
 
 /// Most reference texts of a style, and most bytes of each.
 const MOST_REFERENCES: usize = 100_000;
@@ -61,35 +61,35 @@ pub fn built_in_names() -> Vec<&'static str> {
 ///
 /// # Errors
 /// When there is none of that name.
-pub fn built_in(name: &str) -> Result<Style, StyleError> {
+pub fn built_in(name: &str) -> Result<InstructionStyle, StyleError> {
     let (name, text) =
         BUILT_IN.iter().find(|(built_in, _)| *built_in == name).ok_or_else(|| StyleError::Unknown(name.to_owned()))?;
-    parse(name, text)
+    parse_style(name, text)
 }
 
 /// The tables of the built-in wording. The file is compiled in, and a test parses it.
-fn parse_wording() -> std::collections::BTreeMap<String, Shares> {
-    toml::from_str(PLACE).unwrap_or_default()
+fn parse_wording() -> std::collections::BTreeMap<String, WordingShares> {
+    toml::from_str(PLACE_WORDING_TOML).unwrap_or_default()
 }
 
 /// A style from the text of a TOML file; errors show `name`.
 ///
 /// # Errors
 /// When it is no style, or has no or too many references.
-pub fn parse(name: &str, text: &str) -> Result<Style, StyleError> {
+pub fn parse_style(name: &str, text: &str) -> Result<InstructionStyle, StyleError> {
     parse_with(name, text, Vec::new())
 }
 
-/// Like [`parse`], with more references than the file has.
+/// Like [`parse_style`], with more references than the file has.
 ///
 /// # Errors
 /// When it is no style, or there are no or too many references.
-pub fn parse_with(name: &str, text: &str, more: Vec<String>) -> Result<Style, StyleError> {
+pub fn parse_with(name: &str, text: &str, more: Vec<String>) -> Result<InstructionStyle, StyleError> {
     let unreadable = |reason: String| StyleError::Unreadable { name: name.to_owned(), reason };
-    let mut style: Style =
+    let mut style: InstructionStyle =
         toml::from_str(text).map_err(|error| unreadable(error.to_string().trim().replace('\n', " ")))?;
     style.references.extend(more);
-    validated(style).map_err(|error| match error {
+    validate_style(style).map_err(|error| match error {
         StyleError::Unnamed => unreadable("its `name` is empty: give it one".into()),
         StyleError::NoReferences(_) => StyleError::NoReferences(name.to_owned()),
         StyleError::TooLarge(_) => StyleError::TooLarge(name.to_owned()),
@@ -101,7 +101,7 @@ pub fn parse_with(name: &str, text: &str, more: Vec<String>) -> Result<Style, St
 ///
 /// # Errors
 /// When it has no name, or no or too many references.
-pub fn validated(style: Style) -> Result<Style, StyleError> {
+pub fn validate_style(style: InstructionStyle) -> Result<InstructionStyle, StyleError> {
     if style.name.trim().is_empty() {
         return Err(StyleError::Unnamed);
     }
@@ -116,7 +116,7 @@ pub fn validated(style: Style) -> Result<Style, StyleError> {
 
 /// A short hash of a style's content, for provenance.
 #[must_use]
-pub fn hash(style: &Style) -> String {
+pub fn hash_style(style: &InstructionStyle) -> String {
     let json = serde_json::to_vec(style).unwrap_or_default();
     Sha256::digest(json).iter().take(8).map(|byte| format!("{byte:02x}")).collect()
 }
@@ -125,9 +125,9 @@ pub fn hash(style: &Style) -> String {
 mod tests {
     use super::*;
     use std::collections::BTreeSet;
-    use wayword_checks::{Copies, Matter};
+    use wayword_checks::{ReferenceRuns, TextTopic};
     use wayword_language::{
-        reading::read,
+        reading::read_instruction,
         text::{sentence_count, word_count},
     };
 
@@ -147,8 +147,8 @@ mod tests {
         for name in built_in_names() {
             let style = built_in(name).unwrap();
             for (at, text) in style.references.iter().enumerate() {
-                let others = Copies::of(&style.references[at + 1..]);
-                assert_eq!(others.copied(text, Matter::default()), None, "{text}");
+                let others = ReferenceRuns::from_references(&style.references[at + 1..]);
+                assert_eq!(others.find_copy(text, TextTopic::default()), None, "{text}");
             }
         }
     }
@@ -156,22 +156,22 @@ mod tests {
     #[test]
     fn no_reference_without_a_task_is_read_as_one() {
         for text in built_in("r2r").unwrap().references {
-            assert_eq!(read(&text, &BTreeSet::new()).task, None, "{text}");
+            assert_eq!(read_instruction(&text, &BTreeSet::new()).task, None, "{text}");
         }
     }
 
     #[test]
     fn invalid_styles_are_refused_with_a_reason() {
         assert!(matches!(built_in("poem"), Err(StyleError::Unknown(_))));
-        assert!(parse("x", "name = 3").unwrap_err().to_string().contains("style x"));
-        let unnamed = parse("x.toml", "name = \" \"\nreferences = [\"Stop.\"]").unwrap_err().to_string();
+        assert!(parse_style("x", "name = 3").unwrap_err().to_string().contains("style x"));
+        let unnamed = parse_style("x.toml", "name = \" \"\nreferences = [\"Stop.\"]").unwrap_err().to_string();
         assert!(unnamed.contains("x.toml") && unnamed.contains("`name` is empty"), "{unnamed}");
-        let unnamed = Style { name: String::new(), ..built_in("r2r").unwrap() };
-        assert_eq!(validated(unnamed), Err(StyleError::Unnamed));
-        let empty = parse("x.toml", "name = \"x\"\nreferences = [\" \"]");
+        let unnamed = InstructionStyle { name: String::new(), ..built_in("r2r").unwrap() };
+        assert_eq!(validate_style(unnamed), Err(StyleError::Unnamed));
+        let empty = parse_style("x.toml", "name = \"x\"\nreferences = [\" \"]");
         assert_eq!(empty, Err(StyleError::NoReferences("x.toml".into())));
         let long = format!("name = \"x\"\nreferences = [\"{}\"]", "a".repeat(4001));
-        let long = parse("x.toml", &long).unwrap_err().to_string();
+        let long = parse_style("x.toml", &long).unwrap_err().to_string();
         assert!(
             long.starts_with("style x.toml has more than 100000 reference texts, or one of more than 4000 bytes: ")
         );

@@ -1,13 +1,13 @@
 //! Counts which of several equivalent names people use for rooms and things ("hallway", "hall", "corridor").
 
-use super::{measure::Counts, wording::ROOMS};
+use super::{measure::WordingCounts, wording::NAME_TABLE_PREFIX};
 use wayword_language::{
-    lexicon::normal,
-    reading::{Reading, What},
+    lexicon::normalise_name,
+    reading::{EventContent, TextReading},
 };
 
 /// Groups of names with the same meaning.
-const CALLED: &[&[&str]] = &[
+const EQUIVALENT_NAMES: &[&[&str]] = &[
     &["hallway", "hall", "corridor"],
     &["entryway", "foyer", "lobby"],
     &["porch", "deck", "patio", "terrace"],
@@ -38,15 +38,15 @@ const CALLED: &[&[&str]] = &[
 ];
 
 /// The group of names that a name belongs to.
-fn called(name: &str) -> Option<&'static [&'static str]> {
-    CALLED.iter().find(|names| names.iter().any(|other| normal(other) == name)).copied()
+fn equivalent_names(name: &str) -> Option<&'static [&'static str]> {
+    EQUIVALENT_NAMES.iter().find(|names| names.iter().any(|other| normalise_name(other) == name)).copied()
 }
 
-pub(super) fn names(reading: &Reading, counts: &mut Counts) {
+pub(super) fn count_names(reading: &TextReading, counts: &mut WordingCounts) {
     for event in &reading.events {
-        let What::Place(place) = &event.what else { continue };
-        let Some(names) = called(&place.name) else { continue };
-        let said = names.iter().find(|name| normal(name) == place.name).copied().unwrap_or_default();
-        names.iter().for_each(|name| counts.add(&format!("{ROOMS}{name}"), said));
+        let EventContent::Place(place) = &event.what else { continue };
+        let Some(names) = equivalent_names(&place.name) else { continue };
+        let said = names.iter().find(|name| normalise_name(name) == place.name).copied().unwrap_or_default();
+        names.iter().for_each(|name| counts.add(&format!("{NAME_TABLE_PREFIX}{name}"), said));
     }
 }

@@ -1,14 +1,14 @@
 //! Collects the verbs that reference texts use for tasks on things ("turn on {o}"), by kind of thing.
 
 use super::{
-    measure::Counts,
-    wording::{VERBS, verbs_of_class, verbs_of_kind},
+    measure::WordingCounts,
+    wording::{VERB_TABLE_PREFIX, verbs_of_class, verbs_of_kind},
 };
 use std::collections::BTreeSet;
 use wayword_language::{
-    lexicon::{kinds, thing},
+    lexicon::{find_thing, kinds_of},
     reading::{
-        Reading, What, read,
+        EventContent, TextReading, read_instruction,
         vocabulary::{DETERMINERS, WALKING},
     },
 };
@@ -16,16 +16,16 @@ use wayword_language::{
 /// A verb is used if the references have it at least this often for one kind of thing.
 const LEAST_USES: f64 = 3.0;
 /// Words that may stand between a verb and its object.
-const PARTICLES: [&str; 14] =
+const TASK_PARTICLES: [&str; 14] =
     ["me", "on", "off", "up", "down", "out", "in", "away", "over", "at", "into", "inside", "under", "back"];
 /// For a whole class of things, it also needs this share of their tasks.
 const LEAST_SHARE: f64 = 0.01;
 
 /// Counts the verb of a text's task, with `{o}` in place of the object.
-pub(super) fn verb(words: &[String], reading: &Reading, counts: &mut Counts) {
+pub(super) fn count_verb(words: &[String], reading: &TextReading, counts: &mut WordingCounts) {
     let Some(task) = &reading.task else { return };
-    let Some(What::Place(place)) = task.object.map(|at| &reading.events[at].what) else { return };
-    let Some(kind) = thing(&place.name) else { return };
+    let Some(EventContent::Place(place)) = task.object.map(|at| &reading.events[at].what) else { return };
+    let Some(kind) = find_thing(&place.name) else { return };
     let Some(at) = words.iter().rposition(|word| *word == task.verb) else { return };
     let Some(end) =
         (at + 1..words.len().min(at + 5)).find(|at| DETERMINERS.contains(&words[*at].as_str()) && words[*at] != "that")
@@ -36,7 +36,7 @@ pub(super) fn verb(words: &[String], reading: &Reading, counts: &mut Counts) {
     let is_plain = said.len() <= 3
         && said[0].len() > 1
         && said[0].chars().all(char::is_alphabetic)
-        && said[1..].iter().all(|word| PARTICLES.contains(&word.as_str()));
+        && said[1..].iter().all(|word| TASK_PARTICLES.contains(&word.as_str()));
     if !is_plain
         || WALKING.contains(&task.verb.as_str())
             && !matches!(
@@ -59,14 +59,14 @@ pub(super) fn verb(words: &[String], reading: &Reading, counts: &mut Counts) {
             key = format!("{key} {particle}");
         }
     }
-    kinds(kind.name).iter().for_each(|kind| counts.add(&verbs_of_kind(kind), &key));
+    kinds_of(kind.name).iter().for_each(|kind| counts.add(&verbs_of_kind(kind), &key));
     counts.add(&verbs_of_class(kind.class), &key);
 }
 
 /// Keeps the verbs that several references use and that our own reader recognises as a task.
-pub(super) fn retain_common_verbs(counts: &mut Counts) {
+pub(super) fn retain_common_verbs(counts: &mut WordingCounts) {
     for (table, verbs) in &mut counts.0 {
-        let Some(of) = table.strip_prefix(VERBS) else { continue };
+        let Some(of) = table.strip_prefix(VERB_TABLE_PREFIX) else { continue };
         let all: f64 = verbs.values().sum();
         let least = if of.starts_with("class ") { (all * LEAST_SHARE).max(LEAST_USES) } else { LEAST_USES };
         let object = if of.starts_with("class ") { "lamp" } else { of };
@@ -77,7 +77,7 @@ pub(super) fn retain_common_verbs(counts: &mut Counts) {
 /// Whether our reader recognises a verb as a task and understands all of the sentence.
 fn is_read(verb: &str, object: &str) -> bool {
     let text = format!("Go to the kitchen and {}", verb.replace("{o}", &format!("the {object}")));
-    let reading = read(&text, &BTreeSet::new());
+    let reading = read_instruction(&text, &BTreeSet::new());
     let has_object = reading.task.as_ref().is_some_and(|task| task.object.is_some());
     has_object && reading.clauses.iter().all(|clause| clause.understood || clause.span[0] == clause.span[1])
 }

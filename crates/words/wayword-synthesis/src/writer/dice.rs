@@ -1,56 +1,56 @@
 //! Random draws of a text by name. Each name has its own random generator, so a draw does not depend on the draws
 //! before it: if one thing of the walk changes, the words for the others stay the same.
 
-use super::{Brief, Complaint};
+use super::{TextComplaint, WritingBrief};
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
-use wayword_core::{Check, Verdict, rng, seed};
+use wayword_core::{CheckKind, Verdict, seed, seeded_rng};
 
 /// The source of all random draws of one text.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Dice {
+pub(super) struct TextDice {
     seed: u64,
 }
 
-impl Dice {
+impl TextDice {
     /// The draws of one text. If an earlier text failed only because of its landmarks, the next one draws the same
     /// values and avoids these landmarks.
-    pub(super) fn of(brief: &Brief<'_>) -> Self {
+    pub(super) fn for_brief(brief: &WritingBrief<'_>) -> Self {
         let (attempt, candidate) = (drawn_before(brief.complaints).to_string(), brief.candidate.to_string());
         let names = ["rules", &brief.style.name, &brief.walk.path.id, &attempt, &candidate];
-        Self { seed: seed::derive(brief.seed, &names) }
+        Self { seed: seed::derive_seed(brief.seed, &names) }
     }
 
     /// A source of other values for the same names.
-    pub(super) fn other(self, number: usize) -> Self {
-        Self { seed: seed::derive(self.seed, &["other", &number.to_string()]) }
+    pub(super) fn other_draws(self, number: usize) -> Self {
+        Self { seed: seed::derive_seed(self.seed, &["other", &number.to_string()]) }
     }
 
     /// The random generator for a draw with these names.
-    pub(super) fn by(self, names: &[&str]) -> ChaCha8Rng {
-        rng(self.seed, names)
+    pub(super) fn named_rng(self, names: &[&str]) -> ChaCha8Rng {
+        seeded_rng(self.seed, names)
     }
 
     /// A value from 0 to 1 for the place with this number. Consecutive places get values far apart.
     pub(super) fn in_turn(self, purpose: &str, number: usize) -> f64 {
-        (self.by(&[purpose]).random_range(0.0..1.0) + number as f64 * GOLDEN).fract()
+        (self.named_rng(&[purpose]).random_range(0.0..1.0) + number as f64 * GOLDEN_RATIO_FRACTION).fract()
     }
 
     /// The random generator for one purpose at a frame.
-    pub(super) fn at(self, purpose: &str, frame: usize) -> ChaCha8Rng {
-        self.by(&[purpose, &frame.to_string()])
+    pub(super) fn rng_at_frame(self, purpose: &str, frame: usize) -> ChaCha8Rng {
+        self.named_rng(&[purpose, &frame.to_string()])
     }
 }
 
 /// Multiples of the golden ratio, without their whole parts, spread evenly.
-const GOLDEN: f64 = 0.618_033_988_749_894_9;
+const GOLDEN_RATIO_FRACTION: f64 = 0.618_033_988_749_894_9;
 
 /// Number of earlier texts after which everything is drawn anew: those with other faults than landmarks, and repeated
 /// ones.
-fn drawn_before(complaints: &[Complaint]) -> usize {
-    let has_other_faults = |complaint: &Complaint| {
+fn drawn_before(complaints: &[TextComplaint]) -> usize {
+    let has_other_faults = |complaint: &TextComplaint| {
         let mut faults = complaint.findings.iter().filter(|finding| finding.verdict != Verdict::Pass);
-        faults.any(|finding| finding.check != Check::Landmarks || finding.span.is_none())
+        faults.any(|finding| finding.check != CheckKind::Landmarks || finding.span.is_none())
     };
     let came_before = |at: usize| complaints[..at].iter().any(|before| before.text == complaints[at].text);
     (0..complaints.len()).filter(|at| has_other_faults(&complaints[*at]) || came_before(*at)).count()

@@ -3,38 +3,40 @@
 //! Every kind of thing has one home: the spot of the text that it suits best. Each spot then names the best of the
 //! things at home there. So a thing that comes or goes changes the text in its own spot only.
 
-use super::{Brief, dice::Dice};
+use super::{WritingBrief, dice::TextDice};
 use rand::Rng;
 use std::collections::BTreeMap;
-use wayword_checks::memory::Remembered;
+use wayword_checks::memory::RememberedThing;
 use wayword_core::{Side, Verdict};
-use wayword_language::lexicon::{Class, Thing, agree, is_fabric, is_room, kinds, normal, plural, thing};
+use wayword_language::lexicon::{
+    LexiconThing, ThingClass, find_thing, is_fabric, is_room, kinds_of, names_agree, normalise_name, to_plural,
+};
 
 /// Chooses landmarks, each kind of thing once in a text.
-pub(super) struct Landmarks<'a> {
-    brief: &'a Brief<'a>,
+pub(super) struct LandmarkChooser<'a> {
+    brief: &'a WritingBrief<'a>,
     /// Names that other parts of the text use: that of the target.
     reserved: Vec<String>,
     avoided: Vec<String>,
-    dice: Dice,
+    dice: TextDice,
 }
 
 /// A search for a thing: at a frame, with a least salience, for one use.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Search {
+pub(super) struct LandmarkSearch {
     /// The frame.
     pub(super) frame: usize,
     /// The least salience.
     pub(super) salience: u8,
     /// The use of the landmark.
-    pub(super) to: Use,
+    pub(super) to: LandmarkUse,
 }
 
 /// A spot of a text that may name a thing.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Spot {
+pub(super) struct LandmarkSpot {
     /// The searches for a thing, in order; if several find the same thing, the first counts.
-    pub(super) searches: Vec<Search>,
+    pub(super) searches: Vec<LandmarkSearch>,
     /// Whether a second thing near it is named with it.
     pub(super) pair: bool,
     /// Whether it is only used if another spot finds no thing.
@@ -43,7 +45,7 @@ pub(super) struct Spot {
 
 /// A landmark in words.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Landmark {
+pub(super) struct ChosenLandmark {
     /// "the sofa", "the green lamp".
     pub(super) phrase: String,
     /// The name alone.
@@ -83,25 +85,25 @@ const IN_FRONT: f64 = 1.5;
 const BESIDE_M: f64 = 1.5;
 
 /// Weight of how often a style's texts name a thing, per unit of the natural logarithm.
-const MENTIONED: f64 = 0.7;
+const MENTIONED_WEIGHT: f64 = 0.7;
 /// Weight of a thing's salience.
-const SALIENT: f64 = 0.8;
+const SALIENCE_WEIGHT: f64 = 0.8;
 /// Extra reach for wide things, metres: a bed counts as near from this much farther, seats and tables from half of it.
 const WIDE_M: f64 = 1.2;
 /// Upper bound of the random part of a thing's value.
-const CHANCE: f64 = 1.5;
+const CHANCE_WORTH: f64 = 1.5;
 /// Share of things with a much larger random part, so that texts differ.
-const RARE: f64 = 0.2;
+const MORE_CHANCE_SHARE: f64 = 0.2;
 /// Deduction for each earlier search of the spot that failed.
 const LATER_SEARCH: f64 = 2.0;
 /// Deduction at a spot that replaces another one.
-const SPARE: f64 = 1.0;
+const SPARE_SPOT_COST: f64 = 1.0;
 /// Bonus of a thing at the stop of the walk.
 const AT_THE_END: f64 = 0.5;
 
 /// The use of a landmark in a text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Use {
+pub(super) enum LandmarkUse {
     /// It is named while the walker is at a frame.
     Here,
     /// The walker goes to it or past it on the way to a frame.
@@ -113,71 +115,74 @@ pub(super) enum Use {
 }
 
 /// A kind of thing with its best spot.
-struct At<'a> {
+struct LandmarkHome<'a> {
     spot: usize,
     worth: f64,
-    seen: &'a Remembered,
+    seen: &'a RememberedThing,
     /// The search that found it; `None` if it is only named together with another thing.
-    found_by: Option<Search>,
+    found_by: Option<LandmarkSearch>,
 }
 
-impl At<'_> {
+impl LandmarkHome<'_> {
     /// Whether a thing suits this spot better than another one. The stop takes precedence over things that are passed.
     fn goes_before(&self, other: &Self) -> bool {
-        let rank = |at: &At<'_>| (at.found_by.is_some(), at.worth + at.stop_bonus());
+        let rank = |at: &LandmarkHome<'_>| (at.found_by.is_some(), at.worth + at.stop_bonus());
         let ((is_found, worth), (other_is_found, other_worth)) = (rank(self), rank(other));
         (is_found, worth) > (other_is_found, other_worth)
     }
 
     fn stop_bonus(&self) -> f64 {
-        if self.found_by.is_some_and(|search| search.to == Use::Stop) { AT_THE_END } else { 0.0 }
+        if self.found_by.is_some_and(|search| search.to == LandmarkUse::Stop) { AT_THE_END } else { 0.0 }
     }
 }
 
-impl Search {
+impl LandmarkSearch {
     /// The search for a second thing near the first.
-    fn beside(self) -> Self {
-        Self { to: if self.to == Use::Stop { Use::Stop } else { Use::Here }, ..self }
+    fn search_beside(self) -> Self {
+        Self { to: if self.to == LandmarkUse::Stop { LandmarkUse::Stop } else { LandmarkUse::Here }, ..self }
     }
 }
 
-impl<'a> Landmarks<'a> {
+impl<'a> LandmarkChooser<'a> {
     /// Avoids names that checks complained about in earlier texts, and the target, which the task names.
-    pub(super) fn new(brief: &'a Brief<'a>, dice: Dice) -> Self {
+    pub(super) fn new(brief: &'a WritingBrief<'a>, dice: TextDice) -> Self {
         let blamed = brief.complaints.iter().flat_map(|complaint| {
             let failed = complaint.findings.iter().filter(|finding| finding.verdict != Verdict::Pass);
-            failed.filter_map(|finding| complaint.text.get(finding.span?[0]..finding.span?[1])).map(normal)
+            failed.filter_map(|finding| complaint.text.get(finding.span?[0]..finding.span?[1])).map(normalise_name)
         });
-        let target = brief.walk.path.target.as_ref().map(|target| normal(&target.name));
+        let target = brief.walk.path.target.as_ref().map(|target| normalise_name(&target.name));
         Self { brief, reserved: target.into_iter().collect(), avoided: blamed.collect(), dice }
     }
 
     /// Whether a name may be used.
     fn is_free(&self, name: &str) -> bool {
-        !self.reserved.iter().any(|other| agree(other, name))
-            && !self.avoided.iter().any(|blamed| *blamed == normal(name) || blamed.ends_with(&normal(name)))
+        !self.reserved.iter().any(|other| names_agree(other, name))
+            && !self
+                .avoided
+                .iter()
+                .any(|blamed| *blamed == normalise_name(name) || blamed.ends_with(&normalise_name(name)))
     }
 
     /// Keeps a name from being used as a landmark.
-    pub(super) fn reserve(&mut self, name: &str) {
-        self.reserved.push(normal(name));
+    pub(super) fn reserve_name(&mut self, name: &str) {
+        self.reserved.push(normalise_name(name));
     }
 
     /// The landmark of at least that salience that identifies a frame best, if there is one.
-    pub(super) fn choose(&self, frame: usize, salience: u8) -> Option<Landmark> {
-        let search = Search { frame, salience, to: Use::Here };
-        let found = self.brief.memory.seen_from(frame).filter(|seen| self.finds(search, seen));
-        let best = found.max_by(|a, b| self.worth(a, search).total_cmp(&self.worth(b, search)))?;
-        Some(self.landmark(best, frame))
+    pub(super) fn choose_for_frame(&self, frame: usize, salience: u8) -> Option<ChosenLandmark> {
+        let search = LandmarkSearch { frame, salience, to: LandmarkUse::Here };
+        let found = self.brief.memory.seen_from(frame).filter(|seen| self.search_finds(search, seen));
+        let best = found.max_by(|a, b| self.landmark_worth(a, search).total_cmp(&self.landmark_worth(b, search)))?;
+        Some(self.describe_landmark(best, frame))
     }
 
     /// The landmark of each spot, if it has one. Each kind of thing belongs to its best spot, independently of other
     /// things, and each spot names the best of its own.
-    pub(super) fn at(&self, spots: &[Spot]) -> Vec<Option<Landmark>> {
-        let mut homes: BTreeMap<String, At<'_>> = BTreeMap::new();
+    pub(super) fn landmarks_at(&self, spots: &[LandmarkSpot]) -> Vec<Option<ChosenLandmark>> {
+        let mut homes: BTreeMap<String, LandmarkHome<'_>> = BTreeMap::new();
         for seen in &self.brief.memory.things {
             let Some(best) = self.best_spot(seen, spots) else { continue };
-            let kind = kind(&seen.name);
+            let kind = thing_kind(&seen.name);
             match homes.get_mut(&kind) {
                 Some(home) if !best.goes_before(home) => {}
                 Some(home) => *home = best,
@@ -192,28 +197,33 @@ impl<'a> Landmarks<'a> {
                 let found = of_spot(number).filter(|home| home.found_by.is_some());
                 let best = found.max_by(|a, b| a.worth.total_cmp(&b.worth))?;
                 let search = best.found_by?;
-                let landmark = self.landmark(best.seen, search.frame);
+                let landmark = self.describe_landmark(best.seen, search.frame);
                 let others = of_spot(number).filter(|home| home.seen != best.seen);
-                let with = self.beside(best.seen, search, others).filter(|_| spots[number].pair);
-                Some(Landmark { with, ..landmark })
+                let with = self.name_beside(best.seen, search, others).filter(|_| spots[number].pair);
+                Some(ChosenLandmark { with, ..landmark })
             })
             .collect()
     }
 
     /// The best spot for a thing.
-    fn best_spot(&self, seen: &'a Remembered, spots: &[Spot]) -> Option<At<'a>> {
-        let at = |(spot, Spot { searches, pair, is_spare }): (usize, &Spot)| {
-            let found = searches.iter().enumerate().find(|(_, search)| self.finds(**search, seen));
+    fn best_spot(&self, seen: &'a RememberedThing, spots: &[LandmarkSpot]) -> Option<LandmarkHome<'a>> {
+        let at = |(spot, LandmarkSpot { searches, pair, is_spare }): (usize, &LandmarkSpot)| {
+            let found = searches.iter().enumerate().find(|(_, search)| self.search_finds(**search, seen));
             if let Some((rank, search)) = found {
-                let less = LATER_SEARCH * rank as f64 + if *is_spare { SPARE } else { 0.0 };
-                let worth = self.worth(seen, *search) - less;
-                return Some(At { spot, worth, seen, found_by: Some(*search) });
+                let less = LATER_SEARCH * rank as f64 + if *is_spare { SPARE_SPOT_COST } else { 0.0 };
+                let worth = self.landmark_worth(seen, *search) - less;
+                return Some(LandmarkHome { spot, worth, seen, found_by: Some(*search) });
             }
             let beside = searches.first().filter(|_| *pair)?;
-            let here = Search { salience: 1, ..beside.beside() };
-            self.finds(here, seen).then(|| At { spot, worth: self.worth(seen, here), seen, found_by: None })
+            let here = LandmarkSearch { salience: 1, ..beside.search_beside() };
+            self.search_finds(here, seen).then(|| LandmarkHome {
+                spot,
+                worth: self.landmark_worth(seen, here),
+                seen,
+                found_by: None,
+            })
         };
-        let mut best: Option<At<'a>> = None;
+        let mut best: Option<LandmarkHome<'a>> = None;
         for found in spots.iter().enumerate().filter_map(at) {
             if best.as_ref().is_none_or(|before| found.goes_before(before)) {
                 best = Some(found);
@@ -223,57 +233,67 @@ impl<'a> Landmarks<'a> {
     }
 
     /// Whether a search finds a thing.
-    fn finds(&self, Search { frame, salience, to }: Search, seen: &Remembered) -> bool {
-        seen.glimpse(frame).is_some()
+    fn search_finds(&self, LandmarkSearch { frame, salience, to }: LandmarkSearch, seen: &RememberedThing) -> bool {
+        seen.glimpse_from(frame).is_some()
             && is_tellable(&seen.name, salience)
             && self.is_free(&seen.name)
-            && self.fits(seen, frame, to)
+            && self.fits_use(seen, frame, to)
     }
 
     /// The value of a thing as the landmark of a search.
-    fn worth(&self, seen: &Remembered, Search { frame, to, .. }: Search) -> f64 {
-        let kind = kind(&seen.name);
+    fn landmark_worth(&self, seen: &RememberedThing, LandmarkSearch { frame, to, .. }: LandmarkSearch) -> f64 {
+        let kind = thing_kind(&seen.name);
         // Now and then the random part dominates, so that texts differ.
-        let chance = if self.dice.by(&["rare", &kind]).random_bool(RARE) { 4.0 * CHANCE } else { CHANCE };
-        let ahead = if to == Use::Stop && is_in_front(seen, frame) { IN_FRONT } else { 0.0 };
-        let mut drawn = self.dice.by(&["thing", &kind]);
-        self.score(seen, frame) + ahead + drawn.random_range(0.0..chance)
+        let chance = if self.dice.named_rng(&["rare", &kind]).random_bool(MORE_CHANCE_SHARE) {
+            4.0 * CHANCE_WORTH
+        } else {
+            CHANCE_WORTH
+        };
+        let ahead = if to == LandmarkUse::Stop && is_in_front(seen, frame) { IN_FRONT } else { 0.0 };
+        let mut drawn = self.dice.named_rng(&["thing", &kind]);
+        self.landmark_score(seen, frame) + ahead + drawn.random_range(0.0..chance)
     }
 
     /// The name of another thing of the same spot near the landmark.
-    fn beside<'b>(
+    fn name_beside<'b>(
         &self,
-        landmark: &Remembered,
-        search: Search,
-        others: impl Iterator<Item = &'b At<'b>>,
+        landmark: &RememberedThing,
+        search: LandmarkSearch,
+        others: impl Iterator<Item = &'b LandmarkHome<'b>>,
     ) -> Option<String> {
-        let (memory, here) = (self.brief.memory, search.beside());
+        let (memory, here) = (self.brief.memory, search.search_beside());
         let place = landmark.position?;
         let beside = others.map(|other| other.seen).filter(|seen| {
             let is_beside = seen.position.is_some_and(|other| other.distance(place) <= BESIDE_M);
-            let is_other = !agree(&seen.name, &landmark.name) && seen.colour.is_none();
-            is_beside && is_other && self.fits(seen, here.frame, here.to)
+            let is_other = !names_agree(&seen.name, &landmark.name) && seen.colour.is_none();
+            is_beside && is_other && self.fits_use(seen, here.frame, here.to)
         });
-        let best = beside.max_by(|a, b| self.score(a, here.frame).total_cmp(&self.score(b, here.frame)))?;
-        let alike = memory.seen_from(here.frame).filter(|other| normal(&other.name) == normal(&best.name)).count();
-        Some(if alike > 1 { plural(&best.name) } else { best.name.clone() })
+        let best =
+            beside.max_by(|a, b| self.landmark_score(a, here.frame).total_cmp(&self.landmark_score(b, here.frame)))?;
+        let alike = memory
+            .seen_from(here.frame)
+            .filter(|other| normalise_name(&other.name) == normalise_name(&best.name))
+            .count();
+        Some(if alike > 1 { to_plural(&best.name) } else { best.name.clone() })
     }
 
-    fn fits(&self, seen: &Remembered, frame: usize, to: Use) -> bool {
+    fn fits_use(&self, seen: &RememberedThing, frame: usize, to: LandmarkUse) -> bool {
         let memory = self.brief.memory;
-        let wide_m = match thing(&seen.name).map(|thing| thing.class) {
-            Some(Class::Bed) => WIDE_M,
-            Some(Class::Seat | Class::Surface) => WIDE_M / 2.0,
+        let wide_m = match find_thing(&seen.name).map(|thing| thing.class) {
+            Some(ThingClass::Bed) => WIDE_M,
+            Some(ThingClass::Seat | ThingClass::Surface) => WIDE_M / 2.0,
             _ => 0.0,
         };
-        let most_m = if to == Use::Stop { STOP_M } else { NEAR_M + wide_m };
+        let most_m = if to == LandmarkUse::Stop { STOP_M } else { NEAR_M + wide_m };
         let is_near = memory.distance_m(seen, frame).is_none_or(|distance_m| distance_m <= most_m);
-        let side = memory.side(seen, frame);
+        let side = memory.side_at(seen, frame);
         let is_there = match to {
-            Use::Here => side != Some(Side::Behind) && was_seen(seen, frame, AHEAD_RAD),
-            Use::Onward => was_seen(seen, frame, AHEAD_RAD) && (side == Some(Side::Ahead) || is_passed(seen, frame)),
-            Use::Beside => was_seen(seen, frame, BESIDE_RAD) && is_passed(seen, frame),
-            Use::Stop => side != Some(Side::Behind) && !hangs_overhead(&seen.name),
+            LandmarkUse::Here => side != Some(Side::Behind) && was_seen(seen, frame, AHEAD_RAD),
+            LandmarkUse::Onward => {
+                was_seen(seen, frame, AHEAD_RAD) && (side == Some(Side::Ahead) || is_passed(seen, frame))
+            }
+            LandmarkUse::Beside => was_seen(seen, frame, BESIDE_RAD) && is_passed(seen, frame),
+            LandmarkUse::Stop => side != Some(Side::Behind) && !hangs_overhead(&seen.name),
         };
         // Without positions the directions of things are unknown.
         is_near && (is_there || side.is_none())
@@ -281,46 +301,48 @@ impl<'a> Landmarks<'a> {
 
     /// The fixed part of a thing's value: high for salient things that people often name, that are near the frame and
     /// rare in the walk.
-    fn score(&self, seen: &Remembered, frame: usize) -> f64 {
+    fn landmark_score(&self, seen: &RememberedThing, frame: usize) -> f64 {
         let memory = self.brief.memory;
-        let known = thing(&seen.name);
+        let known = find_thing(&seen.name);
         let salience = known.map_or(0.0, |thing| f64::from(thing.salience));
-        let mentions = known.map_or(0.0, |thing| self.brief.profile.way.mentions(thing.name));
+        let mentions = known.map_or(0.0, |thing| self.brief.profile.way.thing_mentions(thing.name));
         let far_m = memory.distance_m(seen, frame).unwrap_or(NEAR_M);
-        let alike = || memory.things.iter().filter(|other| agree(&other.name, &seen.name));
-        let elsewhere = alike().filter(|other| other.glimpse(frame).is_none()).count();
+        let alike = || memory.things.iter().filter(|other| names_agree(&other.name, &seen.name));
+        let elsewhere = alike().filter(|other| other.glimpse_from(frame).is_none()).count();
         let earlier = alike().filter(|other| other.first_seen() < frame);
-        let on_wall = known.is_some_and(|thing| matches!(thing.class, Class::WallArt | Class::Glass));
-        salience * SALIENT - f64::from(u8::from(on_wall)) + mentions.ln_1p() * MENTIONED
+        let on_wall = known.is_some_and(|thing| matches!(thing.class, ThingClass::WallArt | ThingClass::Glass));
+        salience * SALIENCE_WEIGHT - f64::from(u8::from(on_wall)) + mentions.ln_1p() * MENTIONED_WEIGHT
             - far_m * 0.5
             - elsewhere.min(5) as f64 * 0.6
             - earlier.count().min(3) as f64 * 0.5
     }
 
-    fn landmark(&self, seen: &Remembered, frame: usize) -> Landmark {
+    fn describe_landmark(&self, seen: &RememberedThing, frame: usize) -> ChosenLandmark {
         let name = seen.name.clone();
         let phrase = match &seen.colour {
             Some(colour) => format!("the {colour} {name}"),
             None => format!("the {name}"),
         };
         let memory = self.brief.memory;
-        let is_alike = |other: &&Remembered| normal(&other.name) == normal(&seen.name) && other.colour == seen.colour;
-        let stands_by = |other: &&Remembered| match (seen.position, other.position) {
+        let is_alike = |other: &&RememberedThing| {
+            normalise_name(&other.name) == normalise_name(&seen.name) && other.colour == seen.colour
+        };
+        let stands_by = |other: &&RememberedThing| match (seen.position, other.position) {
             (Some(here), Some(there)) => here.distance(there) <= TOGETHER_M,
             _ => true,
         };
         let alike = memory.seen_from(frame).filter(is_alike).filter(stands_by).count();
-        let like = |other: &&Remembered| normal(&other.name) == normal(&seen.name);
+        let like = |other: &&RememberedThing| normalise_name(&other.name) == normalise_name(&seen.name);
         let needs_colour = memory.seen_from(frame).filter(like).any(|other| other.colour != seen.colour);
         let passed = seen.passed.map(|passed| (passed.frame, passed.side));
-        Landmark {
+        ChosenLandmark {
             in_front: is_in_front(seen, frame),
             phrase,
             name,
             colour: seen.colour.clone(),
             needs_colour,
             alike,
-            side: memory.side(seen, frame),
+            side: memory.side_at(seen, frame),
             passed,
             with: None,
         }
@@ -328,25 +350,25 @@ impl<'a> Landmarks<'a> {
 }
 
 /// The kind of a thing, which names its random draws: it is the same from other frames and on other platforms.
-fn kind(name: &str) -> String {
-    kinds(name).swap_remove(0)
+fn thing_kind(name: &str) -> String {
+    kinds_of(name).swap_remove(0)
 }
 
 /// Whether a name is suitable for a landmark: known as a thing that helps, and not the name of a room or list.
 fn is_tellable(name: &str, salience: u8) -> bool {
     let plain =
         name.len() <= 30 && name.chars().all(|c| c.is_alphabetic() || c == ' ' || c == '-') && !name.contains(" and ");
-    let is_fixed = |class: Class| matches!(class, Class::Door | Class::Stairs | Class::Switch);
+    let is_fixed = |class: ThingClass| matches!(class, ThingClass::Door | ThingClass::Stairs | ThingClass::Switch);
     // Lamps are landmarks; other lights are too common.
-    let is_faint = |thing: &Thing| thing.salience == 1 && thing.class == Class::Light;
+    let is_faint = |thing: &LexiconThing| thing.salience == 1 && thing.class == ThingClass::Light;
     let tells =
-        thing(name).is_some_and(|thing| thing.salience >= salience && !is_fixed(thing.class) && !is_faint(thing));
-    plain && !is_room(&normal(name)) && !is_fabric(name) && tells
+        find_thing(name).is_some_and(|thing| thing.salience >= salience && !is_fixed(thing.class) && !is_faint(thing));
+    plain && !is_room(&normalise_name(name)) && !is_fabric(name) && tells
 }
 
 /// Whether a walker who looks this far to either side has seen a thing by the time of a frame, as far as is known. A
 /// thing that is only visible behind the walker is no landmark.
-fn was_seen(seen: &Remembered, frame: usize, aside_rad: f64) -> bool {
+fn was_seen(seen: &RememberedThing, frame: usize, aside_rad: f64) -> bool {
     let within = |turn_rad: Option<f64>| turn_rad.is_none_or(|turn_rad| turn_rad.abs() <= aside_rad);
     seen.glimpses.iter().any(|glimpse| glimpse.frame <= frame && within(glimpse.turn_rad))
 }
@@ -354,16 +376,16 @@ fn was_seen(seen: &Remembered, frame: usize, aside_rad: f64) -> bool {
 /// Whether a thing hangs overhead, so that a walker does not stop at it.
 fn hangs_overhead(name: &str) -> bool {
     let is_lamp_by_hand = |name: &str| name.ends_with("lamp");
-    thing(name).is_some_and(|thing| thing.class == Class::Light) && !is_lamp_by_hand(name)
+    find_thing(name).is_some_and(|thing| thing.class == ThingClass::Light) && !is_lamp_by_hand(name)
 }
 
 /// Whether the walker passes a thing at a frame or shortly before it.
-fn is_passed(seen: &Remembered, frame: usize) -> bool {
+fn is_passed(seen: &RememberedThing, frame: usize) -> bool {
     seen.passed.is_some_and(|passed| passed.frame <= frame && passed.frame + 2 > frame)
 }
 
 /// Whether a thing lies in front of a walker who arrives at a frame, as far as is known.
-fn is_in_front(seen: &Remembered, frame: usize) -> bool {
-    let turn_rad = seen.glimpse(frame).and_then(|glimpse| glimpse.turn_rad);
+fn is_in_front(seen: &RememberedThing, frame: usize) -> bool {
+    let turn_rad = seen.glimpse_from(frame).and_then(|glimpse| glimpse.turn_rad);
     turn_rad.is_none_or(|turn_rad| turn_rad.abs() < IN_FRONT_RAD)
 }

@@ -1,49 +1,51 @@
 //! Puts the clauses of a way into words: draws a shape for each, and one name for each room and thing of the text.
 
 use super::{
-    Brief,
-    dice::Dice,
-    phrases::{draw, fill, stay_phrase},
-    route::{Clause, Role, side_word, stands_still, suits},
+    WritingBrief,
+    dice::TextDice,
+    phrases::{draw_option, fill_gaps, stay_phrase},
+    route::{OfferRole, WayClause, side_word, stands_still, suits_motion},
 };
-use crate::style::way::{Kind, Way, is_until};
+use crate::style::way::{ClauseKind, WayWording, is_until};
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeMap;
-use wayword_core::Motion;
-use wayword_language::lexicon::{counted, plural, room_name, thing};
+use wayword_core::PathMotion;
+use wayword_language::lexicon::{counted_name, find_thing, room_name, to_plural};
 
 /// A clause in words.
-pub(super) struct Phrase {
+pub(super) struct ClausePhrase {
     pub(super) text: String,
     /// Whether it begins with a verb, so that it can follow "and".
     pub(super) is_clause: bool,
 }
 
 /// Share of things that get a colour although they do not need one.
-const COLOURED: f64 = 0.25;
+const COLOUR_SHARE: f64 = 0.25;
 
 /// Whether a shape with "exit" or "out" fits a clause: it names the room that it leaves, or its door leads out of the
 /// first room and not into the last.
-fn goes_out(clause: &Clause, brief: &Brief<'_>) -> bool {
+fn goes_out(clause: &WayClause, brief: &WritingBrief<'_>) -> bool {
     let openings = &brief.memory.openings;
     let is_first = openings.len() > 1 && openings[0].before == clause.at;
-    clause.from.is_some() || is_first || !matches!(clause.kind, Kind::ThroughDoor | Kind::DoorOnSide | Kind::ToDoor)
+    clause.from.is_some()
+        || is_first
+        || !matches!(clause.kind, ClauseKind::ThroughDoor | ClauseKind::DoorOnSide | ClauseKind::ToDoor)
 }
 
 /// Distance into a room up to which the walker is "just inside", metres.
 const STEP_M: f64 = 2.5;
 
 /// Length of the way in the room of a frame up to it, metres.
-fn walked_in_m(at: usize, brief: &Brief<'_>) -> f64 {
-    let before = brief.memory.stay(at).map_or(0, |stay| stay.entered.saturating_sub(1));
+fn walked_in_m(at: usize, brief: &WritingBrief<'_>) -> f64 {
+    let before = brief.memory.stay_at(at).map_or(0, |stay| stay.entered.saturating_sub(1));
     brief.walk.walked_m(before, at)
 }
 
 /// The demands of a clause's context on its shape.
 #[derive(Clone, Copy)]
-struct Needs {
-    motion: Motion,
+struct ShapeNeeds {
+    motion: PathMotion,
     /// Whether it has to name its room.
     names_room: bool,
     /// Whether it leaves the room of the start, or names the room that it leaves.
@@ -55,54 +57,60 @@ struct Needs {
 }
 
 /// The names that a text gives to rooms and things: one for each.
-pub(super) struct Names<'a> {
-    way: &'a Way,
+pub(super) struct ChosenNames<'a> {
+    way: &'a WayWording,
     chosen: BTreeMap<String, String>,
-    dice: Dice,
+    dice: TextDice,
 }
 
-impl<'a> Names<'a> {
-    pub(super) fn of(way: &'a Way, dice: Dice) -> Self {
+impl<'a> ChosenNames<'a> {
+    pub(super) fn for_way(way: &'a WayWording, dice: TextDice) -> Self {
         Self { way, chosen: BTreeMap::new(), dice }
     }
 
     /// One of the clauses of a text in words.
-    pub(super) fn phrase(&mut self, told: &[Clause], at: usize, brief: &Brief<'_>, dice: Dice) -> Phrase {
+    pub(super) fn clause_phrase(
+        &mut self,
+        told: &[WayClause],
+        at: usize,
+        brief: &WritingBrief<'_>,
+        dice: TextDice,
+    ) -> ClausePhrase {
         let clause = &told[at];
-        let rng = &mut clause.drawn("words", dice);
-        if clause.kind == Kind::Straight && stands_still(brief.walk) {
-            return Phrase { text: stay_phrase(None, rng), is_clause: true };
+        let rng = &mut clause.clause_rng("words", dice);
+        if clause.kind == ClauseKind::Straight && stands_still(brief.walk) {
+            return ClausePhrase { text: stay_phrase(None, rng), is_clause: true };
         }
         let motion = brief.walk.path.motion;
         let before = at.checked_sub(1).map(|before| told[before].kind).filter(|_| !clause.follows_offer);
         // A thing may limit a plain "go straight", so that the text stays complete without the thing.
         let follows = match clause.thing {
-            Some(_) => before == Some(Kind::Straight),
-            None => before.is_some_and(Kind::goes_on),
+            Some(_) => before == Some(ClauseKind::Straight),
+            None => before.is_some_and(ClauseKind::goes_on),
         };
-        let needs = Needs {
+        let needs = ShapeNeeds {
             motion,
             names_room: has_to_name(told, at, brief),
-            is_near_door: clause.kind != Kind::StopIn || walked_in_m(clause.at, brief) <= STEP_M,
+            is_near_door: clause.kind != ClauseKind::StopIn || walked_in_m(clause.at, brief) <= STEP_M,
             leaves: goes_out(clause, brief),
             may_run: follows,
         };
-        let shape = self.shape(clause, needs, rng);
+        let shape = self.draw_shape(clause, needs, rng);
         let side = clause.side.map_or("", side_word);
         let thing = clause.thing.as_ref().map(|thing| {
-            let name = self.thing(&thing.name);
-            let says_colour = thing.needs_colour || rng.random_bool(COLOURED);
+            let name = self.name_thing(&thing.name);
+            let says_colour = thing.needs_colour || rng.random_bool(COLOUR_SHARE);
             let colour = thing.colour.as_ref().filter(|_| says_colour);
             let name = colour.map_or(name.clone(), |colour| format!("{colour} {name}"));
             let name = match thing.alike {
                 // "The two gold lamps".
-                2 if rng.random_bool(0.3) => counted(2, &name),
-                2.. if rng.random_bool(0.6) => plural(&name),
+                2 if rng.random_bool(0.3) => counted_name(2, &name),
+                2.. if rng.random_bool(0.6) => to_plural(&name),
                 _ => name,
             };
             thing.with.as_ref().map_or(name.clone(), |other| format!("{name} and {other}"))
         });
-        let mut room = |room: Option<&String>| room.map(|room| self.room(room)).unwrap_or_default();
+        let mut room = |room: Option<&String>| room.map(|room| self.name_room(room)).unwrap_or_default();
         let (room, from) = (room(clause.room.as_ref()), room(clause.from.as_ref()));
         let gaps = [
             ("{s}", side),
@@ -112,12 +120,12 @@ impl<'a> Names<'a> {
             ("{a}", from.as_str()),
         ];
         let is_clause = !["in", "at", "with"].contains(&shape.split(' ').next().unwrap_or_default());
-        Phrase { text: fill(&shape, &gaps), is_clause }
+        ClausePhrase { text: fill_gaps(&shape, &gaps), is_clause }
     }
 
     /// A shape of the clause's kind, by its share.
-    fn shape(&self, clause: &Clause, needs: Needs, rng: &mut ChaCha8Rng) -> String {
-        let own = Way::built_in().shapes.get(&clause.kind);
+    fn draw_shape(&self, clause: &WayClause, needs: ShapeNeeds, rng: &mut ChaCha8Rng) -> String {
+        let own = WayWording::built_in().shapes.get(&clause.kind);
         let shapes = self.way.shapes.get(&clause.kind).or(own);
         let ahead = clause.thing.as_ref().is_none_or(|thing| thing.in_front);
         let usual = clause.room.as_deref().and_then(room_name);
@@ -129,7 +137,7 @@ impl<'a> Names<'a> {
             (clause.room.is_some() || !shape.contains("{r}")) && ((has_walls && !needs.names_room) || !names_none)
         };
         let fits = |shape: &&String| {
-            suits(shape, needs.motion)
+            suits_motion(shape, needs.motion)
                 && (ahead || !shape.contains("front"))
                 && is_room(shape)
                 && (is_open_air || !shape.contains("onto the {r}") && !shape.contains("out into the {r}"))
@@ -144,27 +152,27 @@ impl<'a> Names<'a> {
             .filter(|(shape, _)| fits(shape))
             .map(|(shape, count)| (*count, shape))
             .collect();
-        draw(&all, rng).cloned().unwrap_or_else(|| plain(clause.kind).to_owned())
+        draw_option(&all, rng).cloned().unwrap_or_else(|| plain_words(clause.kind).to_owned())
     }
 
-    fn room(&mut self, room: &str) -> String {
-        self.name(room, room_name(room).and_then(|usual| self.way.rooms.get(usual)))
+    fn name_room(&mut self, room: &str) -> String {
+        self.chosen_name(room, room_name(room).and_then(|usual| self.way.rooms.get(usual)))
     }
 
     /// A label that is more precise than the usual name ("round table") often stays as it is.
-    fn thing(&mut self, name: &str) -> String {
-        let names = thing(name).and_then(|thing| self.way.things.get(thing.name));
+    fn name_thing(&mut self, name: &str) -> String {
+        let names = find_thing(name).and_then(|thing| self.way.things.get(thing.name));
         let says_more = names.is_some_and(|names| !names.contains_key(name));
-        let names = names.filter(|_| !says_more || self.dice.by(&["usual name", name]).random_bool(0.4));
-        self.name(name, names)
+        let names = names.filter(|_| !says_more || self.dice.named_rng(&["usual name", name]).random_bool(0.4));
+        self.chosen_name(name, names)
     }
 
-    fn name(&mut self, name: &str, names: Option<&BTreeMap<String, f64>>) -> String {
+    fn chosen_name(&mut self, name: &str, names: Option<&BTreeMap<String, f64>>) -> String {
         if let Some(chosen) = self.chosen.get(name) {
             return chosen.clone();
         }
         let all: Vec<(f64, &String)> = names.into_iter().flatten().map(|(name, count)| (*count, name)).collect();
-        let drawn = draw(&all, &mut self.dice.by(&["name", name]));
+        let drawn = draw_option(&all, &mut self.dice.named_rng(&["name", name]));
         let chosen = drawn.cloned().unwrap_or_else(|| name.to_owned());
         self.chosen.insert(name.to_owned(), chosen.clone());
         chosen
@@ -173,34 +181,34 @@ impl<'a> Names<'a> {
 
 /// Whether a clause has to name its room, because "the room" would be unclear: it is the room of the end, a later
 /// clause mentions it, or no earlier clause named it.
-fn has_to_name(told: &[Clause], at: usize, brief: &Brief<'_>) -> bool {
+fn has_to_name(told: &[WayClause], at: usize, brief: &WritingBrief<'_>) -> bool {
     let Some(room) = &told[at].room else { return false };
-    let speaks_of_it = |clause: &Clause| clause.room.as_ref() == Some(room) || clause.from.as_ref() == Some(room);
+    let speaks_of_it = |clause: &WayClause| clause.room.as_ref() == Some(room) || clause.from.as_ref() == Some(room);
     let (before, after) = (told[..at].iter().any(speaks_of_it), told[at + 1..].iter().any(speaks_of_it));
     match told[at].kind {
-        Kind::Leave | Kind::LeaveByDoor => at > 0 && !before,
-        Kind::StopIn => !before,
+        ClauseKind::Leave | ClauseKind::LeaveByDoor => at > 0 && !before,
+        ClauseKind::StopIn => !before,
         // The thing in the room identifies it.
-        Kind::EnterWith => after,
-        _ => after || brief.memory.room(brief.memory.frames().saturating_sub(1)) == Some(room),
+        ClauseKind::EnterWith => after,
+        _ => after || brief.memory.room_at(brief.memory.frame_count().saturating_sub(1)) == Some(room),
     }
 }
 
 /// The words of a kind where no shape fits.
-fn plain(kind: Kind) -> &'static str {
+fn plain_words(kind: ClauseKind) -> &'static str {
     match kind {
-        Kind::Straight => "keep going",
-        Kind::StopAt => "stop by the {l}",
-        Kind::Pass | Kind::PassOnSide | Kind::To => "go past the {l}",
-        Kind::StopIn => "stop there",
+        ClauseKind::Straight => "keep going",
+        ClauseKind::StopAt => "stop by the {l}",
+        ClauseKind::Pass | ClauseKind::PassOnSide | ClauseKind::To => "go past the {l}",
+        ClauseKind::StopIn => "stop there",
         _ => "keep on",
     }
 }
 
 /// Estimates the number of words of clauses from the mean length of their shapes.
-pub(super) struct Lengths<'a> {
-    way: &'a Way,
-    known: BTreeMap<Kind, f64>,
+pub(super) struct ClauseLengths<'a> {
+    way: &'a WayWording,
+    known: BTreeMap<ClauseKind, f64>,
 }
 
 /// Mean number of words that join a clause to the one before.
@@ -212,13 +220,13 @@ const SIDE_WORDS: f64 = 2.0;
 /// that are seen.
 const WITH_A_THING: f64 = 0.6;
 
-impl<'a> Lengths<'a> {
-    pub(super) fn of(way: &'a Way) -> Self {
+impl<'a> ClauseLengths<'a> {
+    pub(super) fn for_way(way: &'a WayWording) -> Self {
         Self { way, known: BTreeMap::new() }
     }
 
     /// Number of words of a plan if this share of its places for things gets one.
-    fn sum(&mut self, plan: &[Clause], with_a_thing: f64) -> f64 {
+    fn sum_words(&mut self, plan: &[WayClause], with_a_thing: f64) -> f64 {
         let all = plan.iter().map(|clause| {
             let (with, without) = self.with_and_without(clause);
             without + with_a_thing * (with - without)
@@ -227,33 +235,33 @@ impl<'a> Lengths<'a> {
     }
 
     /// How many words a plan is expected to have.
-    pub(super) fn expected(&mut self, plan: &[Clause]) -> f64 {
-        self.sum(plan, WITH_A_THING)
+    pub(super) fn expected_words(&mut self, plan: &[WayClause]) -> f64 {
+        self.sum_words(plan, WITH_A_THING)
     }
 
     /// Number of words of a plan if every place gets a thing.
-    pub(super) fn most(&mut self, plan: &[Clause]) -> f64 {
-        self.sum(plan, 1.0)
+    pub(super) fn most_words(&mut self, plan: &[WayClause]) -> f64 {
+        self.sum_words(plan, 1.0)
     }
 
     /// The words of a clause with its thing and without it.
-    fn with_and_without(&mut self, clause: &Clause) -> (f64, f64) {
-        let own = self.words(clause.kind) + JOINT_WORDS;
+    fn with_and_without(&mut self, clause: &WayClause) -> (f64, f64) {
+        let own = self.kind_words(clause.kind) + JOINT_WORDS;
         let Some(offer) = &clause.offer else { return (own, own) };
         let with = match offer.role {
-            Role::Turn => self.words(Kind::TurnAt) + JOINT_WORDS,
-            Role::PassEnter => self.words(Kind::PassEnter) + JOINT_WORDS,
-            Role::EnterWith => self.words(Kind::EnterWith) + JOINT_WORDS,
-            Role::Stop(kind) => self.words(kind) + JOINT_WORDS,
-            Role::Onward => own + if offer.tells_side { SIDE_WORDS } else { 0.0 },
+            OfferRole::Turn => self.kind_words(ClauseKind::TurnAt) + JOINT_WORDS,
+            OfferRole::PassEnter => self.kind_words(ClauseKind::PassEnter) + JOINT_WORDS,
+            OfferRole::EnterWith => self.kind_words(ClauseKind::EnterWith) + JOINT_WORDS,
+            OfferRole::Stop(kind) => self.kind_words(kind) + JOINT_WORDS,
+            OfferRole::Onward => own + if offer.tells_side { SIDE_WORDS } else { 0.0 },
         };
         let without = if clause.is_offer() { 0.0 } else { own };
         (with + if offer.pair { PAIR_WORDS } else { 0.0 }, without)
     }
 
-    fn words(&mut self, kind: Kind) -> f64 {
+    fn kind_words(&mut self, kind: ClauseKind) -> f64 {
         *self.known.entry(kind).or_insert_with(|| {
-            let shapes = self.way.shapes.get(&kind).or(Way::built_in().shapes.get(&kind));
+            let shapes = self.way.shapes.get(&kind).or(WayWording::built_in().shapes.get(&kind));
             let (mut words, mut texts) = (0.0, 0.0);
             for (shape, count) in shapes.into_iter().flatten() {
                 words += count * shape.split(' ').count() as f64;

@@ -1,59 +1,59 @@
 //! Helpers for words and random choices that the writers of ways and of places share. In templates `{s}` is a side,
 //! `{l}` a landmark, `{r}` a room.
 
-use crate::weighed::weighed;
+use crate::weighed::draw_weighted;
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
-use wayword_core::Motion;
+use wayword_core::PathMotion;
 use wayword_language::lexicon::room_name;
 
-const STAY: &[&str] = &["stay where you are", "remain where you are", "stay here", "remain here"];
+const STAY_PHRASES: &[&str] = &["stay where you are", "remain where you are", "stay here", "remain here"];
 const STAY_IN: &[&str] = &["stay in {r}", "remain in {r}", "stay here in {r}"];
 
 /// One of several, by chance.
-pub(super) fn pick<'a, T: ?Sized>(rng: &mut ChaCha8Rng, of: &[&'a T]) -> &'a T {
+pub(super) fn pick_any<'a, T: ?Sized>(rng: &mut ChaCha8Rng, of: &[&'a T]) -> &'a T {
     of[rng.random_range(0..of.len())]
 }
 
 /// The phrases that fit a motion: without "straight" if the motion is unknown.
-pub(super) fn unbent(of: &[&'static str], motion: Motion) -> Vec<&'static str> {
+pub(super) fn phrases_for_motion(of: &[&'static str], motion: PathMotion) -> Vec<&'static str> {
     of.iter().copied().filter(|way| motion.is_known() || !way.contains("straight")).collect()
 }
 
 /// A room with its article.
-pub(super) fn the(room: &str) -> String {
+pub(super) fn with_the(room: &str) -> String {
     format!("the {room}")
 }
 
 /// One of several by their weights; `None` where none has any.
-pub(super) fn draw<T: Clone>(of: &[(f64, T)], rng: &mut ChaCha8Rng) -> Option<T> {
+pub(super) fn draw_option<T: Clone>(of: &[(f64, T)], rng: &mut ChaCha8Rng) -> Option<T> {
     let some: Vec<&(f64, T)> = of.iter().filter(|(weight, _)| *weight > 0.0).collect();
     let weights: Vec<f64> = some.iter().map(|(weight, _)| *weight).collect();
     // If there is no option, no random number is consumed.
-    let at = if weights.is_empty() { None } else { weighed(&weights, rng) };
+    let at = if weights.is_empty() { None } else { draw_weighted(&weights, rng) };
     at.map(|at| some[at].1.clone())
 }
 
 /// One of several measures, by chance.
-pub(super) fn drawn(values: &[usize], rng: &mut ChaCha8Rng) -> usize {
+pub(super) fn draw_measure(values: &[usize], rng: &mut ChaCha8Rng) -> usize {
     if values.is_empty() { 1 } else { values[rng.random_range(0..values.len())] }
 }
 
 /// The ordinal of a storey.
-pub(super) fn ordinal(level: u32) -> Option<&'static str> {
+pub(super) fn storey_ordinal(level: u32) -> Option<&'static str> {
     ["first", "second", "third", "fourth", "fifth"].get(level.checked_sub(1)? as usize).copied()
 }
 
 /// A phrase for a path that goes nowhere, with its room where the name is known.
 pub(super) fn stay_phrase(room: Option<&str>, rng: &mut ChaCha8Rng) -> String {
     match room {
-        Some(room) => fill(pick(rng, STAY_IN), &[("{r}", &the(room))]),
-        None => pick(rng, STAY).to_owned(),
+        Some(room) => fill_gaps(pick_any(rng, STAY_IN), &[("{r}", &with_the(room))]),
+        None => pick_any(rng, STAY_PHRASES).to_owned(),
     }
 }
 
 /// A template with its gaps filled. One is "on" a balcony or porch, not "in" it.
-pub(super) fn fill(template: &str, gaps: &[(&str, &str)]) -> String {
+pub(super) fn fill_gaps(template: &str, gaps: &[(&str, &str)]) -> String {
     let text = gaps.iter().fold(template.to_owned(), |text, (gap, value)| text.replace(gap, value));
     let open_air = gaps.iter().any(|(gap, room)| {
         *gap == "{r}" && matches!(room_name(room.trim_start_matches("the ")), Some("porch" | "balcony"))

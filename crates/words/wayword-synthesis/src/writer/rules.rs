@@ -1,6 +1,6 @@
 //! The writer that works by rules; their parameters are measured on a style's references.
 
-use super::{Brief, WriteError, Writer, dice::Dice, place::the_place, telling};
+use super::{InstructionWriter, WriteError, WritingBrief, dice::TextDice, place::the_place, telling};
 
 /// Writes from captions and moves. If the references mention turns, it describes the way step by step; otherwise it
 /// names the place at the end. Length, sentences, storeys, task and full stop are drawn from the measured references
@@ -8,17 +8,17 @@ use super::{Brief, WriteError, Writer, dice::Dice, place::the_place, telling};
 #[derive(Debug, Clone, Copy, Default)]
 pub struct RulesWriter;
 
-impl Writer for RulesWriter {
+impl InstructionWriter for RulesWriter {
     fn name(&self) -> &str {
         "rules"
     }
 
-    fn write(&self, brief: &Brief<'_>) -> Result<String, WriteError> {
-        let dice = Dice::of(brief);
+    fn write(&self, brief: &WritingBrief<'_>) -> Result<String, WriteError> {
+        let dice = TextDice::for_brief(brief);
         if !brief.profile.tells_turns() {
             return the_place(brief, dice);
         }
-        let task = telling::ending(brief, &mut dice.by(&["task"]))?;
+        let task = telling::draw_ending(brief, &mut dice.named_rng(&["task"]))?;
         Ok(telling::the_way(brief, task.as_ref(), dice))
     }
 }

@@ -1,18 +1,18 @@
 //! Turns the regions of a baked navmesh into polygons, and repairs contours that cannot be cut into triangles.
 
-use super::Voxels;
+use super::VoxelSettings;
 use rerecast::{BuildContoursFlags, CompactHeightfield, Contour, ContourSet, PolygonNavmesh};
 
 /// Fractions of the allowed error of simplified borders, tried in turn for contours that the full error makes unusable.
-const FINER: [f32; 3] = [0.5, 0.25, 0.0];
+const FINER_ERROR_SHARES: [f32; 3] = [0.5, 0.25, 0.0];
 
 /// The polygons of all regions. Simplifying a border can make it cross itself. Recast then warns and keeps the
 /// triangles that it has cut so far (`rcBuildPolyMesh`), but rerecast gives up. This function simplifies such a contour
 /// less. The edges to other regions stay the same, because those are never simplified. If even the full contour fails, it
 /// is dropped.
-pub(super) fn polygons(
+pub(super) fn polygons_from_regions(
     open: &CompactHeightfield,
-    voxels: &Voxels,
+    voxels: &VoxelSettings,
 ) -> Result<PolygonNavmesh, Box<dyn std::error::Error>> {
     let settings = &voxels.settings;
     let corners = settings.verts_per_poly as u16;
@@ -24,9 +24,9 @@ pub(super) fn polygons(
     if let Ok(polygons) = set.clone().into_polygon_mesh(corners) {
         return Ok(polygons);
     }
-    let finer = FINER.map(build);
+    let finer = FINER_ERROR_SHARES.map(build);
     let contours = std::mem::take(&mut set.contours);
-    let is_sound = |contour: &Contour| alone(&set, contour).into_polygon_mesh(corners).is_ok();
+    let is_sound = |contour: &Contour| single_contour_set(&set, contour).into_polygon_mesh(corners).is_ok();
     let mended = contours.into_iter().enumerate().filter_map(|(at, contour)| {
         if is_sound(&contour) {
             return Some(contour);
@@ -40,6 +40,6 @@ pub(super) fn polygons(
 }
 
 /// A contour set with only this contour.
-fn alone(set: &ContourSet, contour: &Contour) -> ContourSet {
+fn single_contour_set(set: &ContourSet, contour: &Contour) -> ContourSet {
     ContourSet { contours: vec![contour.clone()], ..set.clone() }
 }

@@ -10,13 +10,13 @@ use crate::{
     axes::habitat_from_wayword,
     navmesh::{
         MAX_CORNERS, NavMesh, NavMeshSettings,
-        build::{Piece, Surface, single_tile},
+        build::{TilePiece, TileSurface, single_tile},
     },
-    scene::Model,
+    scene::SceneModel,
 };
 use glam::{UVec3, Vec3};
 use rerecast::{Aabb3d, AreaType, DetailNavmesh, HeightfieldBuilder, PolygonNavmesh, SubMesh, TriMesh};
-use wayword_core::contain::decoded;
+use wayword_core::contain::run_decoder;
 
 /// Most columns of voxels: 250 m x 250 m at Habitat's 5 cm.
 const MAX_COLUMNS: f32 = 25e6;
@@ -73,18 +73,18 @@ impl BakeError {
 ///
 /// # Errors
 /// [`BakeError`] if the scene is empty or too large, a setting is out of range, or Recast fails.
-pub fn bake(model: &Model, settings: &NavMeshSettings) -> Result<NavMesh, BakeError> {
-    let voxels = Voxels::of(settings)?;
-    let mesh = trimesh(model);
+pub fn bake_navmesh(model: &SceneModel, settings: &NavMeshSettings) -> Result<NavMesh, BakeError> {
+    let voxels = VoxelSettings::from_settings(settings)?;
+    let mesh = trimesh_from_model(model);
     let bounds = mesh.compute_aabb().ok_or(BakeError::Empty)?;
     check_size(&bounds, settings)?;
-    let recast = || voxels.polygons(mesh, bounds).map_err(|error| error.to_string());
-    let (polygons, detail) = decoded(recast).map_err(|reason| BakeError::Recast { reason })?;
-    Ok(single_tile(&surface(&polygons, &detail), *settings))
+    let recast = || voxels.build_polygons(mesh, bounds).map_err(|error| error.to_string());
+    let (polygons, detail) = run_decoder(recast).map_err(|reason| BakeError::Recast { reason })?;
+    Ok(single_tile(&tile_surface(&polygons, &detail), *settings))
 }
 
 /// The settings in voxels (`rcConfig`).
-struct Voxels {
+struct VoxelSettings {
     settings: NavMeshSettings,
     height: u16,
     climb: u16,
@@ -94,8 +94,8 @@ struct Voxels {
     merged_region: u16,
 }
 
-impl Voxels {
-    fn of(settings: &NavMeshSettings) -> Result<Self, BakeError> {
+impl VoxelSettings {
+    fn from_settings(settings: &NavMeshSettings) -> Result<Self, BakeError> {
         let within = |field, value: f32, low: f32, high: f32, wanted| {
             let fits = value.is_finite() && (low..=high).contains(&value);
             if fits { Ok(()) } else { Err(BakeError::Setting { field, value, wanted }) }
@@ -121,7 +121,7 @@ impl Voxels {
         })
     }
 
-    fn polygons(
+    fn build_polygons(
         &self,
         mut mesh: TriMesh,
         aabb: Aabb3d,
@@ -130,7 +130,7 @@ impl Voxels {
         mesh.mark_walkable_triangles(settings.agent_max_slope_deg.to_radians());
         let (cell_size, cell_height) = (settings.cell_size_m, settings.cell_height_m);
         let mut solid = HeightfieldBuilder { aabb, cell_size, cell_height }.build()?;
-        voxels::fill(&mut solid, &mesh, self.climb)?;
+        voxels::fill_voxels(&mut solid, &mesh, self.climb)?;
         let [obstacles, ledges, ceilings, _] = settings.switches.map(|switch| switch != 0);
         if obstacles {
             solid.filter_low_hanging_walkable_obstacles(self.climb);
@@ -145,14 +145,14 @@ impl Voxels {
         open.erode_walkable_area(self.radius);
         open.build_distance_field();
         open.build_regions(0, self.least_region, self.merged_region)?;
-        let polygons = contours::polygons(&open, self)?;
+        let polygons = contours::polygons_from_regions(&open, self)?;
         let sample_m = if settings.detail_sample_dist < 0.9 { 0.0 } else { cell_size * settings.detail_sample_dist };
         let detail = DetailNavmesh::new(&polygons, &open, sample_m, cell_height * settings.detail_sample_max_error)?;
         Ok((polygons, detail))
     }
 }
 
-fn trimesh(model: &Model) -> TriMesh {
+fn trimesh_from_model(model: &SceneModel) -> TriMesh {
     let mut mesh = TriMesh::default();
     for triangle in model.triangles() {
         let first = mesh.vertices.len() as u32;
@@ -174,7 +174,7 @@ fn check_size(bounds: &Aabb3d, settings: &NavMeshSettings) -> Result<(), BakeErr
 }
 
 /// Recast's polygons in Detour's form.
-fn surface(polygons: &PolygonNavmesh, detail: &DetailNavmesh) -> Surface {
+fn tile_surface(polygons: &PolygonNavmesh, detail: &DetailNavmesh) -> TileSurface {
     let low = polygons.aabb.min;
     let place = |vertex: &glam::U16Vec3| {
         let steps = vertex.as_vec3() * Vec3::new(polygons.cell_size, polygons.cell_height, polygons.cell_size);
@@ -191,9 +191,9 @@ fn surface(polygons: &PolygonNavmesh, detail: &DetailNavmesh) -> Surface {
         };
         let neighbours = neighbours.iter().take(corners.len()).map(behind).collect();
         let (detail_verts, detail_tris) = detail_of(detail, mesh, corners.len());
-        Piece { corners, neighbours, detail_verts, detail_tris }
+        TilePiece { corners, neighbours, detail_verts, detail_tris }
     });
-    Surface {
+    TileSurface {
         verts: polygons.vertices.iter().map(place).collect(),
         pieces: pieces.collect(),
         low_m: low.to_array(),
@@ -215,12 +215,12 @@ fn detail_of(detail: &DetailNavmesh, mesh: &SubMesh, corners: usize) -> (Vec<[f3
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Ground;
+    use crate::NavMeshGround;
     use wayword_core::DVec3;
     use wayword_render::Mesh;
 
     /// A floor of 6 x 4 m with a block of 2 x 1 m in its middle; `block_m` is the height of the block.
-    fn room(block_m: f32) -> Model {
+    fn room(block_m: f32) -> SceneModel {
         let mut mesh = Mesh::default();
         let mut quad = |corners: [[f32; 3]; 4]| {
             let first = mesh.positions.len() as u32;
@@ -235,14 +235,14 @@ mod tests {
             let ([ax, ay], [bx, by]) = (corners[side], corners[(side + 1) % 4]);
             quad([[ax, ay, 0.0], [bx, by, 0.0], [bx, by, block_m], [ax, ay, block_m]]);
         }
-        Model { meshes: vec![mesh], ..Model::default() }
+        SceneModel { meshes: vec![mesh], ..SceneModel::default() }
     }
 
     #[test]
     fn a_block_is_walked_around_and_the_file_reads_back() {
-        let mesh = bake(&room(0.8), &NavMeshSettings::default()).unwrap();
+        let mesh = bake_navmesh(&room(0.8), &NavMeshSettings::default()).unwrap();
         assert_eq!(NavMesh::from_bytes(&mesh.to_bytes()).unwrap(), mesh);
-        let ground = Ground::new(&mesh);
+        let ground = NavMeshGround::new(&mesh);
         let islands: Vec<f64> = ground.islands_m2().collect();
         // The floor without a border of one voxel for the ledge and two for the agent's radius, and the same around the
         // block.
@@ -256,12 +256,15 @@ mod tests {
 
     #[test]
     fn bake_reports_why_a_scene_cannot_be_baked() {
-        assert_eq!(bake(&Model::default(), &NavMeshSettings::default()), Err(BakeError::Empty));
+        assert_eq!(bake_navmesh(&SceneModel::default(), &NavMeshSettings::default()), Err(BakeError::Empty));
         let mut wide = room(0.8);
         wide.meshes[0].positions[1].x = 9e5;
-        let too_large = bake(&wide, &NavMeshSettings::default()).unwrap_err();
+        let too_large = bake_navmesh(&wide, &NavMeshSettings::default()).unwrap_err();
         assert!(matches!(too_large, BakeError::TooLarge { .. }) && too_large.hint().contains(".navmesh"));
         let coarse = NavMeshSettings { cell_size_m: 0.0, ..NavMeshSettings::default() };
-        assert_eq!(bake(&room(0.8), &coarse).unwrap_err().to_string(), "cell_size_m is 0: expected 0.005 to 10 m");
+        assert_eq!(
+            bake_navmesh(&room(0.8), &coarse).unwrap_err().to_string(),
+            "cell_size_m is 0: expected 0.005 to 10 m"
+        );
     }
 }

@@ -7,11 +7,15 @@
 use glam::Vec3A;
 use rerecast::{AreaType, Heightfield, TriMesh};
 
-const X: usize = 0;
-const Z: usize = 2;
+const X_AXIS: usize = 0;
+const Z_AXIS: usize = 2;
 
 /// Marks the voxels that each triangle touches.
-pub(super) fn fill(solid: &mut Heightfield, mesh: &TriMesh, climb: u16) -> Result<(), Box<dyn std::error::Error>> {
+pub(super) fn fill_voxels(
+    solid: &mut Heightfield,
+    mesh: &TriMesh,
+    climb: u16,
+) -> Result<(), Box<dyn std::error::Error>> {
     for (corners, area) in mesh.indices.iter().zip(&mesh.area_types) {
         let triangle = corners.to_array().map(|corner| mesh.vertices[corner as usize]);
         fill_one(solid, &triangle, *area, climb)?;
@@ -27,8 +31,8 @@ fn fill_one(
 ) -> Result<(), Box<dyn std::error::Error>> {
     let (low, side) = (Vec3A::from(solid.aabb.min), solid.cell_size);
     let (rows, columns) = (i32::from(solid.height), i32::from(solid.width));
-    for (row, in_row) in slices(triangle.to_vec(), Z, low.z, side, rows) {
-        for (column, piece) in slices(in_row, X, low.x, side, columns) {
+    for (row, in_row) in slice_polygon(triangle.to_vec(), Z_AXIS, low.z, side, rows) {
+        for (column, piece) in slice_polygon(in_row, X_AXIS, low.x, side, columns) {
             let (bottom, top) = piece.iter().fold((f32::MAX, f32::MIN), |(b, t), at| (b.min(at.y), t.max(at.y)));
             let middle = low + Vec3A::new(column as f32 + 0.5, 0.0, row as f32 + 0.5) * side;
             let within = [bottom, top, top].map(|y| Vec3A::new(middle.x, y, middle.z));
@@ -40,13 +44,13 @@ fn fill_one(
 
 /// Cuts a convex polygon into slices of equal thickness along an axis, each with its number. Slices before the first and
 /// after the last of `count` are left out.
-fn slices(mut left: Vec<Vec3A>, axis: usize, low: f32, side: f32, count: i32) -> Vec<(i32, Vec<Vec3A>)> {
+fn slice_polygon(mut left: Vec<Vec3A>, axis: usize, low: f32, side: f32, count: i32) -> Vec<(i32, Vec<Vec3A>)> {
     let ends = left.iter().fold((f32::MAX, f32::MIN), |(a, b), at| (a.min(at[axis]), b.max(at[axis])));
     let number = |at: f32| (((at - low) / side).floor() as i32).clamp(-1, count - 1);
     let (first, last) = (number(ends.0), number(ends.1));
     let mut slices = Vec::new();
     for slice in first..=last {
-        let (below, above) = cut(&left, axis, low + (slice + 1) as f32 * side);
+        let (below, above) = cut_polygon(&left, axis, low + (slice + 1) as f32 * side);
         left = above;
         if slice >= 0 && below.len() >= 3 {
             slices.push((slice, below));
@@ -56,7 +60,7 @@ fn slices(mut left: Vec<Vec3A>, axis: usize, low: f32, side: f32, count: i32) ->
 }
 
 /// Cuts a convex polygon at a position on an axis: the part below, and the part above.
-fn cut(polygon: &[Vec3A], axis: usize, at: f32) -> (Vec<Vec3A>, Vec<Vec3A>) {
+fn cut_polygon(polygon: &[Vec3A], axis: usize, at: f32) -> (Vec<Vec3A>, Vec<Vec3A>) {
     let (mut below, mut above) = (Vec::with_capacity(polygon.len() + 1), Vec::with_capacity(polygon.len() + 1));
     for (a, b) in polygon.iter().zip(polygon.iter().cycle().skip(1)) {
         let (left_a, left_b) = (at - a[axis], at - b[axis]);
@@ -93,8 +97,8 @@ mod tests {
             corners in prop::array::uniform3((0.0..3.0f32, 0.0..2.0f32, 0.0..3.0f32)),
         ) {
             let triangle: Vec<Vec3A> = corners.iter().map(|(x, y, z)| Vec3A::new(*x, *y, *z)).collect();
-            let rows = slices(triangle.clone(), Z, 0.0, 0.05, 60);
-            let columns = rows.iter().flat_map(|(_, row)| slices(row.clone(), X, 0.0, 0.05, 60));
+            let rows = slice_polygon(triangle.clone(), Z_AXIS, 0.0, 0.05, 60);
+            let columns = rows.iter().flat_map(|(_, row)| slice_polygon(row.clone(), X_AXIS, 0.0, 0.05, 60));
             let sum: f32 = columns.map(|(_, piece)| area_m2(&piece)).sum();
             prop_assert!((sum - area_m2(&triangle)).abs() < 1e-3, "{sum}");
         }

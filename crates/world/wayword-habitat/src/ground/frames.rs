@@ -1,8 +1,8 @@
 //! Places the frames of a path at equal distances along a way.
 
-use super::Ground;
+use super::NavMeshGround;
 use crate::axes::EYE_M;
-use wayword_core::{DVec3, Way, path::Stop};
+use wayword_core::{DVec3, GroundRoute, path::PathStop};
 
 /// Most frames of one way.
 const MAX_STOPS: f64 = 10_000.0;
@@ -10,23 +10,23 @@ const MAX_STOPS: f64 = 10_000.0;
 /// Positions of the eye at equal distances of at most `interval_m` along a way, both ends included. Each is [`EYE_M`]
 /// above the ground there, and has its storey.
 #[must_use]
-pub fn stops_along(ground: &Ground, way: &Way, interval_m: f64) -> Vec<Stop> {
+pub fn stops_along(ground: &NavMeshGround, way: &GroundRoute, interval_m: f64) -> Vec<PathStop> {
     let interval_m = if interval_m.is_finite() { interval_m.max(0.05) } else { 1.0 };
     let count = (way.length_m / interval_m - 1e-9).ceil().clamp(1.0, MAX_STOPS) as usize;
     let stop = |step: usize| {
         let on_way = place_at(way, way.length_m * step as f64 / count as f64);
         // The way runs straight from corner to corner, so on stairs it can lie above or below the treads.
-        let under = ground.nearest(on_way).map(|foothold| foothold.place);
+        let under = ground.nearest_foothold(on_way).map(|foothold| foothold.place);
         let near =
             under.filter(|place| (*place - on_way).truncate().length() < 0.05 && (place.z - on_way.z).abs() < 1.0);
         let place = near.unwrap_or(on_way);
-        Stop { position: place + DVec3::Z * EYE_M, viewpoint: None, level: Some(ground.level(place)) }
+        PathStop { position: place + DVec3::Z * EYE_M, viewpoint: None, level: Some(ground.level_at(place)) }
     };
     (0..=count).map(stop).collect()
 }
 
 /// The place at a distance of `left_m` metres from the start of the way.
-fn place_at(way: &Way, mut left_m: f64) -> DVec3 {
+fn place_at(way: &GroundRoute, mut left_m: f64) -> DVec3 {
     for pair in way.corners.windows(2) {
         let length_m = pair[0].distance(pair[1]);
         if left_m <= length_m && length_m > 0.0 {

@@ -1,11 +1,11 @@
 //! Shortest ways over the ground, measured as Habitat measures geodesic distances.
 
-use super::{Foothold, Ground};
-use wayword_core::{DVec3, Way};
+use super::{Foothold, NavMeshGround};
+use wayword_core::{DVec3, GroundRoute};
 
 /// Why there is no way between two places.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum NoWay {
+pub enum GeodesicError {
     /// There is no ground near this place.
     #[error("there is no walkable ground within 2 m of ({:.2}, {:.2}, {:.2})", .0.x, .0.y, .0.z)]
     OffGround(DVec3),
@@ -14,30 +14,30 @@ pub enum NoWay {
     Apart,
 }
 
-impl Ground {
+impl NavMeshGround {
     /// The shortest way between two places, as Habitat computes it: each place is assigned to the nearest polygon. The
     /// way begins or ends at the place itself if it lies over that polygon, else at the nearest point of the polygon's
     /// border.
     ///
     /// # Errors
-    /// [`NoWay`] if a place lies off the ground, or the two lie on different islands.
-    pub fn geodesic(&self, from: DVec3, to: DVec3) -> Result<Way, NoWay> {
-        let start = self.nearest(from).ok_or(NoWay::OffGround(from))?;
-        let end = self.nearest(to).ok_or(NoWay::OffGround(to))?;
-        let bends = self.bends(&start, &end).ok_or(NoWay::Apart)?;
+    /// [`GeodesicError`] if a place lies off the ground, or the two lie on different islands.
+    pub fn geodesic(&self, from: DVec3, to: DVec3) -> Result<GroundRoute, GeodesicError> {
+        let start = self.nearest_foothold(from).ok_or(GeodesicError::OffGround(from))?;
+        let end = self.nearest_foothold(to).ok_or(GeodesicError::OffGround(to))?;
+        let bends = self.way_bends(&start, &end).ok_or(GeodesicError::Apart)?;
         let clamped = |place: DVec3, foothold: &Foothold| {
             let polygon = &self.polygons[foothold.polygon];
-            if polygon.holds(place) { place } else { polygon.nearest_on_border(place) }
+            if polygon.contains_place(place) { place } else { polygon.nearest_on_border(place) }
         };
         let mut corners = vec![clamped(from, &start)];
         corners.extend(bends);
         corners.push(clamped(to, &end));
         let length_m = corners.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
-        Ok(Way { corners, length_m })
+        Ok(GroundRoute { corners, length_m })
     }
 
     /// The corners of the shortest way between its start and its end; `None` if there is no way.
-    fn bends(&self, start: &Foothold, end: &Foothold) -> Option<Vec<DVec3>> {
+    fn way_bends(&self, start: &Foothold, end: &Foothold) -> Option<Vec<DVec3>> {
         if start.island != end.island {
             return None;
         }
@@ -45,7 +45,7 @@ impl Ground {
             return Some(Vec::new());
         }
         let island = self.islands.get(start.island)?;
-        let maze = island.maze.get_or_init(|| super::Maze::new(&self.polygons, &island.polygons));
-        maze.as_ref()?.bends(start, end)
+        let maze = island.maze.get_or_init(|| super::IslandSearchMesh::new(&self.polygons, &island.polygons));
+        maze.as_ref()?.shortest_bends(start, end)
     }
 }

@@ -1,11 +1,11 @@
 //! Finds the connected parts of the ground by a search over shared edges.
 
-use super::{Island, polygon::Polygon};
+use super::{NavMeshIsland, polygon::GroundPolygon};
 use std::sync::OnceLock;
 
 /// The islands, the largest first; sets the island of every polygon.
-pub(super) fn find(polygons: &mut [Polygon]) -> Vec<Island> {
-    let mut islands: Vec<Island> = Vec::new();
+pub(super) fn find_islands(polygons: &mut [GroundPolygon]) -> Vec<NavMeshIsland> {
+    let mut islands: Vec<NavMeshIsland> = Vec::new();
     let mut seen = vec![false; polygons.len()];
     for start in 0..polygons.len() {
         if seen[start] || !polygons[start].is_walkable {
@@ -24,7 +24,7 @@ pub(super) fn find(polygons: &mut [Polygon]) -> Vec<Island> {
         }
         members.sort_unstable();
         let area_m2 = members.iter().map(|polygon| polygons[*polygon].area_m2).sum();
-        islands.push(Island { polygons: members, area_m2, maze: OnceLock::new() });
+        islands.push(NavMeshIsland { polygons: members, area_m2, maze: OnceLock::new() });
     }
     islands.sort_by(|a, b| b.area_m2.total_cmp(&a.area_m2));
     for (number, island) in islands.iter().enumerate() {

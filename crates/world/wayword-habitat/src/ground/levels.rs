@@ -1,6 +1,6 @@
 //! Finds the storeys from the heights at which the ground lies.
 
-use super::Ground;
+use super::NavMeshGround;
 use wayword_core::DVec3;
 
 /// Height of a slice, metres.
@@ -15,7 +15,7 @@ const BELOW_M: f64 = 1.0;
 
 /// Heights of the storeys of the island that paths stay on, from the lowest. The slice with the most ground is a storey. Then the
 /// slice with the next most ground is one, and so on, if it is far enough from the storeys found before.
-pub(super) fn storeys(ground: &Ground) -> Vec<f64> {
+pub(super) fn find_storeys(ground: &NavMeshGround) -> Vec<f64> {
     let Some(island) = ground.islands.get(ground.main) else { return Vec::new() };
     let mut slices: std::collections::BTreeMap<i64, f64> = std::collections::BTreeMap::new();
     for triangle in island.polygons.iter().flat_map(|polygon| &ground.polygons[*polygon].triangles) {
@@ -39,10 +39,10 @@ pub(super) fn storeys(ground: &Ground) -> Vec<f64> {
     floors
 }
 
-impl Ground {
+impl NavMeshGround {
     /// The storey of a place on the ground; the lowest is 1.
     #[must_use]
-    pub fn level(&self, place: DVec3) -> u32 {
+    pub fn level_at(&self, place: DVec3) -> u32 {
         let under = self.storeys_m.iter().filter(|floor_m| **floor_m <= place.z + BELOW_M).count();
         under.max(1) as u32
     }

@@ -1,8 +1,8 @@
 //! Finds the ground nearest to any place: Detour's `findNearestPoly`, as Habitat calls it.
 
 use super::{
-    Ground,
-    polygon::{Polygon, nearest_on_edge},
+    NavMeshGround,
+    polygon::{GroundPolygon, nearest_on_edge},
 };
 use wayword_core::DVec3;
 
@@ -19,21 +19,21 @@ pub struct Foothold {
     pub island: usize,
 }
 
-impl Ground {
+impl NavMeshGround {
     /// The ground nearest to a place, within 2 m to all sides and 4 m up and down. Straight below or above a place,
     /// ground within the height of a step counts as distance 0.
     #[must_use]
-    pub fn nearest(&self, place: DVec3) -> Option<Foothold> {
+    pub fn nearest_foothold(&self, place: DVec3) -> Option<Foothold> {
         self.nearest_of(place, |_| true)
     }
 
-    /// The ground of one island nearest to a place, under the same rules as [`Self::nearest`].
+    /// The ground of one island nearest to a place, under the same rules as [`Self::nearest_foothold`].
     #[must_use]
     pub fn nearest_on(&self, island: usize, place: DVec3) -> Option<Foothold> {
         self.nearest_of(place, |polygon| polygon.island == island)
     }
 
-    fn nearest_of(&self, place: DVec3, wanted: impl Fn(&Polygon) -> bool) -> Option<Foothold> {
+    fn nearest_of(&self, place: DVec3, wanted: impl Fn(&GroundPolygon) -> bool) -> Option<Foothold> {
         if !place.is_finite() {
             return None;
         }
@@ -52,9 +52,9 @@ impl Ground {
         best.map(|(_, foothold)| foothold)
     }
 
-    /// The nearest place of a polygon, and the square of its distance, as [`Self::nearest`] counts it.
-    fn nearest_in(&self, polygon: &Polygon, place: DVec3) -> (DVec3, f64) {
-        if let Some(height_m) = polygon.holds(place).then(|| polygon.height_m(place)).flatten() {
+    /// The nearest place of a polygon, and the square of its distance, as [`Self::nearest_foothold`] counts it.
+    fn nearest_in(&self, polygon: &GroundPolygon, place: DVec3) -> (DVec3, f64) {
+        if let Some(height_m) = polygon.contains_place(place).then(|| polygon.height_m(place)).flatten() {
             let off_m = ((place.z - height_m).abs() - self.climb_m).max(0.0);
             return (place.with_z(height_m), off_m * off_m);
         }

@@ -5,11 +5,11 @@
 //! disturb it. But it identifies the places at which ways bend by their coordinates. So no two vertices may coincide,
 //! and the start and the end must be given with their polygons.
 
-use super::{Foothold, polygon::Polygon};
+use super::{Foothold, polygon::GroundPolygon};
 use glam::{DVec2, Vec2};
 use polyanya::{Mesh, Vertex};
 use std::collections::{BTreeMap, BTreeSet};
-use wayword_core::{DVec3, contain::decoded};
+use wayword_core::{DVec3, contain::run_decoder};
 
 /// Vertices at the ends of portals are merged if they are nearer than this seen from above, metres.
 const WELD_M: f64 = 1e-3;
@@ -22,7 +22,7 @@ const NOISE_M: f32 = 3e-3;
 
 /// An island, prepared for the search.
 #[derive(Debug)]
-pub(super) struct Maze {
+pub(super) struct IslandSearchMesh {
     mesh: Mesh,
     /// The mesh's coordinates are relative to this point, so that they stay small and `f32` is exact enough.
     origin: DVec2,
@@ -32,17 +32,20 @@ pub(super) struct Maze {
     numbers: BTreeMap<usize, u32>,
 }
 
-impl Maze {
-    pub(super) fn new(polygons: &[Polygon], members: &[usize]) -> Option<Self> {
+impl IslandSearchMesh {
+    pub(super) fn new(polygons: &[GroundPolygon], members: &[usize]) -> Option<Self> {
         let numbers: BTreeMap<usize, u32> =
             members.iter().enumerate().map(|(at, polygon)| (*polygon, at as u32)).collect();
-        let outlines = Outlines::new(members.iter().map(|polygon| &polygons[*polygon]));
+        let outlines = PolygonOutlines::new(members.iter().map(|polygon| &polygons[*polygon]));
         let low = outlines.places.iter().copied().reduce(DVec3::min)?;
         let high = outlines.places.iter().copied().reduce(DVec3::max)?;
         let origin = ((low + high) / 2.0).truncate();
-        let flat = distinct(&outlines.places, origin);
-        let vertices =
-            flat.into_iter().zip(outlines.around()).map(|(coords, around)| Vertex::new(coords, around)).collect();
+        let flat = distinct_coords(&outlines.places, origin);
+        let vertices = flat
+            .into_iter()
+            .zip(outlines.polygons_around())
+            .map(|(coords, around)| Vertex::new(coords, around))
+            .collect();
         let one_way =
             |polygon: &usize| polygons[*polygon].neighbours().filter(|other| numbers.contains_key(other)).count() < 2;
         let pieces = members
@@ -50,7 +53,7 @@ impl Maze {
             .zip(&outlines.rings)
             .map(|(polygon, ring)| polyanya::Polygon::new(ring.clone(), one_way(polygon)));
         let pieces = pieces.collect();
-        let mut mesh = decoded(|| Mesh::new(vertices, pieces).map_err(|error| error.to_string())).ok()?;
+        let mut mesh = run_decoder(|| Mesh::new(vertices, pieces).map_err(|error| error.to_string())).ok()?;
         let heights = outlines.places.iter().map(|place| place.z as f32).collect();
         mesh.layers.first_mut()?.set_heights(heights).ok()?;
         mesh.set_search_delta(1e-3);
@@ -60,9 +63,9 @@ impl Maze {
     /// The places at which the shortest way between two places of the island bends. The search rounds, so it can miss a way
     /// through a narrow place that it finds from the other end. Therefore it runs from both ends, and the shorter result
     /// is used.
-    pub(super) fn bends(&self, start: &Foothold, end: &Foothold) -> Option<Vec<DVec3>> {
-        let there = self.searched(start, end);
-        let mut back = self.searched(end, start);
+    pub(super) fn shortest_bends(&self, start: &Foothold, end: &Foothold) -> Option<Vec<DVec3>> {
+        let there = self.search_one_way(start, end);
+        let mut back = self.search_one_way(end, start);
         if let Some(back) = &mut back {
             back.reverse();
         }
@@ -73,9 +76,9 @@ impl Maze {
         there.into_iter().chain(back).min_by(|a, b| length_m(a).total_cmp(&length_m(b)))
     }
 
-    fn searched(&self, start: &Foothold, end: &Foothold) -> Option<Vec<DVec3>> {
-        let (from, to) = (self.coords(start)?, self.coords(end)?);
-        let path = decoded(|| Ok(self.mesh.path(from, to))).ok()??;
+    fn search_one_way(&self, start: &Foothold, end: &Foothold) -> Option<Vec<DVec3>> {
+        let (from, to) = (self.search_coords(start)?, self.search_coords(end)?);
+        let path = run_decoder(|| Ok(self.mesh.path(from, to))).ok()??;
         let layer = self.mesh.layers.first()?;
         let rings: Vec<&[u32]> = path
             .polygons()
@@ -101,7 +104,7 @@ impl Maze {
 
     /// A place in the search's coordinates. The search finds polygons by coordinates and mean height. Under a slope it can
     /// therefore return a polygon of another storey; then a place a little further inside is tried.
-    fn coords(&self, foothold: &Foothold) -> Option<polyanya::Coords> {
+    fn search_coords(&self, foothold: &Foothold) -> Option<polyanya::Coords> {
         let number = *self.numbers.get(&foothold.polygon)?;
         let layer = self.mesh.layers.first()?;
         let ring = &layer.polygons.get(number as usize)?.vertices;
@@ -115,12 +118,12 @@ impl Maze {
         tries.into_iter().find_map(|place| {
             let found = self.mesh.get_closest_point_at_height(place, mean_m as f32)?;
             let found_number = found.polygon() & 0x00ff_ffff;
-            (found_number == number || self.touch(found_number, number)).then_some(found)
+            (found_number == number || self.share_edge(found_number, number)).then_some(found)
         })
     }
 
     /// Whether two polygons share an edge. A place on that edge belongs to both of them.
-    fn touch(&self, a: u32, b: u32) -> bool {
+    fn share_edge(&self, a: u32, b: u32) -> bool {
         let layer = self.mesh.layers.first();
         let ring = |number: u32| layer.and_then(|layer| layer.polygons.get(number as usize)).map(|p| &p.vertices);
         let (Some(a), Some(b)) = (ring(a), ring(b)) else { return false };
@@ -141,23 +144,23 @@ fn bend_of(layer: &polyanya::Layer, rings: &[&[u32]], first: usize, bend: Vec2, 
 }
 
 /// The polygons' outlines with shared vertices, and a vertex at both ends of every portal.
-struct Outlines {
+struct PolygonOutlines {
     places: Vec<DVec3>,
     /// For each polygon, counter-clockwise.
     rings: Vec<Vec<u32>>,
 }
 
-impl Outlines {
-    fn new<'a>(polygons: impl Iterator<Item = &'a Polygon>) -> Self {
-        let mut welds = Welds::default();
-        let ring = |polygon: &Polygon| {
+impl PolygonOutlines {
+    fn new<'a>(polygons: impl Iterator<Item = &'a GroundPolygon>) -> Self {
+        let mut welds = WeldedVertices::default();
+        let ring = |polygon: &GroundPolygon| {
             let mut ring: Vec<u32> = Vec::with_capacity(polygon.corners.len());
             for (corner, next) in polygon.edges() {
                 let mut shares: Vec<f64> = corner.portals.iter().flat_map(|door| [door.from, door.to]).collect();
                 shares.sort_by(f64::total_cmp);
                 let doors = shares.into_iter().map(|share| corner.place.lerp(next.place, share));
                 for place in std::iter::once(corner.place).chain(doors) {
-                    let vertex = welds.vertex(place);
+                    let vertex = welds.vertex_at(place);
                     if !ring.contains(&vertex) {
                         ring.push(vertex);
                     }
@@ -170,7 +173,7 @@ impl Outlines {
     }
 
     /// The polygons at each vertex, and also `u32::MAX` if the vertex lies on the border of the island.
-    fn around(&self) -> Vec<Vec<u32>> {
+    fn polygons_around(&self) -> Vec<Vec<u32>> {
         let mut around: Vec<BTreeSet<u32>> = vec![BTreeSet::new(); self.places.len()];
         let mut edges: BTreeMap<(u32, u32), u32> = BTreeMap::new();
         for (number, ring) in self.rings.iter().enumerate() {
@@ -190,13 +193,13 @@ impl Outlines {
 /// Vertices by position. Vertices at the same position seen from above are merged, unless they are a storey apart.
 /// Tiles that meet in a portal may differ in height by one step (`agent_max_climb_m`).
 #[derive(Default)]
-struct Welds {
+struct WeldedVertices {
     places: Vec<DVec3>,
     by_cell: BTreeMap<(i64, i64), Vec<u32>>,
 }
 
-impl Welds {
-    fn vertex(&mut self, place: DVec3) -> u32 {
+impl WeldedVertices {
+    fn vertex_at(&mut self, place: DVec3) -> u32 {
         let (x, y) = ((place.x / WELD_M).floor() as i64, (place.y / WELD_M).floor() as i64);
         let cells = (-1..=1).flat_map(|dx| (-1..=1).map(move |dy| (x + dx, y + dy)));
         let near = |vertex: &&u32| {
@@ -216,7 +219,7 @@ impl Welds {
 
 /// The places seen from above, relative to the origin. If two of them coincide, one is moved by the smallest possible
 /// amount.
-fn distinct(places: &[DVec3], origin: DVec2) -> Vec<Vec2> {
+fn distinct_coords(places: &[DVec3], origin: DVec2) -> Vec<Vec2> {
     let mut taken = BTreeSet::new();
     let flat = |place: &DVec3| {
         let mut flat = (place.truncate() - origin).as_vec2();

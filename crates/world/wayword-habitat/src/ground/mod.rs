@@ -21,14 +21,14 @@ mod stride;
 pub(crate) mod tests;
 
 pub use frames::stops_along;
-pub use geodesic::NoWay;
+pub use geodesic::GeodesicError;
 pub use locate::Foothold;
 pub use roadmap::viewpoint_graph;
-pub use stride::Stride;
+pub use stride::GroundStride;
 
-use crate::navmesh::{Behind, NavMesh};
-use maze::Maze;
-use polygon::Polygon;
+use crate::navmesh::{EdgeNeighbour, NavMesh};
+use maze::IslandSearchMesh;
+use polygon::GroundPolygon;
 use std::sync::OnceLock;
 use wayword_core::DVec3;
 
@@ -37,10 +37,10 @@ const LEAST_AREA_M2: f64 = 1e-5;
 
 /// The walkable ground of a scene.
 #[derive(Debug)]
-pub struct Ground {
-    polygons: Vec<Polygon>,
+pub struct NavMeshGround {
+    polygons: Vec<GroundPolygon>,
     /// The largest first.
-    islands: Vec<Island>,
+    islands: Vec<NavMeshIsland>,
     /// The island that paths stay on: the largest, unless another is chosen.
     main: usize,
     /// Heights of the storeys of that island, from the lowest.
@@ -51,15 +51,15 @@ pub struct Ground {
 
 /// A connected part of the ground.
 #[derive(Debug)]
-struct Island {
+struct NavMeshIsland {
     /// Sorted.
     polygons: Vec<usize>,
     area_m2: f64,
     /// Prepared for shortest ways when the first one is needed.
-    maze: OnceLock<Option<Maze>>,
+    maze: OnceLock<Option<IslandSearchMesh>>,
 }
 
-impl Ground {
+impl NavMeshGround {
     /// The ground of a navmesh.
     #[must_use]
     pub fn new(mesh: &NavMesh) -> Self {
@@ -67,21 +67,21 @@ impl Ground {
         for tile in &mesh.tiles {
             let first = polygons.len();
             for (index, poly) in tile.polys.iter().enumerate() {
-                let neighbour = |edge| match poly.behind(edge) {
-                    Behind::Polygon(other) => Some(first + other),
-                    Behind::Border | Behind::Portal(_) => None,
+                let neighbour = |edge| match poly.neighbour_behind(edge) {
+                    EdgeNeighbour::Polygon(other) => Some(first + other),
+                    EdgeNeighbour::Border | EdgeNeighbour::Portal(_) => None,
                 };
-                polygons.push(Polygon::new(tile, index, neighbour));
+                polygons.push(GroundPolygon::new(tile, index, neighbour));
             }
         }
         let climb_m = mesh.tiles.first().map_or(0.0, |tile| f64::from(tile.header.agent_m[2]));
-        portals::open(mesh, &mut polygons, climb_m);
+        portals::open_portals(mesh, &mut polygons, climb_m);
         // Smaller polygons stay in the list, because polygons are referred to by index, but one cannot stand on them or
         // cross them.
         for polygon in &mut polygons {
             polygon.is_walkable &= polygon.area_m2 >= LEAST_AREA_M2;
         }
-        let islands = islands::find(&mut polygons);
+        let islands = islands::find_islands(&mut polygons);
         Self { polygons, islands, main: 0, storeys_m: Vec::new(), climb_m }.keeping_to(0)
     }
 
@@ -89,7 +89,7 @@ impl Ground {
     #[must_use]
     pub fn keeping_to(mut self, island: usize) -> Self {
         self.main = island;
-        self.storeys_m = levels::storeys(&self);
+        self.storeys_m = levels::find_storeys(&self);
         self
     }
 

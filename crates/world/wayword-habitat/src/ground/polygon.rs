@@ -1,13 +1,13 @@
 //! One convex piece of ground.
 
-use crate::{axes::wayword_from_habitat, navmesh::Tile};
+use crate::{axes::wayword_from_habitat, navmesh::NavMeshTile};
 use wayword_core::DVec3;
 
 /// A convex piece of ground with its surface.
 #[derive(Debug)]
-pub(super) struct Polygon {
+pub(super) struct GroundPolygon {
     /// Counter-clockwise seen from above; at least three, unless the polygon is not ground.
-    pub(super) corners: Vec<Corner>,
+    pub(super) corners: Vec<PolygonCorner>,
     pub(super) triangles: Vec<[DVec3; 3]>,
     pub(super) area_m2: f64,
     pub(super) low: DVec3,
@@ -19,34 +19,36 @@ pub(super) struct Polygon {
 
 /// A corner, and the edge from it to the next one.
 #[derive(Clone, Debug)]
-pub(super) struct Corner {
+pub(super) struct PolygonCorner {
     pub(super) place: DVec3,
     /// The polygon of the same tile behind the edge.
     pub(super) neighbour: Option<usize>,
     /// The polygons of other tiles behind the edge, with the ends of the shared part.
-    pub(super) portals: Vec<Portal>,
+    pub(super) portals: Vec<EdgePortal>,
 }
 
 /// A part of an edge behind which there is a polygon of another tile.
 #[derive(Clone, Debug)]
-pub(super) struct Portal {
+pub(super) struct EdgePortal {
     pub(super) polygon: usize,
     /// Fractions of the edge's length, the smaller first.
     pub(super) from: f64,
     pub(super) to: f64,
 }
 
-pub(super) fn world(place: [f32; 3]) -> DVec3 {
+pub(super) fn wayword_place(place: [f32; 3]) -> DVec3 {
     wayword_from_habitat(glam::Vec3::from(place).as_dvec3())
 }
 
-impl Polygon {
+impl GroundPolygon {
     /// A polygon of a tile; `neighbour` returns the polygon behind each of its edges.
-    pub(super) fn new(tile: &Tile, index: usize, neighbour: impl Fn(usize) -> Option<usize>) -> Self {
+    pub(super) fn new(tile: &NavMeshTile, index: usize, neighbour: impl Fn(usize) -> Option<usize>) -> Self {
         let poly = &tile.polys[index];
-        let places: Vec<DVec3> = poly.corners().iter().map(|vert| world(tile.verts[usize::from(*vert)])).collect();
-        let corner = |edge: usize| Corner { place: places[edge], neighbour: neighbour(edge), portals: Vec::new() };
-        let mut corners: Vec<Corner> = (0..places.len()).map(corner).collect();
+        let places: Vec<DVec3> =
+            poly.corners().iter().map(|vert| wayword_place(tile.verts[usize::from(*vert)])).collect();
+        let corner =
+            |edge: usize| PolygonCorner { place: places[edge], neighbour: neighbour(edge), portals: Vec::new() };
+        let mut corners: Vec<PolygonCorner> = (0..places.len()).map(corner).collect();
         if doubled_area(&places) < 0.0 {
             // The edge of a corner leads to the next corner: after the reversal it belongs to its other end.
             corners.reverse();
@@ -57,7 +59,7 @@ impl Polygon {
             }
         }
         let triangles: Vec<[DVec3; 3]> =
-            tile.triangles(index).into_iter().map(|triangle| triangle.map(world)).collect();
+            tile.polygon_triangles(index).into_iter().map(|triangle| triangle.map(wayword_place)).collect();
         let area = |[a, b, c]: &[DVec3; 3]| 0.5 * (*b - *a).cross(*c - *a).length();
         let all = || triangles.iter().flatten().chain(&places);
         Self {
@@ -72,7 +74,7 @@ impl Polygon {
     }
 
     /// The edges, each as its corner and the next one.
-    pub(super) fn edges(&self) -> impl Iterator<Item = (&Corner, &Corner)> {
+    pub(super) fn edges(&self) -> impl Iterator<Item = (&PolygonCorner, &PolygonCorner)> {
         self.corners.iter().zip(self.corners.iter().cycle().skip(1))
     }
 
@@ -83,24 +85,24 @@ impl Polygon {
     }
 
     /// Whether a place is inside it seen from above; its edges count as inside.
-    pub(super) fn holds(&self, place: DVec3) -> bool {
-        self.edges().all(|(a, b)| side(a.place, b.place, place) >= 0.0)
+    pub(super) fn contains_place(&self, place: DVec3) -> bool {
+        self.edges().all(|(a, b)| side_of_line(a.place, b.place, place) >= 0.0)
     }
 
     /// The height of its surface at a place that is inside it seen from above.
     pub(super) fn height_m(&self, place: DVec3) -> Option<f64> {
         let over = |triangle: &&[DVec3; 3]| {
             let [a, b, c] = **triangle;
-            let sides = [side(a, b, place), side(b, c, place), side(c, a, place)];
+            let sides = [side_of_line(a, b, place), side_of_line(b, c, place), side_of_line(c, a, place)];
             // Both windings count, and a small tolerance keeps a place from falling between two triangles.
             sides.iter().all(|side| *side >= -1e-9) || sides.iter().all(|side| *side <= 1e-9)
         };
         let [a, b, c] = *self.triangles.iter().find(over)?;
-        let whole = side(a, b, c);
+        let whole = side_of_line(a, b, c);
         if whole == 0.0 {
             return Some(a.z);
         }
-        let (to_b, to_c) = (side(c, a, place) / whole, side(a, b, place) / whole);
+        let (to_b, to_c) = (side_of_line(c, a, place) / whole, side_of_line(a, b, place) / whole);
         Some(a.z + (b.z - a.z) * to_b + (c.z - a.z) * to_c)
     }
 
@@ -113,13 +115,13 @@ impl Polygon {
 }
 
 /// Twice the area of a triangle seen from above; positive if c lies to the left of the line from a to b.
-pub(super) fn side(a: DVec3, b: DVec3, c: DVec3) -> f64 {
+pub(super) fn side_of_line(a: DVec3, b: DVec3, c: DVec3) -> f64 {
     (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)
 }
 
 fn doubled_area(places: &[DVec3]) -> f64 {
     let first = places.first().copied().unwrap_or_default();
-    places.windows(2).map(|pair| side(first, pair[0], pair[1])).sum()
+    places.windows(2).map(|pair| side_of_line(first, pair[0], pair[1])).sum()
 }
 
 /// The place on an edge that is nearest to another place seen from above, with the edge's height there.

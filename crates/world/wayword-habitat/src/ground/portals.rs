@@ -1,8 +1,8 @@
 //! Joins tiles: finds the edges on a tile's side that lie along edges of the neighbouring tile, and enters a portal at
 //! both (`dtNavMesh::connectExtLinks`).
 
-use super::polygon::{Polygon, Portal, world};
-use crate::navmesh::{Behind, NavMesh};
+use super::polygon::{EdgePortal, GroundPolygon, wayword_place};
+use crate::navmesh::{EdgeNeighbour, NavMesh};
 use std::collections::BTreeMap;
 use wayword_core::DVec3;
 
@@ -16,7 +16,7 @@ const MAX_DOORS: usize = 32;
 
 /// An edge on a side of a tile, where a portal may be.
 #[derive(Debug)]
-struct Opening {
+struct TileOpening {
     polygon: usize,
     corner: usize,
     ends: [DVec3; 2],
@@ -25,21 +25,21 @@ struct Opening {
 }
 
 /// Finds the portals between neighbouring tiles, and enters each on both sides.
-pub(super) fn open(mesh: &NavMesh, polygons: &mut [Polygon], climb_m: f64) {
+pub(super) fn open_portals(mesh: &NavMesh, polygons: &mut [GroundPolygon], climb_m: f64) {
     // Keyed by the tile's place and the side: 0 is +x, 2 is +z, 4 is -x, 6 is -z.
-    let mut sides: BTreeMap<([i32; 2], u8), Vec<Opening>> = BTreeMap::new();
+    let mut sides: BTreeMap<([i32; 2], u8), Vec<TileOpening>> = BTreeMap::new();
     let mut first = 0;
     for tile in &mesh.tiles {
         let [x, z, _] = tile.header.place;
         for (index, poly) in tile.polys.iter().enumerate() {
             for edge in 0..poly.corners().len() {
-                let Behind::Portal(side) = poly.behind(edge) else { continue };
-                let place = |corner: usize| world(tile.verts[usize::from(poly.corners()[corner])]);
+                let EdgeNeighbour::Portal(side) = poly.neighbour_behind(edge) else { continue };
+                let place = |corner: usize| wayword_place(tile.verts[usize::from(poly.corners()[corner])]);
                 let ends = [place(edge), place((edge + 1) % poly.corners().len())];
                 let corner = polygons[first + index].corners.iter().position(|corner| ends.contains(&corner.place));
                 let Some(corner) = corner.and_then(|_| edge_of(&polygons[first + index], ends)) else { continue };
                 let axis = usize::from(side == 2 || side == 6);
-                let opening = Opening { polygon: first + index, corner, ends, axis };
+                let opening = TileOpening { polygon: first + index, corner, ends, axis };
                 sides.entry(([x, z], side)).or_default().push(opening);
             }
         }
@@ -55,25 +55,25 @@ pub(super) fn open(mesh: &NavMesh, polygons: &mut [Polygon], climb_m: f64) {
         let Some(others) = beside.and_then(|beside| sides.get(&(beside, opposite))) else { continue };
         for one in openings {
             for other in others {
-                join(polygons, one, other, climb_m);
+                join_openings(polygons, one, other, climb_m);
             }
         }
     }
 }
 
 /// The corner at which the edge with these ends begins, whatever their order.
-fn edge_of(polygon: &Polygon, ends: [DVec3; 2]) -> Option<usize> {
+fn edge_of(polygon: &GroundPolygon, ends: [DVec3; 2]) -> Option<usize> {
     polygon.edges().position(|(a, b)| ends == [a.place, b.place] || ends == [b.place, a.place])
 }
 
-fn join(polygons: &mut [Polygon], one: &Opening, other: &Opening, climb_m: f64) {
+fn join_openings(polygons: &mut [GroundPolygon], one: &TileOpening, other: &TileOpening, climb_m: f64) {
     // Wayword's x is Habitat's x, and Wayword's y is Habitat's -z. The side runs along the axis that does not cross it.
     let across = |place: DVec3| if one.axis == 0 { place.x } else { place.y };
     let along = |place: DVec3| if one.axis == 0 { place.y } else { place.x };
     if (across(one.ends[0]) - across(other.ends[0])).abs() > APART_M {
         return;
     }
-    let span = |opening: &Opening| {
+    let span = |opening: &TileOpening| {
         let [a, b] = opening.ends.map(along);
         (a.min(b), a.max(b))
     };
@@ -82,7 +82,7 @@ fn join(polygons: &mut [Polygon], one: &Opening, other: &Opening, climb_m: f64) 
     if high - low < LEAST_M {
         return;
     }
-    let height = |opening: &Opening, at: f64| {
+    let height = |opening: &TileOpening, at: f64| {
         let [from, to] = opening.ends;
         let length = along(to) - along(from);
         from.z + (to.z - from.z) * ((at - along(from)) / length)
@@ -94,7 +94,7 @@ fn join(polygons: &mut [Polygon], one: &Opening, other: &Opening, climb_m: f64) 
     if !near {
         return;
     }
-    let doors = |opening: &Opening| polygons[opening.polygon].corners[opening.corner].portals.len();
+    let doors = |opening: &TileOpening| polygons[opening.polygon].corners[opening.corner].portals.len();
     if doors(one) >= MAX_DOORS || doors(other) >= MAX_DOORS {
         return;
     }
@@ -103,6 +103,6 @@ fn join(polygons: &mut [Polygon], one: &Opening, other: &Opening, climb_m: f64) 
         let (start, next) = (corners[opening.corner].place, corners[(opening.corner + 1) % corners.len()].place);
         let share = |at: f64| ((at - along(start)) / (along(next) - along(start))).clamp(0.0, 1.0);
         let (from, to) = (share(low).min(share(high)), share(low).max(share(high)));
-        corners[opening.corner].portals.push(Portal { polygon: beyond.polygon, from, to });
+        corners[opening.corner].portals.push(EdgePortal { polygon: beyond.polygon, from, to });
     }
 }

@@ -4,16 +4,16 @@
 //! The steps are those of a probabilistic road map: try random places, keep those far from walls and from one another, join near
 //! ones, and connect the remaining parts.
 
-use super::{Ground, polygon::nearest_on_edge};
+use super::{NavMeshGround, polygon::nearest_on_edge};
 use crate::axes::EYE_M;
-use wayword_core::{DVec3, ViewpointGraph, ViewpointId, Way, graph::GraphError, rng};
+use wayword_core::{DVec3, GroundRoute, ViewpointGraph, ViewpointId, graph::GraphError, seeded_rng};
 
 /// Least distance between two viewpoints of the same storey, metres.
 const APART_M: f64 = 1.8;
 /// Longest edge, metres.
 const REACH_M: f64 = 4.0;
 /// Greatest length of the way along an edge, as a multiple of the straight line's length.
-const DETOUR: f64 = 1.1;
+const MAX_DETOUR_FACTOR: f64 = 1.1;
 /// If two edges leave a viewpoint within this angle, the longer one is dropped: it would lead past the end of the other.
 const CLOSE_RAD: f64 = 0.35;
 /// Random places that are tried, for each square metre of ground.
@@ -33,40 +33,40 @@ const OPEN_ENOUGH_M: f64 = 1.0;
 ///
 /// # Errors
 /// Never if the coordinates of the ground are finite; the graph checks names and positions itself.
-pub fn viewpoint_graph(ground: &Ground, island: usize) -> Result<ViewpointGraph, GraphError> {
-    let mut map = RoadMap { ground, island, nodes: Vec::new(), edges: Vec::new() };
-    map.place();
+pub fn viewpoint_graph(ground: &NavMeshGround, island: usize) -> Result<ViewpointGraph, GraphError> {
+    let mut map = ViewpointRoadMap { ground, island, nodes: Vec::new(), edges: Vec::new() };
+    map.place_viewpoints();
     map.join_near();
-    map.connect();
+    map.connect_parts();
     map.into_graph()
 }
 
-struct RoadMap<'a> {
-    ground: &'a Ground,
+struct ViewpointRoadMap<'a> {
+    ground: &'a NavMeshGround,
     island: usize,
     /// On the ground.
     nodes: Vec<DVec3>,
     edges: Vec<(usize, usize)>,
 }
 
-impl RoadMap<'_> {
+impl ViewpointRoadMap<'_> {
     /// Places viewpoints in open places first, then nearer to walls, wherever no other viewpoint is near.
-    fn place(&mut self) {
+    fn place_viewpoints(&mut self) {
         let area_m2 = self.ground.islands.get(self.island).map_or(0.0, |island| island.area_m2);
         let tries = ((area_m2 * TRIES_PER_M2).ceil() as usize).clamp(1, MAX_TRIES);
-        let mut rng = rng(0, &["habitat viewpoints"]);
-        let border = self.border();
+        let mut rng = seeded_rng(0, &["habitat viewpoints"]);
+        let border = self.border_edges();
         let mut places: Vec<(f64, DVec3)> = Vec::with_capacity(tries);
         for _ in 0..tries {
             let Some(foothold) = self.ground.random_place(self.island, &mut rng) else { return };
-            places.push((clearance(&border, foothold.place), foothold.place));
+            places.push((border_clearance(&border, foothold.place), foothold.place));
         }
         places.sort_by(|a, b| b.0.total_cmp(&a.0));
         for (_, place) in places {
             if self.nodes.len() >= MAX_PLACED {
                 break;
             }
-            if self.nodes.iter().all(|node| far(*node, place)) {
+            if self.nodes.iter().all(|node| are_far_apart(*node, place)) {
                 self.nodes.push(place);
             }
         }
@@ -79,7 +79,7 @@ impl RoadMap<'_> {
     }
 
     /// The polygons' edges behind which there is no ground.
-    fn border(&self) -> Vec<(DVec3, DVec3)> {
+    fn border_edges(&self) -> Vec<(DVec3, DVec3)> {
         let members = self.ground.islands.get(self.island).map_or(&[][..], |island| &island.polygons);
         let edges = members.iter().flat_map(|polygon| self.ground.polygons[*polygon].edges());
         let closed = edges.filter(|(corner, _)| corner.neighbour.is_none() && corner.portals.is_empty());
@@ -94,7 +94,7 @@ impl RoadMap<'_> {
                 if straight_m > REACH_M {
                     continue;
                 }
-                if self.way(a, b).is_some_and(|way| way.length_m <= straight_m * DETOUR) {
+                if self.way_between(a, b).is_some_and(|way| way.length_m <= straight_m * MAX_DETOUR_FACTOR) {
                     found.push((straight_m, a, b));
                 }
             }
@@ -121,15 +121,15 @@ impl RoadMap<'_> {
         })
     }
 
-    fn way(&self, a: usize, b: usize) -> Option<Way> {
+    fn way_between(&self, a: usize, b: usize) -> Option<GroundRoute> {
         self.ground.geodesic(self.nodes[a], self.nodes[b]).ok()
     }
 
     /// Joins parts that are still unconnected, the nearest pairs first. Every bend of the way between them becomes a
     /// viewpoint.
-    fn connect(&mut self) {
+    fn connect_parts(&mut self) {
         let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
-        let parts = self.parts();
+        let parts = self.find_parts();
         for a in 0..self.nodes.len() {
             for b in a + 1..self.nodes.len() {
                 if parts[a] != parts[b] {
@@ -144,7 +144,7 @@ impl RoadMap<'_> {
             if parts[a] == parts[b] {
                 continue;
             }
-            let Some(way) = self.way(a, b) else {
+            let Some(way) = self.way_between(a, b) else {
                 in_vain += 1;
                 if in_vain > MAX_IN_VAIN {
                     break;
@@ -165,7 +165,7 @@ impl RoadMap<'_> {
     }
 
     /// For each node, the smallest node of its connected part, as the name of that part.
-    fn parts(&self) -> Vec<usize> {
+    fn find_parts(&self) -> Vec<usize> {
         let mut parts: Vec<usize> = (0..self.nodes.len()).collect();
         for (a, b) in &self.edges {
             let (keep, drop) = (parts[*a].min(parts[*b]), parts[*a].max(parts[*b]));
@@ -179,24 +179,24 @@ impl RoadMap<'_> {
         let mut ids: Vec<ViewpointId> = Vec::with_capacity(self.nodes.len());
         for (number, place) in self.nodes.iter().enumerate() {
             let Ok(id) = ViewpointId::new(format!("v{number:04}")) else { continue };
-            graph.add(id.clone(), *place + DVec3::Z * EYE_M, Some(self.ground.level(*place)))?;
+            graph.add_viewpoint(id.clone(), *place + DVec3::Z * EYE_M, Some(self.ground.level_at(*place)))?;
             ids.push(id);
         }
         for (a, b) in &self.edges {
-            graph.join(&ids[*a], &ids[*b])?;
+            graph.join_viewpoints(&ids[*a], &ids[*b])?;
         }
         Ok(graph)
     }
 }
 
 /// Whether two places are far enough apart for both to be viewpoints.
-fn far(a: DVec3, b: DVec3) -> bool {
+fn are_far_apart(a: DVec3, b: DVec3) -> bool {
     let off = a - b;
     off.truncate().length() >= APART_M || off.z.abs() > 1.2
 }
 
 /// Distance of a place from the border on its storey, at most [`OPEN_ENOUGH_M`].
-fn clearance(border: &[(DVec3, DVec3)], place: DVec3) -> f64 {
+fn border_clearance(border: &[(DVec3, DVec3)], place: DVec3) -> f64 {
     let on_floor = |(a, b): &&(DVec3, DVec3)| a.z.min(b.z) < place.z + 1.0 && a.z.max(b.z) > place.z - 1.0;
     let off = |(a, b): &(DVec3, DVec3)| (nearest_on_edge(*a, *b, place) - place).truncate().length();
     border.iter().filter(on_floor).map(off).fold(OPEN_ENOUGH_M, f64::min)

@@ -1,9 +1,9 @@
 //! Random places, uniform over the ground.
 
-use super::{Foothold, Ground};
+use super::{Foothold, NavMeshGround};
 use rand::Rng;
 
-impl Ground {
+impl NavMeshGround {
     /// A random place on an island (0 is the largest), uniform over its area; `None` if the island does not exist.
     #[must_use]
     pub fn random_place(&self, island: usize, rng: &mut impl Rng) -> Option<Foothold> {

@@ -1,8 +1,8 @@
 //! Straight steps over the ground: from polygon to polygon through the edges that they share, up to the border.
 
 use super::{
-    Foothold, Ground,
-    polygon::{Corner, Polygon, nearest_on_edge, side},
+    Foothold, NavMeshGround,
+    polygon::{GroundPolygon, PolygonCorner, nearest_on_edge, side_of_line},
 };
 use wayword_core::DVec3;
 
@@ -11,31 +11,33 @@ const MAX_EDGES: usize = 256;
 
 /// The end of a straight step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stride {
+pub struct GroundStride {
     /// The place that the step reaches.
     pub end: Foothold,
     /// Whether the ground ends before the step does.
     pub is_blocked: bool,
 }
 
-impl Ground {
+impl NavMeshGround {
     /// Walks straight from a place on the ground to another, seen from above; the height of `to` does not matter. The
     /// walker stops where the ground ends, and does not slide along its border.
     #[must_use]
-    pub fn stride(&self, from: &Foothold, to: DVec3) -> Stride {
+    pub fn stride_to(&self, from: &Foothold, to: DVec3) -> GroundStride {
         let (start, mut number, mut gone) = (from.place, from.polygon, 0.0);
         for _ in 0..MAX_EDGES {
             let Some(polygon) = self.polygons.get(number) else { break };
-            let Some((share, corner, on_edge)) = exit(polygon, start, to) else {
-                return Stride { end: self.foothold_in(number, to), is_blocked: false };
+            let Some((share, corner, on_edge)) = polygon_exit(polygon, start, to) else {
+                return GroundStride { end: self.foothold_in(number, to), is_blocked: false };
             };
             gone = share.max(gone);
-            match behind(corner, on_edge).filter(|other| self.polygons.get(*other).is_some_and(|it| it.is_walkable)) {
+            match polygon_behind(corner, on_edge)
+                .filter(|other| self.polygons.get(*other).is_some_and(|it| it.is_walkable))
+            {
                 Some(other) => number = other,
                 None => break,
             }
         }
-        Stride { end: self.foothold_in(number, start.lerp(to, gone)), is_blocked: true }
+        GroundStride { end: self.foothold_in(number, start.lerp(to, gone)), is_blocked: true }
     }
 
     /// The point of a polygon's surface under or over `place`, or else the nearest one on its border.
@@ -51,9 +53,9 @@ impl Ground {
 
 /// Where the line from `start` to `to` leaves a polygon: the share of the line's length, the corner at which the crossed
 /// edge begins, and the share of that edge's length. `None` if the line ends in the polygon.
-fn exit(polygon: &Polygon, start: DVec3, to: DVec3) -> Option<(f64, &Corner, f64)> {
+fn polygon_exit(polygon: &GroundPolygon, start: DVec3, to: DVec3) -> Option<(f64, &PolygonCorner, f64)> {
     let crossed = polygon.edges().filter_map(|(a, b)| {
-        let (before, after) = (side(a.place, b.place, start), side(a.place, b.place, to));
+        let (before, after) = (side_of_line(a.place, b.place, start), side_of_line(a.place, b.place, to));
         // A start on the edge itself, or just outside because of rounding, leaves at once.
         let share = if after >= 0.0 { return None } else { (before / (before - after)).clamp(0.0, 1.0) };
         let at = nearest_on_edge(a.place, b.place, start.lerp(to, share));
@@ -65,7 +67,7 @@ fn exit(polygon: &Polygon, start: DVec3, to: DVec3) -> Option<(f64, &Corner, f64
 }
 
 /// The polygon behind an edge, at a share of the edge's length from its corner.
-fn behind(corner: &Corner, share: f64) -> Option<usize> {
+fn polygon_behind(corner: &PolygonCorner, share: f64) -> Option<usize> {
     let portal = || corner.portals.iter().find(|portal| (portal.from..=portal.to).contains(&share));
     corner.neighbour.or_else(|| portal().map(|portal| portal.polygon))
 }
@@ -76,10 +78,10 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn step(from: [f64; 2], to: [f64; 2]) -> Stride {
-        let ground = Ground::new(&paved(&ring()));
+    fn step(from: [f64; 2], to: [f64; 2]) -> GroundStride {
+        let ground = NavMeshGround::new(&paved(&ring()));
         let place = |[x, y]: [f64; 2]| DVec3::new(x, y, 0.0);
-        ground.stride(&ground.nearest(place(from)).unwrap(), place(to))
+        ground.stride_to(&ground.nearest_foothold(place(from)).unwrap(), place(to))
     }
 
     #[test]

@@ -3,19 +3,19 @@
 use super::*;
 use crate::navmesh::{
     NavMeshSettings,
-    build::{Piece, Surface, single_tile},
+    build::{TilePiece, TileSurface, single_tile},
 };
 use proptest::prelude::*;
 use std::collections::BTreeMap;
-use wayword_core::rng;
+use wayword_core::seeded_rng;
 
 /// A navmesh of polygons given by their corners in Wayword's frame, counter-clockwise. Polygons that share two corners
 /// are neighbours.
 pub(crate) fn paved(polygons: &[Vec<[f32; 3]>]) -> NavMesh {
-    let mut surface = Surface { low_m: [-50.0; 3], high_m: [50.0; 3], ..Surface::default() };
+    let mut surface = TileSurface { low_m: [-50.0; 3], high_m: [50.0; 3], ..TileSurface::default() };
     let mut edges: BTreeMap<(u16, u16), (usize, usize)> = BTreeMap::new();
     for (number, polygon) in polygons.iter().enumerate() {
-        let mut piece = Piece { neighbours: vec![0; polygon.len()], ..Piece::default() };
+        let mut piece = TilePiece { neighbours: vec![0; polygon.len()], ..TilePiece::default() };
         for [x, y, z] in polygon {
             let vert = [*x, *z, -*y];
             let known = surface.verts.iter().position(|other| *other == vert);
@@ -66,7 +66,7 @@ fn at(x: f64, y: f64, z: f64) -> DVec3 {
 
 #[test]
 fn ways_bend_around_holes_in_the_ground() {
-    let ground = Ground::new(&paved(&ring()));
+    let ground = NavMeshGround::new(&paved(&ring()));
     assert!((ground.area_m2() - 8.0).abs() < 1e-6);
     let way = ground.geodesic(at(0.5, 1.5, 0.0), at(2.5, 1.4, 0.0)).unwrap();
     assert_eq!(way.corners, [at(0.5, 1.5, 0.0), at(1.0, 1.0, 0.0), at(2.0, 1.0, 0.0), at(2.5, 1.4, 0.0)]);
@@ -76,7 +76,7 @@ fn ways_bend_around_holes_in_the_ground() {
 
 #[test]
 fn a_place_under_another_floor_is_reached_by_the_ramp() {
-    let ground = Ground::new(&paved(&two_storeys()));
+    let ground = NavMeshGround::new(&paved(&two_storeys()));
     assert_eq!(ground.islands_m2().count(), 1);
     let (below, above) = (at(2.0, 0.5, 0.0), at(2.0, 0.5, 3.0));
     let way = ground.geodesic(below, above).unwrap();
@@ -85,10 +85,10 @@ fn a_place_under_another_floor_is_reached_by_the_ramp() {
     let ramp = at(4.0, 3.0, 0.0).distance(at(4.0, 1.0, 3.0));
     let expected = below.distance(at(4.0, 3.0, 0.0)) + ramp + at(4.0, 1.0, 3.0).distance(above);
     assert!((way.length_m - expected).abs() < 1e-6, "{way:?}");
-    assert_eq!((ground.level(below), ground.level(above)), (1, 2));
+    assert_eq!((ground.level_at(below), ground.level_at(above)), (1, 2));
     // A place a little below or above a floor is assigned to that floor.
-    assert_eq!(ground.nearest(at(2.0, 0.5, 2.2)).unwrap().place, above);
-    assert_eq!(ground.nearest(at(2.0, 0.5, 0.9)).unwrap().place, below);
+    assert_eq!(ground.nearest_foothold(at(2.0, 0.5, 2.2)).unwrap().place, above);
+    assert_eq!(ground.nearest_foothold(at(2.0, 0.5, 0.9)).unwrap().place, below);
 }
 
 #[test]
@@ -106,7 +106,7 @@ fn a_way_bends_twice_at_places_above_one_another() {
     polygons.push(ramp(4.0, 3.0, 1.5));
     polygons.push(slab([4.0, 5.0], [0.0, 1.0], 3.0));
     polygons.push(slab([3.0, 4.0], [0.0, 1.0], 3.0));
-    let ground = Ground::new(&paved(&polygons));
+    let ground = NavMeshGround::new(&paved(&polygons));
     let way = ground.geodesic(at(0.5, 1.5, 0.0), at(0.5, 1.5, 3.0)).unwrap();
     for bend in [at(1.0, 1.0, 0.0), at(1.0, 1.0, 3.0)] {
         assert!(way.corners.contains(&bend), "{way:?}");
@@ -117,33 +117,33 @@ fn a_way_bends_twice_at_places_above_one_another() {
 
 #[test]
 fn nearest_ground_includes_the_height_of_a_step() {
-    let ground = Ground::new(&paved(&[slab([0.0, 1.0], [0.0, 1.0], 0.0), slab([1.05, 2.0], [0.0, 1.0], 0.15)]));
-    assert_eq!(ground.nearest(at(0.97, 0.5, 0.15)).unwrap().place, at(0.97, 0.5, 0.0));
+    let ground = NavMeshGround::new(&paved(&[slab([0.0, 1.0], [0.0, 1.0], 0.0), slab([1.05, 2.0], [0.0, 1.0], 0.15)]));
+    assert_eq!(ground.nearest_foothold(at(0.97, 0.5, 0.15)).unwrap().place, at(0.97, 0.5, 0.0));
 }
 
 #[test]
 fn ground_that_is_not_joined_cannot_be_reached() {
     let apart = vec![slab([0.0, 1.0], [0.0, 1.0], 0.0), slab([3.0, 5.0], [0.0, 1.0], 0.0)];
-    let ground = Ground::new(&paved(&apart));
+    let ground = NavMeshGround::new(&paved(&apart));
     assert_eq!(ground.islands_m2().map(f64::round).collect::<Vec<_>>(), [2.0, 1.0]);
-    assert_eq!(ground.geodesic(at(0.5, 0.5, 0.0), at(4.0, 0.5, 0.0)), Err(NoWay::Apart));
+    assert_eq!(ground.geodesic(at(0.5, 0.5, 0.0), at(4.0, 0.5, 0.0)), Err(GeodesicError::Apart));
     let far = at(0.5, 9.0, 0.0);
-    assert_eq!(ground.geodesic(far, at(4.0, 0.5, 0.0)), Err(NoWay::OffGround(far)));
-    assert!(ground.nearest(at(f64::NAN, 0.0, 0.0)).is_none());
+    assert_eq!(ground.geodesic(far, at(4.0, 0.5, 0.0)), Err(GeodesicError::OffGround(far)));
+    assert!(ground.nearest_foothold(at(f64::NAN, 0.0, 0.0)).is_none());
 }
 
 #[test]
 fn polygons_wound_the_other_way_keep_their_neighbours() {
     let clockwise: Vec<Vec<[f32; 3]>> = ring().into_iter().map(|polygon| polygon.into_iter().rev().collect()).collect();
     for polygons in [ring(), clockwise] {
-        let ground = Ground::new(&paved(&polygons));
+        let ground = NavMeshGround::new(&paved(&polygons));
         for polygon in &ground.polygons {
             for (corner, next) in polygon.edges() {
                 // The middle of every edge inside the ring lies on two polygons.
                 let middle = (corner.place + next.place) / 2.0;
-                let on = ground.polygons.iter().filter(|other| other.holds(middle)).count();
+                let on = ground.polygons.iter().filter(|other| other.contains_place(middle)).count();
                 assert_eq!(corner.neighbour.is_some(), on == 2, "{middle}");
-                assert!(corner.neighbour.is_none_or(|other| ground.polygons[other].holds(middle)));
+                assert!(corner.neighbour.is_none_or(|other| ground.polygons[other].contains_place(middle)));
             }
         }
     }
@@ -152,7 +152,7 @@ fn polygons_wound_the_other_way_keep_their_neighbours() {
 #[test]
 fn slivers_are_no_ground() {
     let sliver = vec![[1.0, 0.0, 0.0], [1.0 + 1e-6, 0.5, 0.0], [1.0, 1.0, 0.0]];
-    let ground = Ground::new(&paved(&[slab([0.0, 1.0], [0.0, 1.0], 0.0), sliver]));
+    let ground = NavMeshGround::new(&paved(&[slab([0.0, 1.0], [0.0, 1.0], 0.0), sliver]));
     assert!((ground.area_m2() - 1.0).abs() < 1e-9);
 }
 
@@ -166,7 +166,7 @@ fn tiles_are_joined_where_their_edges_overlap() {
     beside.tiles[0].polys[0].open(3, 4);
     beside.tiles[0].header.place = [1, 0, 0];
     mesh.tiles.append(&mut beside.tiles);
-    let ground = Ground::new(&mesh);
+    let ground = NavMeshGround::new(&mesh);
     assert_eq!(ground.islands_m2().count(), 1);
     let way = ground.geodesic(at(1.0, 0.0, 0.0), at(4.0, 1.0, 0.1)).unwrap();
     assert_eq!(way.corners.len(), 3, "{way:?}");
@@ -176,7 +176,7 @@ fn tiles_are_joined_where_their_edges_overlap() {
 
 #[test]
 fn frames_stand_at_equal_distances_and_both_ends() {
-    let ground = Ground::new(&paved(&ring()));
+    let ground = NavMeshGround::new(&paved(&ring()));
     let way = ground.geodesic(at(0.5, 0.5, 0.0), at(2.5, 0.5, 0.0)).unwrap();
     let stops = stops_along(&ground, &way, 0.75);
     let xs: Vec<f64> = stops.iter().map(|stop| (stop.position.x * 1000.0).round() / 1000.0).collect();
@@ -186,14 +186,14 @@ fn frames_stand_at_equal_distances_and_both_ends() {
 
 #[test]
 fn the_viewpoint_graph_reaches_every_floor() {
-    let ground = Ground::new(&paved(&two_storeys()));
+    let ground = NavMeshGround::new(&paved(&two_storeys()));
     let graph = viewpoint_graph(&ground, 0).unwrap();
-    assert_eq!(graph.components(), 1);
-    let levels: std::collections::BTreeSet<_> = graph.viewpoints().map(|id| graph.level(id)).collect();
+    assert_eq!(graph.count_components(), 1);
+    let levels: std::collections::BTreeSet<_> = graph.viewpoints().map(|id| graph.level_of(id)).collect();
     assert_eq!(levels, [Some(1), Some(2)].into());
     assert!(graph.len() > 6, "{} viewpoints", graph.len());
     for (a, b, length_m) in graph.edges() {
-        let under = |id| graph.position(id).unwrap() - DVec3::Z * crate::axes::EYE_M;
+        let under = |id| graph.position_of(id).unwrap() - DVec3::Z * crate::axes::EYE_M;
         let walk = ground.geodesic(under(a), under(b)).unwrap();
         assert!(walk.length_m <= length_m * 1.1 + 1e-6, "{a} to {b}");
     }
@@ -208,29 +208,29 @@ proptest! {
             *byte = new;
         }
         if let Ok(mesh) = NavMesh::from_bytes(&bytes) {
-            let ground = Ground::new(&mesh);
-            let mut rng = rng(seed, &["test"]);
+            let ground = NavMeshGround::new(&mesh);
+            let mut rng = seeded_rng(seed, &["test"]);
             let [a, b] = [0; 2].map(|island| ground.random_place(island, &mut rng).map(|foothold| foothold.place));
             if let (Some(a), Some(b)) = (a, b) {
                 let _ = ground.geodesic(a, b);
-                let _ = ground.nearest(a);
+                let _ = ground.nearest_foothold(a);
             }
         }
     }
 
     #[test]
     fn random_places_lie_on_the_ground(seed: u64) {
-        let ground = Ground::new(&paved(&two_storeys()));
-        let mut rng = rng(seed, &["test"]);
+        let ground = NavMeshGround::new(&paved(&two_storeys()));
+        let mut rng = seeded_rng(seed, &["test"]);
         let foothold = ground.random_place(0, &mut rng).unwrap();
-        let again = ground.nearest(foothold.place).unwrap();
+        let again = ground.nearest_foothold(foothold.place).unwrap();
         prop_assert!(again.place.distance(foothold.place) < 1e-6);
     }
 
     #[test]
     fn ways_keep_the_triangle_inequality_and_are_the_same_backwards(seed: u64) {
-        let ground = Ground::new(&paved(&two_storeys()));
-        let mut rng = rng(seed, &["test"]);
+        let ground = NavMeshGround::new(&paved(&two_storeys()));
+        let mut rng = seeded_rng(seed, &["test"]);
         let places: Vec<DVec3> = (0..3).map(|_| ground.random_place(0, &mut rng).unwrap().place).collect();
         let length = |a: usize, b: usize| ground.geodesic(places[a], places[b]).unwrap().length_m;
         prop_assert!(length(0, 1) >= places[0].distance(places[1]) - 1e-6);
@@ -244,9 +244,9 @@ proptest! {
 #[test]
 fn a_country_has_no_more_viewpoints_than_can_be_joined() {
     let far = 5e4;
-    let country = Ground::new(&paved(&[vec![[-far, -far, 0.0], [far, -far, 0.0], [0.0, far, 0.0]]]));
+    let country = NavMeshGround::new(&paved(&[vec![[-far, -far, 0.0], [far, -far, 0.0], [0.0, far, 0.0]]]));
     let graph = viewpoint_graph(&country, 0).unwrap();
-    assert_eq!((graph.len(), graph.components()), (2000, 1));
+    assert_eq!((graph.len(), graph.count_components()), (2000, 1));
 }
 
 /// The squares lie on top of one another, on both sides of a border between two tiles.
@@ -265,7 +265,7 @@ fn edges_on_top_of_one_another_are_not_all_joined_with_all() {
         poly.neis[3] = 0x8004;
     }
     mesh.tiles.push(beside);
-    let ground = Ground::new(&mesh);
+    let ground = NavMeshGround::new(&mesh);
     let doors = ground.polygons.iter().flat_map(|polygon| &polygon.corners).map(|corner| corner.portals.len());
     assert_eq!(doors.max(), Some(32));
 }

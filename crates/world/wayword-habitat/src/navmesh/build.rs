@@ -1,6 +1,8 @@
 //! Makes a navmesh tile from polygons, as `dtCreateNavMeshData` does (Detour, `DetourNavMeshBuilder.cpp`).
 
-use super::{BvNode, DetailMesh, Grid, Header, MAX_CORNERS, NavMesh, NavMeshSettings, Poly, Tile};
+use super::{
+    BvNode, DetailMesh, MAX_CORNERS, NavMesh, NavMeshSettings, NavMeshTile, TileGrid, TileHeader, TilePolygon,
+};
 
 /// `DT_NULL_LINK`.
 const NO_LINK: u32 = u32::MAX;
@@ -10,17 +12,17 @@ const WALK_FLAG: u16 = 1;
 
 /// The polygons of a tile that is to be made.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Surface {
+pub(crate) struct TileSurface {
     /// Metres, y up.
     pub(crate) verts: Vec<[f32; 3]>,
-    pub(crate) pieces: Vec<Piece>,
+    pub(crate) pieces: Vec<TilePiece>,
     pub(crate) low_m: [f32; 3],
     pub(crate) high_m: [f32; 3],
 }
 
 /// One polygon with its surface.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Piece {
+pub(crate) struct TilePiece {
     /// Three to six vertices.
     pub(crate) corners: Vec<u16>,
     /// For each corner, the index of the piece behind the edge that begins there, plus 1; 0 if the ground ends there.
@@ -31,14 +33,14 @@ pub(crate) struct Piece {
 }
 
 /// A navmesh of one tile, as Habitat bakes them. Detour's counts go up to 65,535: the caller must not exceed that.
-pub(crate) fn single_tile(surface: &Surface, settings: NavMeshSettings) -> NavMesh {
+pub(crate) fn single_tile(surface: &TileSurface, settings: NavMeshSettings) -> NavMesh {
     let (low_m, high_m) = (surface.low_m, surface.high_m);
     let polys = surface.pieces.len() as u32;
     let poly_bits = polys.max(1).next_power_of_two().ilog2();
-    let mut tile = tile(surface, &settings);
+    let mut tile = build_tile(surface, &settings);
     // Salt 1, tile 0: the reference that `dtNavMesh::init` gives to a single tile.
     tile.reference = 1_u32.checked_shl(poly_bits).unwrap_or(0);
-    let grid = Grid {
+    let grid = TileGrid {
         origin_m: low_m,
         tile_m: [high_m[0] - low_m[0], high_m[2] - low_m[2]],
         max_tiles: 1,
@@ -48,15 +50,15 @@ pub(crate) fn single_tile(surface: &Surface, settings: NavMeshSettings) -> NavMe
 }
 
 /// A tile at place 0 of the grid.
-pub(crate) fn tile(surface: &Surface, settings: &NavMeshSettings) -> Tile {
-    let mut tile = Tile { verts: surface.verts.clone(), ..Tile::default() };
+pub(crate) fn build_tile(surface: &TileSurface, settings: &NavMeshSettings) -> NavMeshTile {
+    let mut tile = NavMeshTile { verts: surface.verts.clone(), ..NavMeshTile::default() };
     for piece in &surface.pieces {
-        let mut poly = Poly {
+        let mut poly = TilePolygon {
             first_link: NO_LINK,
             flags: WALK_FLAG,
             vert_count: piece.corners.len().min(MAX_CORNERS) as u8,
             area_and_type: GROUND_AREA,
-            ..Poly::default()
+            ..TilePolygon::default()
         };
         for (slot, corner) in poly.verts.iter_mut().zip(&piece.corners) {
             *slot = *corner;
@@ -77,8 +79,8 @@ pub(crate) fn tile(surface: &Surface, settings: &NavMeshSettings) -> Tile {
     }
     let edges: usize = surface.pieces.iter().map(|piece| piece.corners.len()).sum();
     tile.links = vec![0; 12 * edges];
-    tile.bv_nodes = tree(surface, settings.cell_size_m);
-    tile.header = Header {
+    tile.bv_nodes = build_box_tree(surface, settings.cell_size_m);
+    tile.header = TileHeader {
         polys: tile.polys.len() as u32,
         verts: tile.verts.len() as u32,
         links: edges as u32,
@@ -91,14 +93,14 @@ pub(crate) fn tile(surface: &Surface, settings: &NavMeshSettings) -> Tile {
         low_m: surface.low_m,
         high_m: surface.high_m,
         bv_quant_factor: 1.0 / settings.cell_size_m,
-        ..Header::default()
+        ..TileHeader::default()
     };
     tile
 }
 
 /// Boxes around the pieces, split in halves along the longest side until each holds one piece (`createBVTree`). There
 /// are twice as many nodes as pieces; the last node is empty.
-fn tree(surface: &Surface, cell_size_m: f32) -> Vec<BvNode> {
+fn build_box_tree(surface: &TileSurface, cell_size_m: f32) -> Vec<BvNode> {
     let steps = |metres: f32, low: f32| ((metres - low) / cell_size_m).clamp(0.0, f32::from(u16::MAX)) as u16;
     let mut boxes: Vec<BvNode> = Vec::with_capacity(surface.pieces.len());
     for (index, piece) in surface.pieces.iter().enumerate() {
@@ -114,13 +116,13 @@ fn tree(surface: &Surface, cell_size_m: f32) -> Vec<BvNode> {
     }
     let mut nodes = Vec::with_capacity(2 * boxes.len());
     if !boxes.is_empty() {
-        divide(&mut boxes, &mut nodes);
+        divide_boxes(&mut boxes, &mut nodes);
     }
     nodes.resize(2 * boxes.len(), BvNode { low: [0; 3], high: [0; 3], index: 0 });
     nodes
 }
 
-fn divide(boxes: &mut [BvNode], nodes: &mut Vec<BvNode>) {
+fn divide_boxes(boxes: &mut [BvNode], nodes: &mut Vec<BvNode>) {
     if let [only] = boxes {
         nodes.push(*only);
         return;
@@ -137,7 +139,7 @@ fn divide(boxes: &mut [BvNode], nodes: &mut Vec<BvNode>) {
     let here = nodes.len();
     nodes.push(BvNode { low, high, index: 0 });
     let (first, second) = boxes.split_at_mut(boxes.len() / 2);
-    divide(first, nodes);
-    divide(second, nodes);
+    divide_boxes(first, nodes);
+    divide_boxes(second, nodes);
     nodes[here].index = -((nodes.len() - here) as i32);
 }

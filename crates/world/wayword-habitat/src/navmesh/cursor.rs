@@ -4,90 +4,90 @@ use super::error::NavMeshError;
 
 /// A position in a file, which only moves forward.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Cursor<'a> {
+pub(crate) struct NavMeshCursor<'a> {
     bytes: &'a [u8],
     at: usize,
 }
 
-impl<'a> Cursor<'a> {
+impl<'a> NavMeshCursor<'a> {
     pub(crate) fn new(bytes: &'a [u8]) -> Self {
         Self { bytes, at: 0 }
     }
 
     /// Offset from the file's beginning, bytes.
-    pub(crate) fn at(&self) -> usize {
+    pub(crate) fn byte_offset(&self) -> usize {
         self.at
     }
 
-    pub(crate) fn left(&self) -> usize {
+    pub(crate) fn bytes_left(&self) -> usize {
         self.bytes.len() - self.at
     }
 
-    pub(crate) fn rest(&self) -> &'a [u8] {
+    pub(crate) fn remaining_bytes(&self) -> &'a [u8] {
         &self.bytes[self.at..]
     }
 
     /// The next `needed` bytes. The count is 64 bits wide, so that no product of a file's counts overflows.
-    pub(crate) fn take(&mut self, needed: u64, what: &'static str) -> Result<&'a [u8], NavMeshError> {
-        let short = NavMeshError::Short { offset: self.at, what, needed, left: self.left() };
-        let count = usize::try_from(needed).ok().filter(|count| *count <= self.left()).ok_or(short)?;
+    pub(crate) fn take_bytes(&mut self, needed: u64, what: &'static str) -> Result<&'a [u8], NavMeshError> {
+        let short = NavMeshError::Short { offset: self.at, what, needed, left: self.bytes_left() };
+        let count = usize::try_from(needed).ok().filter(|count| *count <= self.bytes_left()).ok_or(short)?;
         let taken = &self.bytes[self.at..self.at + count];
         self.at += count;
         Ok(taken)
     }
 
-    fn array<const N: usize>(&mut self, what: &'static str) -> Result<[u8; N], NavMeshError> {
+    fn read_array<const N: usize>(&mut self, what: &'static str) -> Result<[u8; N], NavMeshError> {
         let mut array = [0; N];
-        array.copy_from_slice(self.take(N as u64, what)?);
+        array.copy_from_slice(self.take_bytes(N as u64, what)?);
         Ok(array)
     }
 
-    pub(crate) fn u8(&mut self, what: &'static str) -> Result<u8, NavMeshError> {
-        Ok(self.array::<1>(what)?[0])
+    pub(crate) fn read_u8(&mut self, what: &'static str) -> Result<u8, NavMeshError> {
+        Ok(self.read_array::<1>(what)?[0])
     }
 
-    pub(crate) fn u16(&mut self, what: &'static str) -> Result<u16, NavMeshError> {
-        Ok(u16::from_le_bytes(self.array(what)?))
+    pub(crate) fn read_u16(&mut self, what: &'static str) -> Result<u16, NavMeshError> {
+        Ok(u16::from_le_bytes(self.read_array(what)?))
     }
 
-    pub(crate) fn u32(&mut self, what: &'static str) -> Result<u32, NavMeshError> {
-        Ok(u32::from_le_bytes(self.array(what)?))
+    pub(crate) fn read_u32(&mut self, what: &'static str) -> Result<u32, NavMeshError> {
+        Ok(u32::from_le_bytes(self.read_array(what)?))
     }
 
-    pub(crate) fn i32(&mut self, what: &'static str) -> Result<i32, NavMeshError> {
-        Ok(i32::from_le_bytes(self.array(what)?))
+    pub(crate) fn read_i32(&mut self, what: &'static str) -> Result<i32, NavMeshError> {
+        Ok(i32::from_le_bytes(self.read_array(what)?))
     }
 
     /// Any 32-bit float: the caller checks whether it is finite.
-    pub(crate) fn f32(&mut self, what: &'static str) -> Result<f32, NavMeshError> {
-        Ok(f32::from_le_bytes(self.array(what)?))
+    pub(crate) fn read_f32(&mut self, what: &'static str) -> Result<f32, NavMeshError> {
+        Ok(f32::from_le_bytes(self.read_array(what)?))
     }
 
     /// A count; a negative one is an error.
-    pub(crate) fn count(&mut self, what: &'static str) -> Result<u32, NavMeshError> {
+    pub(crate) fn read_count(&mut self, what: &'static str) -> Result<u32, NavMeshError> {
         let offset = self.at;
-        let count = self.i32(what)?;
-        u32::try_from(count).map_err(|_| NavMeshError::value(offset, what, count, "a count of 0 or more"))
+        let count = self.read_i32(what)?;
+        u32::try_from(count).map_err(|_| NavMeshError::bad_value(offset, what, count, "a count of 0 or more"))
     }
 
     /// A number that must equal `expected`.
-    pub(crate) fn magic(&mut self, what: &'static str, expected: i32, hint: &str) -> Result<(), NavMeshError> {
+    pub(crate) fn expect_magic(&mut self, what: &'static str, expected: i32, hint: &str) -> Result<(), NavMeshError> {
         let offset = self.at;
-        let found = self.i32(what)?;
+        let found = self.read_i32(what)?;
         if found == expected {
             return Ok(());
         }
-        Err(NavMeshError::value(offset, what, format!("{found:#x}"), format!("{expected:#x}: {hint}")))
+        Err(NavMeshError::bad_value(offset, what, format!("{found:#x}"), format!("{expected:#x}: {hint}")))
     }
 
     /// `N` finite numbers of at most 1000 km.
-    pub(crate) fn place<const N: usize>(&mut self, what: &'static str) -> Result<[f32; N], NavMeshError> {
+    pub(crate) fn read_place<const N: usize>(&mut self, what: &'static str) -> Result<[f32; N], NavMeshError> {
         let mut place = [0.0; N];
         for number in &mut place {
             let offset = self.at;
-            *number = self.f32(what)?;
+            *number = self.read_f32(what)?;
             if !(number.is_finite() && number.abs() <= 1e6) {
-                return Err(NavMeshError::value(offset, what, *number, "metres within 1000 km of the origin"));
+                return Err(NavMeshError::bad_value(offset, what, *number, "metres within 1000 km of the origin"));
             }
         }
         Ok(place)

@@ -32,7 +32,7 @@ pub enum NavMeshError {
 }
 
 impl NavMeshError {
-    pub(crate) fn value(
+    pub(crate) fn bad_value(
         offset: usize,
         what: &'static str,
         found: impl std::fmt::Display,

@@ -1,16 +1,16 @@
 //! The first 100 bytes of a tile, `dtMeshHeader` (Detour, `DetourNavMesh.h`): its place, its agent and its counts.
 
-use super::{cursor::Cursor, error::NavMeshError};
+use super::{cursor::NavMeshCursor, error::NavMeshError};
 
 /// "DNAV", read as a little-endian number.
-const MAGIC: i32 = 0x444E_4156;
-const VERSION: i32 = 7;
+const TILE_MAGIC: i32 = 0x444E_4156;
+const TILE_VERSION: i32 = 7;
 /// Bytes of the header itself.
 pub(super) const HEADER_BYTES: u64 = 100;
 
 /// Where a tile lies, for which agent it was made, and how many items of each kind it has.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Header {
+pub(crate) struct TileHeader {
     /// Column, row and layer in the grid of tiles.
     pub(crate) place: [i32; 3],
     pub(crate) user_id: u32,
@@ -31,30 +31,30 @@ pub(crate) struct Header {
     pub(crate) bv_quant_factor: f32,
 }
 
-impl Header {
-    pub(super) fn read(cursor: &mut Cursor<'_>) -> Result<Self, NavMeshError> {
-        cursor.magic("a tile's magic number", MAGIC, "not a tile of Detour with 32 bit references")?;
-        cursor.magic("a tile's version", VERSION, "bake it again with a current Habitat")?;
+impl TileHeader {
+    pub(super) fn read(cursor: &mut NavMeshCursor<'_>) -> Result<Self, NavMeshError> {
+        cursor.expect_magic("a tile's magic number", TILE_MAGIC, "not a tile of Detour with 32 bit references")?;
+        cursor.expect_magic("a tile's version", TILE_VERSION, "bake it again with a current Habitat")?;
         let mut place = [0; 3];
         for number in &mut place {
-            *number = cursor.i32("a tile's place")?;
+            *number = cursor.read_i32("a tile's place")?;
         }
         Ok(Self {
             place,
-            user_id: cursor.u32("a tile's user id")?,
-            polys: cursor.count("a tile's number of polygons")?,
-            verts: cursor.count("a tile's number of vertices")?,
-            links: cursor.count("a tile's number of links")?,
-            detail_meshes: cursor.count("a tile's number of detail meshes")?,
-            detail_verts: cursor.count("a tile's number of detail vertices")?,
-            detail_tris: cursor.count("a tile's number of detail triangles")?,
-            bv_nodes: cursor.count("a tile's number of boxes")?,
-            off_mesh: cursor.count("a tile's number of off-mesh connections")?,
-            off_mesh_base: cursor.i32("a tile's first off-mesh polygon")?,
-            agent_m: cursor.place("a tile's agent")?,
-            low_m: cursor.place("a tile's bounds")?,
-            high_m: cursor.place("a tile's bounds")?,
-            bv_quant_factor: cursor.f32("a tile's quantisation")?,
+            user_id: cursor.read_u32("a tile's user id")?,
+            polys: cursor.read_count("a tile's number of polygons")?,
+            verts: cursor.read_count("a tile's number of vertices")?,
+            links: cursor.read_count("a tile's number of links")?,
+            detail_meshes: cursor.read_count("a tile's number of detail meshes")?,
+            detail_verts: cursor.read_count("a tile's number of detail vertices")?,
+            detail_tris: cursor.read_count("a tile's number of detail triangles")?,
+            bv_nodes: cursor.read_count("a tile's number of boxes")?,
+            off_mesh: cursor.read_count("a tile's number of off-mesh connections")?,
+            off_mesh_base: cursor.read_i32("a tile's first off-mesh polygon")?,
+            agent_m: cursor.read_place("a tile's agent")?,
+            low_m: cursor.read_place("a tile's bounds")?,
+            high_m: cursor.read_place("a tile's bounds")?,
+            bv_quant_factor: cursor.read_f32("a tile's quantisation")?,
         })
     }
 
@@ -75,8 +75,8 @@ impl Header {
 
     pub(super) fn write(&self, out: &mut Vec<u8>) {
         let mut put = |bytes: [u8; 4]| out.extend_from_slice(&bytes);
-        put(MAGIC.to_le_bytes());
-        put(VERSION.to_le_bytes());
+        put(TILE_MAGIC.to_le_bytes());
+        put(TILE_VERSION.to_le_bytes());
         self.place.iter().for_each(|number| put(number.to_le_bytes()));
         let counts = [
             self.user_id,

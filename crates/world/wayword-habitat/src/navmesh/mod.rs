@@ -15,32 +15,32 @@ mod tests;
 mod tile;
 
 pub use error::NavMeshError;
-pub(crate) use header::Header;
-pub(crate) use poly::{Behind, MAX_CORNERS, Poly};
+pub(crate) use header::TileHeader;
+pub(crate) use poly::{EdgeNeighbour, MAX_CORNERS, TilePolygon};
 pub use settings::NavMeshSettings;
-pub(crate) use tile::{BvNode, DetailMesh, Tile};
+pub(crate) use tile::{BvNode, DetailMesh, NavMeshTile};
 
-use cursor::Cursor;
+use cursor::NavMeshCursor;
 use header::HEADER_BYTES;
 
 /// "MSET", read as a little-endian number.
-const MAGIC: i32 = 0x4D53_4554;
+const FILE_MAGIC: i32 = 0x4D53_4554;
 
 /// A navmesh, as in its file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NavMesh {
     /// The grid of tiles (`dtNavMeshParams`).
-    pub(crate) grid: Grid,
+    pub(crate) grid: TileGrid,
     /// How it was baked; a version 1 file does not contain this.
     pub(crate) settings: Option<NavMeshSettings>,
-    pub(crate) tiles: Vec<Tile>,
+    pub(crate) tiles: Vec<NavMeshTile>,
     /// The bytes after the last tile; Habitat ignores them.
     rest: Vec<u8>,
 }
 
 /// The position and size of the tiles, and how many tiles and polygons there may be.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Grid {
+pub(crate) struct TileGrid {
     pub(crate) origin_m: [f32; 3],
     /// Width and height of a tile, metres.
     pub(crate) tile_m: [f32; 2],
@@ -50,7 +50,7 @@ pub(crate) struct Grid {
 
 impl NavMesh {
     /// A navmesh that was not read from a file.
-    pub(crate) fn new(grid: Grid, settings: Option<NavMeshSettings>, tiles: Vec<Tile>) -> Self {
+    pub(crate) fn new(grid: TileGrid, settings: Option<NavMeshSettings>, tiles: Vec<NavMeshTile>) -> Self {
         Self { grid, settings, tiles, rest: Vec::new() }
     }
 
@@ -59,31 +59,36 @@ impl NavMesh {
     /// # Errors
     /// [`NavMeshError`] names the byte, the value there, and what was expected.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, NavMeshError> {
-        let mut cursor = Cursor::new(bytes);
-        cursor.magic("the file's magic number", MAGIC, "not a navmesh of Habitat or Recast")?;
-        let version_at = cursor.at();
-        let version = cursor.i32("the file's version")?;
+        let mut cursor = NavMeshCursor::new(bytes);
+        cursor.expect_magic("the file's magic number", FILE_MAGIC, "not a navmesh of Habitat or Recast")?;
+        let version_at = cursor.byte_offset();
+        let version = cursor.read_i32("the file's version")?;
         if !(1..=2).contains(&version) {
-            return Err(NavMeshError::value(version_at, "the file's version", version, "1 (Recast) or 2 (Habitat)"));
+            return Err(NavMeshError::bad_value(
+                version_at,
+                "the file's version",
+                version,
+                "1 (Recast) or 2 (Habitat)",
+            ));
         }
-        let tiles_at = cursor.at();
-        let count = cursor.count("the number of tiles")?;
-        let grid = Grid::read(&mut cursor)?;
+        let tiles_at = cursor.byte_offset();
+        let count = cursor.read_count("the number of tiles")?;
+        let grid = TileGrid::read(&mut cursor)?;
         let settings = if version == 2 { Some(NavMeshSettings::read(&mut cursor)?) } else { None };
-        let room = cursor.left() as u64 / (8 + HEADER_BYTES);
+        let room = cursor.bytes_left() as u64 / (8 + HEADER_BYTES);
         if u64::from(count) > room {
             let expected = format!("at most {room}, because the file has no room for more");
-            return Err(NavMeshError::value(tiles_at, "the number of tiles", count, expected));
+            return Err(NavMeshError::bad_value(tiles_at, "the number of tiles", count, expected));
         }
         let tiles = (0..count).map(|_| read_tile(&mut cursor)).collect::<Result<_, _>>()?;
-        Ok(Self { grid, settings, tiles, rest: cursor.rest().to_vec() })
+        Ok(Self { grid, settings, tiles, rest: cursor.remaining_bytes().to_vec() })
     }
 
     /// The file's bytes. If the navmesh was read from a file, they are the same as in that file.
     #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut out = Vec::new();
-        out.extend_from_slice(&MAGIC.to_le_bytes());
+        out.extend_from_slice(&FILE_MAGIC.to_le_bytes());
         out.extend_from_slice(&i32::from(self.version()).to_le_bytes());
         out.extend_from_slice(&(self.tiles.len() as u32).to_le_bytes());
         self.grid.write(&mut out);
@@ -109,29 +114,29 @@ impl NavMesh {
 
     /// Number of polygons in all tiles.
     #[must_use]
-    pub fn polygons(&self) -> usize {
+    pub fn polygon_count(&self) -> usize {
         self.tiles.iter().map(|tile| tile.polys.len()).sum()
     }
 }
 
-fn read_tile(cursor: &mut Cursor<'_>) -> Result<Tile, NavMeshError> {
-    let reference = cursor.u32("a tile's reference")?;
-    let size_at = cursor.at();
-    let bytes = u64::from(cursor.count("a tile's size")?);
-    if bytes < HEADER_BYTES || bytes > cursor.left() as u64 {
-        let expected = format!("{HEADER_BYTES} to {}, the bytes that are left", cursor.left());
-        return Err(NavMeshError::value(size_at, "a tile's size", bytes, expected));
+fn read_tile(cursor: &mut NavMeshCursor<'_>) -> Result<NavMeshTile, NavMeshError> {
+    let reference = cursor.read_u32("a tile's reference")?;
+    let size_at = cursor.byte_offset();
+    let bytes = u64::from(cursor.read_count("a tile's size")?);
+    if bytes < HEADER_BYTES || bytes > cursor.bytes_left() as u64 {
+        let expected = format!("{HEADER_BYTES} to {}, the bytes that are left", cursor.bytes_left());
+        return Err(NavMeshError::bad_value(size_at, "a tile's size", bytes, expected));
     }
-    Tile::read(cursor, reference, bytes)
+    NavMeshTile::read(cursor, reference, bytes)
 }
 
-impl Grid {
-    fn read(cursor: &mut Cursor<'_>) -> Result<Self, NavMeshError> {
+impl TileGrid {
+    fn read(cursor: &mut NavMeshCursor<'_>) -> Result<Self, NavMeshError> {
         Ok(Self {
-            origin_m: cursor.place("the grid's origin")?,
-            tile_m: [cursor.f32("a tile's width")?, cursor.f32("a tile's height")?],
-            max_tiles: cursor.i32("the most tiles")?,
-            max_polys: cursor.i32("the most polygons")?,
+            origin_m: cursor.read_place("the grid's origin")?,
+            tile_m: [cursor.read_f32("a tile's width")?, cursor.read_f32("a tile's height")?],
+            max_tiles: cursor.read_i32("the most tiles")?,
+            max_polys: cursor.read_i32("the most polygons")?,
         })
     }
 

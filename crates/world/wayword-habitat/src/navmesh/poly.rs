@@ -1,15 +1,15 @@
 //! A polygon of a tile: `dtPoly`.
 
-use super::{cursor::Cursor, error::NavMeshError, header::Header};
+use super::{cursor::NavMeshCursor, error::NavMeshError, header::TileHeader};
 
 /// Most corners of a polygon.
 pub(crate) const MAX_CORNERS: usize = 6;
 /// This bit is set if an edge leads into another tile.
-const PORTAL: u16 = 0x8000;
+const PORTAL_BIT: u16 = 0x8000;
 
 /// The neighbour behind an edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Behind {
+pub(crate) enum EdgeNeighbour {
     /// None: the walkable ground ends here.
     Border,
     /// Another polygon of the tile, by its index.
@@ -20,7 +20,7 @@ pub(crate) enum Behind {
 
 /// A convex piece of ground, or an off-mesh connection.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Poly {
+pub(crate) struct TilePolygon {
     pub(crate) first_link: u32,
     pub(crate) verts: [u16; MAX_CORNERS],
     /// The neighbour behind the edge from corner i to the next, as in the file.
@@ -31,39 +31,44 @@ pub(crate) struct Poly {
     pub(crate) area_and_type: u8,
 }
 
-impl Poly {
-    pub(super) fn read(cursor: &mut Cursor<'_>, header: &Header) -> Result<Self, NavMeshError> {
-        let start = cursor.at();
-        let mut poly = Self { first_link: cursor.u32("a polygon's link")?, ..Self::default() };
+impl TilePolygon {
+    pub(super) fn read(cursor: &mut NavMeshCursor<'_>, header: &TileHeader) -> Result<Self, NavMeshError> {
+        let start = cursor.byte_offset();
+        let mut poly = Self { first_link: cursor.read_u32("a polygon's link")?, ..Self::default() };
         for vert in &mut poly.verts {
-            *vert = cursor.u16("a polygon's corner")?;
+            *vert = cursor.read_u16("a polygon's corner")?;
         }
         for nei in &mut poly.neis {
-            *nei = cursor.u16("a polygon's neighbour")?;
+            *nei = cursor.read_u16("a polygon's neighbour")?;
         }
-        poly.flags = cursor.u16("a polygon's flags")?;
-        poly.vert_count = cursor.u8("a polygon's number of corners")?;
-        poly.area_and_type = cursor.u8("a polygon's area")?;
-        poly.check(start, header)?;
+        poly.flags = cursor.read_u16("a polygon's flags")?;
+        poly.vert_count = cursor.read_u8("a polygon's number of corners")?;
+        poly.area_and_type = cursor.read_u8("a polygon's area")?;
+        poly.check_corners(start, header)?;
         Ok(poly)
     }
 
-    fn check(&self, start: usize, header: &Header) -> Result<(), NavMeshError> {
+    fn check_corners(&self, start: usize, header: &TileHeader) -> Result<(), NavMeshError> {
         let least = if self.is_ground() { 3 } else { 2 };
         if !(least..=MAX_CORNERS as u8).contains(&self.vert_count) {
             let expected = format!("{least} to {MAX_CORNERS}");
-            return Err(NavMeshError::value(start + 30, "a polygon's number of corners", self.vert_count, expected));
+            return Err(NavMeshError::bad_value(
+                start + 30,
+                "a polygon's number of corners",
+                self.vert_count,
+                expected,
+            ));
         }
         for (edge, vert) in self.corners().iter().enumerate() {
             if u32::from(*vert) >= header.verts {
                 let expected = format!("below {}", header.verts);
-                return Err(NavMeshError::value(start + 4 + 2 * edge, "a polygon's corner", vert, expected));
+                return Err(NavMeshError::bad_value(start + 4 + 2 * edge, "a polygon's corner", vert, expected));
             }
-            let behind = self.behind(edge);
-            if matches!(behind, Behind::Polygon(other) if other as u64 >= u64::from(header.polys)) {
+            let behind = self.neighbour_behind(edge);
+            if matches!(behind, EdgeNeighbour::Polygon(other) if other as u64 >= u64::from(header.polys)) {
                 let expected = format!("at most {}", header.polys);
                 let found = self.neis[edge];
-                return Err(NavMeshError::value(start + 16 + 2 * edge, "a polygon's neighbour", found, expected));
+                return Err(NavMeshError::bad_value(start + 16 + 2 * edge, "a polygon's neighbour", found, expected));
             }
         }
         Ok(())
@@ -80,18 +85,18 @@ impl Poly {
     }
 
     /// The neighbour behind the edge from corner `edge` to the next.
-    pub(crate) fn behind(&self, edge: usize) -> Behind {
+    pub(crate) fn neighbour_behind(&self, edge: usize) -> EdgeNeighbour {
         match self.neis.get(edge).copied().unwrap_or(0) {
-            0 => Behind::Border,
-            portal if portal & PORTAL != 0 => Behind::Portal((portal & 0xff) as u8),
-            polygon => Behind::Polygon(usize::from(polygon) - 1),
+            0 => EdgeNeighbour::Border,
+            portal if portal & PORTAL_BIT != 0 => EdgeNeighbour::Portal((portal & 0xff) as u8),
+            polygon => EdgeNeighbour::Polygon(usize::from(polygon) - 1),
         }
     }
 
     /// Makes an edge a portal into the neighbouring tile on a side.
     #[cfg(test)]
     pub(crate) fn open(&mut self, edge: usize, side: u8) {
-        self.neis[edge] = PORTAL | u16::from(side);
+        self.neis[edge] = PORTAL_BIT | u16::from(side);
     }
 
     pub(super) fn write(&self, out: &mut Vec<u8>) {

@@ -1,6 +1,6 @@
 //! The settings that a navmesh was baked with: 56 bytes of a version 2 file.
 
-use super::{cursor::Cursor, error::NavMeshError};
+use super::{cursor::NavMeshCursor, error::NavMeshError};
 
 /// Habitat's `NavMeshSettings` (habitat-sim 0.3.3, `PathFinder.h`), in the order of the file.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,13 +59,13 @@ impl Default for NavMeshSettings {
 }
 
 impl NavMeshSettings {
-    pub(super) fn read(cursor: &mut Cursor<'_>) -> Result<Self, NavMeshError> {
+    pub(super) fn read(cursor: &mut NavMeshCursor<'_>) -> Result<Self, NavMeshError> {
         let mut numbers = [0.0; 13];
         for number in &mut numbers {
-            *number = cursor.f32("a number of the settings")?;
+            *number = cursor.read_f32("a number of the settings")?;
         }
         let mut switches = [0; 4];
-        switches.copy_from_slice(cursor.take(4, "the switches of the settings")?);
+        switches.copy_from_slice(cursor.take_bytes(4, "the switches of the settings")?);
         let [
             cell_size_m,
             cell_height_m,

@@ -1,6 +1,6 @@
 //! Tests of the reader and the writer on a navmesh of two polygons, intact and damaged.
 
-use super::build::{Piece, Surface, single_tile};
+use super::build::{TilePiece, TileSurface, single_tile};
 use super::*;
 use proptest::prelude::*;
 
@@ -8,19 +8,19 @@ use proptest::prelude::*;
 fn two_squares() -> NavMesh {
     let verts =
         vec![[0.0, 0.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [1.0, 0.0, 0.0], [2.0, 0.0, 1.0], [2.0, 0.0, 0.0]];
-    let flat = Piece {
+    let flat = TilePiece {
         corners: vec![0, 1, 2, 3],
         neighbours: vec![0, 0, 2, 0],
         detail_tris: vec![[0, 1, 2, 0], [0, 2, 3, 0]],
-        ..Piece::default()
+        ..TilePiece::default()
     };
-    let raised = Piece {
+    let raised = TilePiece {
         corners: vec![3, 2, 4, 5],
         neighbours: vec![1, 0, 0, 0],
         detail_verts: vec![[1.5, 0.1, 0.5]],
         detail_tris: vec![[0, 1, 4, 0], [1, 2, 4, 0], [2, 3, 4, 0], [3, 0, 4, 0]],
     };
-    let surface = Surface { verts, pieces: vec![flat, raised], low_m: [0.0; 3], high_m: [2.0, 0.1, 1.0] };
+    let surface = TileSurface { verts, pieces: vec![flat, raised], low_m: [0.0; 3], high_m: [2.0, 0.1, 1.0] };
     let mut mesh = single_tile(&surface, NavMeshSettings::default());
     // Arbitrary bytes: a writer leaves the previous contents of its memory here.
     mesh.tiles[0].links = (0..12 * 8).map(|byte| byte as u8 ^ 0xa5).collect();
@@ -33,8 +33,8 @@ fn to_bytes_returns_the_bytes_that_were_read() {
     let mut bytes = two_squares().to_bytes();
     bytes.extend_from_slice(b"and more");
     let mesh = NavMesh::from_bytes(&bytes).unwrap();
-    assert_eq!(mesh.polygons(), 2);
-    assert_eq!(mesh.tiles[0].polys[0].behind(2), Behind::Polygon(1));
+    assert_eq!(mesh.polygon_count(), 2);
+    assert_eq!(mesh.tiles[0].polys[0].neighbour_behind(2), EdgeNeighbour::Polygon(1));
     assert_eq!(mesh.settings().unwrap().cell_size_m, 0.05);
     assert_eq!(mesh.to_bytes(), bytes);
 }
@@ -112,7 +112,7 @@ proptest! {
             prop_assert_eq!(mesh.to_bytes(), bytes);
             for tile in &mesh.tiles {
                 for poly in 0..tile.polys.len() {
-                    prop_assert!(tile.triangles(poly).iter().flatten().flatten().all(|number| number.is_finite()));
+                    prop_assert!(tile.polygon_triangles(poly).iter().flatten().flatten().all(|number| number.is_finite()));
                 }
             }
         }

@@ -1,6 +1,6 @@
 //! A tile of Detour: polygons with their neighbours and their surfaces.
 
-use super::{cursor::Cursor, error::NavMeshError, header::Header, poly::Poly};
+use super::{cursor::NavMeshCursor, error::NavMeshError, header::TileHeader, poly::TilePolygon};
 
 /// The triangles over one polygon (`dtPolyDetail`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,13 +25,13 @@ pub(crate) struct BvNode {
 
 /// All contents of a tile.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Tile {
+pub(crate) struct NavMeshTile {
     /// Detour's own number for the tile, as in the file.
     pub(crate) reference: u32,
-    pub(crate) header: Header,
+    pub(crate) header: TileHeader,
     /// Metres, y up.
     pub(crate) verts: Vec<[f32; 3]>,
-    pub(crate) polys: Vec<Poly>,
+    pub(crate) polys: Vec<TilePolygon>,
     /// 12 bytes each. Detour fills them when it loads a tile; on disk they are arbitrary.
     pub(crate) links: Vec<u8>,
     pub(crate) detail_meshes: Vec<DetailMesh>,
@@ -43,53 +43,54 @@ pub(crate) struct Tile {
     pub(crate) off_mesh: Vec<u8>,
 }
 
-impl Tile {
+impl NavMeshTile {
     /// Reads a tile of `bytes` bytes. The caller has checked that the cursor has them.
-    pub(super) fn read(cursor: &mut Cursor<'_>, reference: u32, bytes: u64) -> Result<Self, NavMeshError> {
-        let start = cursor.at();
-        let header = Header::read(cursor)?;
+    pub(super) fn read(cursor: &mut NavMeshCursor<'_>, reference: u32, bytes: u64) -> Result<Self, NavMeshError> {
+        let start = cursor.byte_offset();
+        let header = TileHeader::read(cursor)?;
         if header.tile_bytes() != bytes {
             let expected = format!("{bytes}, the tile's size: only tiles with 32 bit references can be read");
             let what = "the bytes that a tile's counts need";
-            return Err(NavMeshError::value(start, what, header.tile_bytes(), expected));
+            return Err(NavMeshError::bad_value(start, what, header.tile_bytes(), expected));
         }
         let mut tile = Self { reference, header, ..Self::default() };
         for _ in 0..header.verts {
-            tile.verts.push(cursor.place("a vertex")?);
+            tile.verts.push(cursor.read_place("a vertex")?);
         }
         for _ in 0..header.polys {
-            tile.polys.push(Poly::read(cursor, &header)?);
+            tile.polys.push(TilePolygon::read(cursor, &header)?);
         }
-        tile.links = cursor.take(12 * u64::from(header.links), "the links")?.to_vec();
+        tile.links = cursor.take_bytes(12 * u64::from(header.links), "the links")?.to_vec();
         tile.read_detail(cursor)?;
         for _ in 0..header.bv_nodes {
             let mut corners = [0; 6];
             for corner in &mut corners {
-                *corner = cursor.u16("a box")?;
+                *corner = cursor.read_u16("a box")?;
             }
             let [a, b, c, d, e, f] = corners;
-            tile.bv_nodes.push(BvNode { low: [a, b, c], high: [d, e, f], index: cursor.i32("a box's polygon")? });
+            tile.bv_nodes.push(BvNode { low: [a, b, c], high: [d, e, f], index: cursor.read_i32("a box's polygon")? });
         }
-        tile.off_mesh = cursor.take(36 * u64::from(header.off_mesh), "the off-mesh connections")?.to_vec();
+        tile.off_mesh = cursor.take_bytes(36 * u64::from(header.off_mesh), "the off-mesh connections")?.to_vec();
         Ok(tile)
     }
 
-    fn read_detail(&mut self, cursor: &mut Cursor<'_>) -> Result<(), NavMeshError> {
-        let meshes_at = cursor.at();
+    fn read_detail(&mut self, cursor: &mut NavMeshCursor<'_>) -> Result<(), NavMeshError> {
+        let meshes_at = cursor.byte_offset();
         for _ in 0..self.header.detail_meshes {
             self.detail_meshes.push(DetailMesh {
-                vert_base: cursor.u32("a detail mesh's first vertex")?,
-                tri_base: cursor.u32("a detail mesh's first triangle")?,
-                verts: cursor.u8("a detail mesh's number of vertices")?,
-                tris: cursor.u8("a detail mesh's number of triangles")?,
-                padding: cursor.u16("a detail mesh's padding")?.to_le_bytes(),
+                vert_base: cursor.read_u32("a detail mesh's first vertex")?,
+                tri_base: cursor.read_u32("a detail mesh's first triangle")?,
+                verts: cursor.read_u8("a detail mesh's number of vertices")?,
+                tris: cursor.read_u8("a detail mesh's number of triangles")?,
+                padding: cursor.read_u16("a detail mesh's padding")?.to_le_bytes(),
             });
         }
         for _ in 0..self.header.detail_verts {
-            self.detail_verts.push(cursor.place("a detail vertex")?);
+            self.detail_verts.push(cursor.read_place("a detail vertex")?);
         }
-        let tris_at = cursor.at();
-        for corners in cursor.take(4 * u64::from(self.header.detail_tris), "the detail triangles")?.as_chunks().0 {
+        let tris_at = cursor.byte_offset();
+        for corners in cursor.take_bytes(4 * u64::from(self.header.detail_tris), "the detail triangles")?.as_chunks().0
+        {
             self.detail_tris.push(*corners);
         }
         self.check_detail(meshes_at, tris_at)
@@ -101,7 +102,7 @@ impl Tile {
             let end = |base: u32, count: u8| u64::from(base) + u64::from(count);
             let within = |what, offset, end: u64, of: u32| {
                 let expected = format!("at most {of}");
-                if end <= u64::from(of) { Ok(()) } else { Err(NavMeshError::value(offset, what, end, expected)) }
+                if end <= u64::from(of) { Ok(()) } else { Err(NavMeshError::bad_value(offset, what, end, expected)) }
             };
             let offset = meshes_at + 12 * index;
             within(
@@ -122,7 +123,7 @@ impl Tile {
                 if let Some(corner) = triangle[..3].iter().find(|corner| u32::from(**corner) >= corners) {
                     let offset = tris_at + 4 * (first + at);
                     let expected = format!("below {corners}");
-                    return Err(NavMeshError::value(offset, "a detail triangle's corner", corner, expected));
+                    return Err(NavMeshError::bad_value(offset, "a detail triangle's corner", corner, expected));
                 }
             }
         }
@@ -130,7 +131,7 @@ impl Tile {
     }
 
     /// The triangles of a polygon's surface; a fan if there is no detail mesh.
-    pub(crate) fn triangles(&self, poly: usize) -> Vec<[[f32; 3]; 3]> {
+    pub(crate) fn polygon_triangles(&self, poly: usize) -> Vec<[[f32; 3]; 3]> {
         let Some(polygon) = self.polys.get(poly) else { return Vec::new() };
         let corners = polygon.corners();
         let own = |corner: usize| self.verts[usize::from(corners[corner])];

@@ -2,19 +2,19 @@
 
 use super::{
     files::SceneFiles,
-    fit::{self, Misfit},
+    fit::{self, GraphMisfit},
     graph,
 };
 use crate::{
-    columns::Columns,
-    scene::{Model, Stage},
+    columns::TriangleColumns,
+    scene::{HabitatStage, SceneModel},
     semantics::{self, SemanticFiles},
 };
-use wayword_core::{Condition, Fit, GraphSize, Lack, PlatformError, RoomNames, SceneId};
+use wayword_core::{GraphFit, GraphSize, PlatformError, RoomNames, SceneCondition, SceneId, SceneLack};
 
 /// Reads a scene's files without decoding its pictures, and reports what they offer and which faults they have.
-pub(super) fn examine(id: &SceneId, files: &SceneFiles) -> Result<Condition, PlatformError> {
-    let mut condition = Condition {
+pub(super) fn examine_scene(id: &SceneId, files: &SceneFiles) -> Result<SceneCondition, PlatformError> {
+    let mut condition = SceneCondition {
         scene: id.clone(),
         has_pictures: false,
         graph: None,
@@ -25,49 +25,50 @@ pub(super) fn examine(id: &SceneId, files: &SceneFiles) -> Result<Condition, Pla
         lacks: Vec::new(),
         unusable: None,
     };
-    match fill(&mut condition, files) {
+    match fill_condition(&mut condition, files) {
         Ok(()) => {}
         Err(error @ PlatformError::Lost { .. }) => return Err(error),
         Err(PlatformError::File { file, reason, hint }) => {
-            condition.unusable = Some(Lack { what: format!("{}: {reason}", file.display()), hint: hint.to_owned() });
+            condition.unusable =
+                Some(SceneLack { what: format!("{}: {reason}", file.display()), hint: hint.to_owned() });
         }
-        Err(other) => condition.unusable = Some(Lack { what: other.to_string(), hint: String::new() }),
+        Err(other) => condition.unusable = Some(SceneLack { what: other.to_string(), hint: String::new() }),
     }
     Ok(condition)
 }
 
 /// Fills in the findings, up to the first file that cannot be used.
-fn fill(condition: &mut Condition, files: &SceneFiles) -> Result<(), PlatformError> {
-    let stage = Stage::of(&files.stage)?;
-    let model = Model::shape(&stage.asset, stage.habitat_from_asset)?;
+fn fill_condition(condition: &mut SceneCondition, files: &SceneFiles) -> Result<(), PlatformError> {
+    let stage = HabitatStage::from_file(&files.stage)?;
+    let model = SceneModel::read_shape(&stage.asset, stage.habitat_from_asset)?;
     condition.has_pictures = true;
     match &files.graph {
         Some(file) => {
-            let connectivity = graph::connectivity(file)?;
-            let built = graph::build(file, &connectivity)?;
+            let connectivity = graph::read_connectivity(file)?;
+            let built = graph::build_graph(file, &connectivity)?;
             let edges = built.edges().count();
             condition.graph = Some(GraphSize { viewpoints: built.len(), edges });
-            let storeys = built.viewpoints().filter_map(|viewpoint| built.level(viewpoint)).max();
+            let storeys = built.viewpoints().filter_map(|viewpoint| built.level_of(viewpoint)).max();
             condition.storeys = storeys;
-            let judged = fit::judge(&Columns::with_walls(model.triangles()), &connectivity);
+            let judged = fit::judge_fit(&TriangleColumns::with_walls(model.triangles()), &connectivity);
             condition.fit = Some(fit_of(&judged));
-            condition.unusable = judged.err().map(|Misfit { reason, hint, .. }| Lack {
+            condition.unusable = judged.err().map(|GraphMisfit { reason, hint, .. }| SceneLack {
                 what: format!("{}: {reason}", file.display()),
                 hint: hint.to_owned(),
             });
         }
-        None if files.navmesh(&stage).is_none() => condition.lacks.push(Lack {
+        None if files.navmesh_file(&stage).is_none() => condition.lacks.push(SceneLack {
             what: "no navmesh beside it, so one is baked from the mesh".to_owned(),
             hint: "put NAME.navmesh beside the scene to walk where Habitat walks".to_owned(),
         }),
         None => {}
     }
     drop(model);
-    let semantics = files.semantics(&stage);
-    condition.rooms = semantics::check(&semantics, stage.habitat_from_asset)?;
+    let semantics = files.semantic_files(&stage);
+    condition.rooms = semantics::check_semantics(&semantics, stage.habitat_from_asset)?;
     condition.has_labels = semantics != SemanticFiles::default();
     if !condition.has_labels {
-        condition.lacks.push(Lack {
+        condition.lacks.push(SceneLack {
             what: "no labels and no rooms: there are no semantic files beside it".to_owned(),
             hint: "put NAME.semantic.glb with NAME.semantic.txt, or NAME_semantic.ply with NAME.house, beside the \
                    scene where its dataset has them, or let a model see: --see PROVIDER/MODEL"
@@ -77,7 +78,7 @@ fn fill(condition: &mut Condition, files: &SceneFiles) -> Result<(), PlatformErr
     Ok(())
 }
 
-fn fit_of(judged: &Result<Fit, Misfit>) -> Fit {
+fn fit_of(judged: &Result<GraphFit, GraphMisfit>) -> GraphFit {
     match judged {
         Ok(fit) => *fit,
         Err(misfit) => misfit.fit,

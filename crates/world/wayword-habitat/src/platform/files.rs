@@ -2,7 +2,7 @@
 
 use crate::{
     fault::FileError,
-    scene::{Stage, files_beside, stem},
+    scene::{HabitatStage, files_beside, scene_stem},
     semantics::SemanticFiles,
 };
 use std::{
@@ -12,10 +12,10 @@ use std::{
 use wayword_core::SceneId;
 
 /// Depth of nested folders that is searched.
-const DEPTH: usize = 4;
+const MAX_FOLDER_DEPTH: usize = 4;
 /// Most files and folders that are examined.
 pub(super) const MAX_ENTRIES: usize = 200_000;
-const HINT: &str = "give a scene's .glb file, or a folder of scenes laid out as in Habitat's datasets";
+const DATA_HINT: &str = "give a scene's .glb file, or a folder of scenes laid out as in Habitat's datasets";
 
 /// The files of one scene.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,18 +28,18 @@ pub(super) struct SceneFiles {
 
 /// Every scene at a path, which is a file or a folder. The id is the file's name without the ending for its format; if
 /// two are equal, the folder's name is put before it.
-pub(super) fn scenes(place: &Path) -> Result<BTreeMap<SceneId, SceneFiles>, FileError> {
+pub(super) fn find_scenes(place: &Path) -> Result<BTreeMap<SceneId, SceneFiles>, FileError> {
     let mut files = Vec::new();
     if place.is_dir() {
-        collect(place, DEPTH, &mut files)?;
+        collect_files(place, MAX_FOLDER_DEPTH, &mut files)?;
     } else {
         files.push(place.to_owned());
     }
     let mut by_stem: BTreeMap<(PathBuf, String), (u8, PathBuf)> = BTreeMap::new();
     for file in files {
         let name = file.file_name().and_then(|name| name.to_str()).unwrap_or_default();
-        let Some(rank) = rank(name) else { continue };
-        let key = (file.parent().unwrap_or(Path::new("")).to_owned(), stem(name).to_owned());
+        let Some(rank) = stage_rank(name) else { continue };
+        let key = (file.parent().unwrap_or(Path::new("")).to_owned(), scene_stem(name).to_owned());
         let known = by_stem.entry(key).or_insert_with(|| (rank, file.clone()));
         if rank < known.0 {
             *known = (rank, file);
@@ -55,13 +55,13 @@ pub(super) fn scenes(place: &Path) -> Result<BTreeMap<SceneId, SceneFiles>, File
         }
     }
     if scenes.is_empty() {
-        return Err(FileError::new(place, "contains no scene", HINT));
+        return Err(FileError::new(place, "contains no scene", DATA_HINT));
     }
     Ok(scenes)
 }
 
 /// How well a file serves as a stage: 0 is the best, and `None` means that it is no stage.
-fn rank(name: &str) -> Option<u8> {
+fn stage_rank(name: &str) -> Option<u8> {
     let endings = [".stage_config.json", ".basis.glb", ".glb", ".gltf"];
     let rank = endings.iter().position(|ending| name.ends_with(ending))? as u8;
     (!name.contains(".semantic.")).then_some(rank)
@@ -71,8 +71,8 @@ fn is_gltf(file: &Path) -> bool {
     file.extension().is_some_and(|ending| ending == "glb" || ending == "gltf")
 }
 
-fn collect(folder: &Path, depth: usize, files: &mut Vec<PathBuf>) -> Result<(), FileError> {
-    let wrong = |error: std::io::Error| FileError::new(folder, error.to_string(), HINT);
+fn collect_files(folder: &Path, depth: usize, files: &mut Vec<PathBuf>) -> Result<(), FileError> {
+    let wrong = |error: std::io::Error| FileError::new(folder, error.to_string(), DATA_HINT);
     let mut entries = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(wrong)?.take(MAX_ENTRIES) {
         entries.push(entry.map_err(wrong)?.path());
@@ -85,7 +85,7 @@ fn collect(folder: &Path, depth: usize, files: &mut Vec<PathBuf>) -> Result<(), 
         if !entry.is_dir() {
             files.push(entry);
         } else if depth > 0 {
-            collect(&entry, depth - 1, files)?;
+            collect_files(&entry, depth - 1, files)?;
         }
     }
     Ok(())
@@ -93,22 +93,22 @@ fn collect(folder: &Path, depth: usize, files: &mut Vec<PathBuf>) -> Result<(), 
 
 impl SceneFiles {
     /// The navmesh beside the scene.
-    pub(super) fn navmesh(&self, stage: &Stage) -> Option<PathBuf> {
-        let own = self.beside(&[".basis.navmesh", ".navmesh"]);
+    pub(super) fn navmesh_file(&self, stage: &HabitatStage) -> Option<PathBuf> {
+        let own = self.sibling_files(&[".basis.navmesh", ".navmesh"]);
         stage.navmesh.iter().chain(&own).find(|file| file.is_file()).cloned()
     }
 
     /// The file that shows where one can walk: the viewpoint graph, or else the navmesh.
-    fn ways(&self, stage: &Stage) -> Option<PathBuf> {
-        self.graph.clone().or_else(|| self.navmesh(stage))
+    fn ways_file(&self, stage: &HabitatStage) -> Option<PathBuf> {
+        self.graph.clone().or_else(|| self.navmesh_file(stage))
     }
 
     /// Every file that the scene is read from, sorted. It includes the files to which its GLB or glTF files refer.
-    pub(super) fn all(&self, stage: &Stage) -> Vec<PathBuf> {
-        let SemanticFiles { painted, numbered } = self.semantics(stage);
+    pub(super) fn all_files(&self, stage: &HabitatStage) -> Vec<PathBuf> {
+        let SemanticFiles { painted, numbered } = self.semantic_files(stage);
         let pairs = painted.into_iter().chain(numbered).flat_map(|(mesh, names)| [mesh, names]);
         let mut all: Vec<PathBuf> =
-            [self.stage.clone(), stage.asset.clone()].into_iter().chain(self.ways(stage)).chain(pairs).collect();
+            [self.stage.clone(), stage.asset.clone()].into_iter().chain(self.ways_file(stage)).chain(pairs).collect();
         let named: Vec<PathBuf> = all.iter().filter(|file| is_gltf(file)).flat_map(|file| files_beside(file)).collect();
         all.extend(named);
         all.sort();
@@ -117,8 +117,8 @@ impl SceneFiles {
     }
 
     /// The semantic files beside the scene.
-    pub(super) fn semantics(&self, stage: &Stage) -> SemanticFiles {
-        let there = |ending: &str| self.beside(&[ending]).into_iter().find(|file| file.is_file());
+    pub(super) fn semantic_files(&self, stage: &HabitatStage) -> SemanticFiles {
+        let there = |ending: &str| self.sibling_files(&[ending]).into_iter().find(|file| file.is_file());
         let mesh = stage.semantics.clone().filter(|file| file.is_file()).or_else(|| there(".semantic.glb"));
         SemanticFiles {
             painted: mesh.zip(there(".semantic.txt")),
@@ -126,9 +126,9 @@ impl SceneFiles {
         }
     }
 
-    fn beside(&self, endings: &[&str]) -> Vec<PathBuf> {
+    fn sibling_files(&self, endings: &[&str]) -> Vec<PathBuf> {
         let name = self.stage.file_name().and_then(|name| name.to_str()).unwrap_or_default();
-        endings.iter().map(|ending| self.stage.with_file_name(format!("{}{ending}", stem(name)))).collect()
+        endings.iter().map(|ending| self.stage.with_file_name(format!("{}{ending}", scene_stem(name)))).collect()
     }
 }
 
@@ -155,15 +155,15 @@ mod tests {
             std::fs::create_dir_all(file.parent().unwrap()).unwrap();
             std::fs::write(file, "").unwrap();
         }
-        let scenes = scenes(folder.path()).unwrap();
+        let scenes = find_scenes(folder.path()).unwrap();
         assert_eq!(scenes.keys().map(SceneId::as_str).collect::<Vec<_>>(), ["a", "b", "other.b"]);
         let files = &scenes[&SceneId::new("a").unwrap()];
         assert!(files.stage.ends_with("a.basis.glb"));
-        let stage = Stage::of(&files.stage).unwrap();
-        assert!(files.navmesh(&stage).unwrap().ends_with("a.basis.navmesh"));
-        assert!(files.semantics(&stage).painted.unwrap().1.ends_with("a.semantic.txt"));
+        let stage = HabitatStage::from_file(&files.stage).unwrap();
+        assert!(files.navmesh_file(&stage).unwrap().ends_with("a.basis.navmesh"));
+        assert!(files.semantic_files(&stage).painted.unwrap().1.ends_with("a.semantic.txt"));
         let matterport = &scenes[&SceneId::new("b").unwrap()];
-        assert!(matterport.semantics(&Stage::of(&matterport.stage).unwrap()).numbered.is_some());
+        assert!(matterport.semantic_files(&HabitatStage::from_file(&matterport.stage).unwrap()).numbered.is_some());
     }
 
     #[test]
@@ -182,7 +182,8 @@ mod tests {
         for (name, bytes) in [("yard.gltf", document.to_string().into_bytes()), ("yard.glb", glb)] {
             let file = place.join(name);
             std::fs::write(&file, bytes).unwrap();
-            let all = SceneFiles { stage: file.clone(), graph: None }.all(&Stage::of(&file).unwrap());
+            let all =
+                SceneFiles { stage: file.clone(), graph: None }.all_files(&HabitatStage::from_file(&file).unwrap());
             assert_eq!(all, [place.join("paint/a.png"), place.join("yard walls.bin"), file]);
             std::fs::remove_file(place.join(name)).unwrap();
         }
@@ -191,6 +192,6 @@ mod tests {
     #[test]
     fn a_folder_without_scenes_is_refused() {
         let folder = tempfile::tempdir().unwrap();
-        assert!(scenes(folder.path()).unwrap_err().to_string().contains("contains no scene"));
+        assert!(find_scenes(folder.path()).unwrap_err().to_string().contains("contains no scene"));
     }
 }

@@ -1,9 +1,9 @@
 //! Checks whether a viewpoint graph lies in its scene: eyes are over a floor, and edges do not cross walls. If a graph
 //! fits in other axes (z and y swapped, mirrored, in centimetres), the error names the mistake and how to correct it.
 
-use crate::columns::Columns;
-use wayword_core::{DVec3, Fit};
-use wayword_world::connectivity::{Connectivity, Viewpoint};
+use crate::columns::TriangleColumns;
+use wayword_core::{DVec3, GraphFit};
+use wayword_world::connectivity::{ConnectivityGraph, PanoramaViewpoint};
 
 /// Distance from an eye down to its floor, metres: from a robot's camera to one on a tall stand.
 const FLOOR_M: std::ops::RangeInclusive<f64> = 0.3..=2.5;
@@ -18,13 +18,13 @@ const ON_FLOOR_M: f64 = 0.3;
 /// Most edges that are examined, spread over the graph.
 const MOST_EDGES: usize = 20_000;
 /// Most tests of a triangle for one graph: about a second.
-const BUDGET: u64 = 200_000_000;
+const TRIANGLE_BUDGET: u64 = 200_000_000;
 
-const BELONGS: &str =
+const OWN_GRAPH_HINT: &str =
     "give this scene's own graph, with poses in metres and in the frame of the scan, z up, as in Matterport3D";
 
 /// Axes, or a height, in which viewpoints are written by mistake.
-struct Frame {
+struct MistakenAxes {
     /// The mistake, as the end of a sentence about the viewpoints.
     told: &'static str,
     hint: &'static str,
@@ -34,71 +34,71 @@ struct Frame {
 }
 
 /// The right axes: those of the scan.
-const RIGHT: Frame = Frame { told: "fit", hint: "", place: |at| at, lies_on_floor: false };
+const SCAN_AXES: MistakenAxes = MistakenAxes { told: "fit", hint: "", place: |at| at, lies_on_floor: false };
 
 /// The known mistakes, the most usual first.
-const FRAMES: [Frame; 11] = [
-    Frame {
+const MISTAKEN_AXES: [MistakenAxes; 11] = [
+    MistakenAxes {
         told: "have y up, as in Habitat",
         hint: "write each pose again, z up: pose[7] becomes -pose[11], and pose[11] becomes the old pose[7]",
         place: |at| DVec3::new(at.x, -at.z, at.y),
         lies_on_floor: false,
     },
-    Frame {
+    MistakenAxes {
         told: "have y up, as in Habitat, and lie on the floor",
         hint: "write each pose again, z up: pose[7] becomes -pose[11], and pose[11] becomes the old pose[7] + height",
         place: |at| DVec3::new(at.x, -at.z, at.y),
         lies_on_floor: true,
     },
-    Frame {
+    MistakenAxes {
         told: "lie on the floor, not at the eye's height",
         hint: "write each pose again: pose[11] becomes pose[11] + height",
         place: |at| at,
         lies_on_floor: true,
     },
-    Frame {
+    MistakenAxes {
         told: "have y and z swapped",
         hint: "write each pose again: swap pose[7] and pose[11]",
         place: |at| DVec3::new(at.x, at.z, at.y),
         lies_on_floor: false,
     },
-    Frame {
+    MistakenAxes {
         told: "have x and y swapped",
         hint: "write each pose again: swap pose[3] and pose[7]",
         place: |at| DVec3::new(at.y, at.x, at.z),
         lies_on_floor: false,
     },
-    Frame {
+    MistakenAxes {
         told: "are mirrored along x",
         hint: "write each pose again: pose[3] becomes -pose[3]",
         place: |at| DVec3::new(-at.x, at.y, at.z),
         lies_on_floor: false,
     },
-    Frame {
+    MistakenAxes {
         told: "are mirrored along y",
         hint: "write each pose again: pose[7] becomes -pose[7]",
         place: |at| DVec3::new(at.x, -at.y, at.z),
         lies_on_floor: false,
     },
-    Frame {
+    MistakenAxes {
         told: "are turned by half a turn",
         hint: "write each pose again: pose[3] becomes -pose[3], and pose[7] becomes -pose[7]",
         place: |at| DVec3::new(-at.x, -at.y, at.z),
         lies_on_floor: false,
     },
-    Frame {
+    MistakenAxes {
         told: "are turned by a quarter to the right",
         hint: "write each pose again: pose[3] becomes -pose[7], and pose[7] becomes the old pose[3]",
         place: |at| DVec3::new(-at.y, at.x, at.z),
         lies_on_floor: false,
     },
-    Frame {
+    MistakenAxes {
         told: "are turned by a quarter to the left",
         hint: "write each pose again: pose[3] becomes pose[7], and pose[7] becomes the old -pose[3]",
         place: |at| DVec3::new(at.y, -at.x, at.z),
         lies_on_floor: false,
     },
-    Frame {
+    MistakenAxes {
         told: "are in centimetres",
         hint: "write each pose again, in metres: divide pose[3], pose[7] and pose[11] by 100",
         place: |at| at / 100.0,
@@ -108,25 +108,25 @@ const FRAMES: [Frame; 11] = [
 
 /// A graph that does not lie in its scene.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Misfit {
-    pub(super) fit: Fit,
+pub(super) struct GraphMisfit {
+    pub(super) fit: GraphFit,
     /// The fault of the graph, as a sentence.
     pub(super) reason: String,
     pub(super) hint: &'static str,
 }
 
 /// Judges how a graph lies in its scene. `columns` must include the scene's walls.
-pub(super) fn judge(columns: &Columns, graph: &Connectivity) -> Result<Fit, Misfit> {
-    let fit = of(columns, graph, &RIGHT);
+pub(super) fn judge_fit(columns: &TriangleColumns, graph: &ConnectivityGraph) -> Result<GraphFit, GraphMisfit> {
+    let fit = fit_in_axes(columns, graph, &SCAN_AXES);
     if is_plausible(&fit) {
         return Ok(fit);
     }
     let refused =
-        |told: &str, hint| Misfit { fit, reason: format!("the viewpoints of this graph {told}: {fit}"), hint };
+        |told: &str, hint| GraphMisfit { fit, reason: format!("the viewpoints of this graph {told}: {fit}"), hint };
     if fit.viewpoints == 0 {
         return Err(refused("are none that is included", "give this scene a graph with included viewpoints"));
     }
-    let others = FRAMES.iter().map(|frame| (of(columns, graph, frame), frame));
+    let others = MISTAKEN_AXES.iter().map(|frame| (fit_in_axes(columns, graph, frame), frame));
     let fitting = others.filter(|(fit, _)| is_plausible(fit));
     // Of several that fit equally well, the most usual one.
     match fitting.min_by_key(|(fit, _)| (fit.through_walls, fit.viewpoints - fit.over_floor)) {
@@ -137,12 +137,12 @@ pub(super) fn judge(columns: &Columns, graph: &Connectivity) -> Result<Fit, Misf
                 100.0 * LEAST_OVER_FLOOR,
                 100.0 * MOST_THROUGH_WALLS
             );
-            Err(refused(&expected, BELONGS))
+            Err(refused(&expected, OWN_GRAPH_HINT))
         }
     }
 }
 
-fn is_plausible(fit: &Fit) -> bool {
+fn is_plausible(fit: &GraphFit) -> bool {
     let (viewpoints, edges) = (fit.viewpoints as f64, fit.edges as f64);
     fit.viewpoints > 0
         && fit.over_floor as f64 >= LEAST_OVER_FLOOR * viewpoints
@@ -150,23 +150,24 @@ fn is_plausible(fit: &Fit) -> bool {
 }
 
 /// The figures of a graph if its viewpoints are read in these axes.
-fn of(columns: &Columns, graph: &Connectivity, frame: &Frame) -> Fit {
-    let eye = |at: &Viewpoint| {
+fn fit_in_axes(columns: &TriangleColumns, graph: &ConnectivityGraph, frame: &MistakenAxes) -> GraphFit {
+    let eye = |at: &PanoramaViewpoint| {
         let place = (frame.place)(at.position);
         if frame.lies_on_floor { place + DVec3::Z * at.height_m } else { place }
     };
     let eyes: Vec<DVec3> = graph.viewpoints.iter().map(eye).collect();
-    let stands = |(eye, at): &(&DVec3, &Viewpoint)| {
+    let stands = |(eye, at): &(&DVec3, &PanoramaViewpoint)| {
         let is_floor = |drop_m: f64| !frame.lies_on_floor || (drop_m - at.height_m).abs() <= ON_FLOOR_M;
         columns.drop_m(**eye).is_some_and(|drop_m| FLOOR_M.contains(&drop_m) && is_floor(drop_m))
     };
     let mut pairs: Vec<(usize, usize)> = graph.edges.iter().map(|(a, b)| (*a.min(b), *a.max(b))).collect();
     pairs.sort_unstable();
     pairs.dedup();
-    let (mut budget, mut fit) = (BUDGET, Fit { viewpoints: eyes.len(), over_floor: 0, edges: 0, through_walls: 0 });
+    let (mut budget, mut fit) =
+        (TRIANGLE_BUDGET, GraphFit { viewpoints: eyes.len(), over_floor: 0, edges: 0, through_walls: 0 });
     fit.over_floor = eyes.iter().zip(&graph.viewpoints).filter(stands).count();
     // The budget may run out early, so the edges are taken in an order that is spread over the graph.
-    for (a, b) in spread(&pairs) {
+    for (a, b) in spread_pairs(&pairs) {
         if budget == 0 {
             break;
         }
@@ -179,11 +180,11 @@ fn of(columns: &Columns, graph: &Connectivity, frame: &Frame) -> Fit {
 }
 
 /// At most [`MOST_EDGES`] of the pairs, in an order that jumps through all of them.
-fn spread(pairs: &[(usize, usize)]) -> impl Iterator<Item = (usize, usize)> {
+fn spread_pairs(pairs: &[(usize, usize)]) -> impl Iterator<Item = (usize, usize)> {
     /// Number of rounds; each of them goes through the whole list.
-    const ROUNDS: usize = 16;
+    const SPREAD_ROUNDS: usize = 16;
     let step = pairs.len().div_ceil(MOST_EDGES).max(1);
-    (0..ROUNDS).flat_map(move |round| pairs.iter().copied().skip(round * step).step_by(ROUNDS * step))
+    (0..SPREAD_ROUNDS).flat_map(move |round| pairs.iter().copied().skip(round * step).step_by(SPREAD_ROUNDS * step))
 }
 
 #[cfg(test)]
@@ -200,7 +201,7 @@ mod tests {
 
     /// An L of two rooms, away from the origin: one of 8 x 4 m, and north of its west end one of 3 x 6 m; a doorway of
     /// 1 m joins them. Floors, ceilings at 2.6 m, walls.
-    fn flat() -> Columns {
+    fn flat() -> TriangleColumns {
         let mut out = Vec::new();
         for z in [0.0, 2.6] {
             quad(&mut out, [[12.0, 1.0, z], [20.0, 1.0, z], [20.0, 5.0, z], [12.0, 5.0, z]]);
@@ -218,23 +219,23 @@ mod tests {
         for ([ax, ay], [bx, by]) in walls {
             quad(&mut out, [[ax, ay, 0.0], [bx, by, 0.0], [bx, by, 2.6], [ax, ay, 2.6]]);
         }
-        Columns::with_walls(out.into_iter())
+        TriangleColumns::with_walls(out.into_iter())
     }
 
     /// A row through both rooms, joined through the doorway.
-    fn graph() -> Connectivity {
+    fn graph() -> ConnectivityGraph {
         let places = [[19.0, 3.0], [17.0, 3.0], [15.0, 3.0], [13.5, 3.5], [13.5, 6.5], [13.5, 8.5], [13.5, 10.0]];
-        let viewpoint = |(at, [x, y]): (usize, &[f64; 2])| Viewpoint {
+        let viewpoint = |(at, [x, y]): (usize, &[f64; 2])| PanoramaViewpoint {
             id: ViewpointId::new(format!("v{at}")).unwrap(),
             position: DVec3::new(*x, *y, 1.5),
             height_m: 1.5,
             world_from_skybox: DMat3::IDENTITY,
         };
         let edges = (1..places.len()).flat_map(|at| [(at - 1, at), (at, at - 1)]).collect();
-        Connectivity { viewpoints: places.iter().enumerate().map(viewpoint).collect(), edges }
+        ConnectivityGraph { viewpoints: places.iter().enumerate().map(viewpoint).collect(), edges }
     }
 
-    fn moved(place: impl Fn(DVec3) -> DVec3) -> Connectivity {
+    fn moved(place: impl Fn(DVec3) -> DVec3) -> ConnectivityGraph {
         let mut graph = graph();
         graph.viewpoints.iter_mut().for_each(|viewpoint| viewpoint.position = place(viewpoint.position));
         graph
@@ -242,8 +243,8 @@ mod tests {
 
     #[test]
     fn a_graph_of_its_own_scene_fits() {
-        let fit = judge(&flat(), &graph()).unwrap();
-        assert_eq!(fit, Fit { viewpoints: 7, over_floor: 7, edges: 6, through_walls: 0 });
+        let fit = judge_fit(&flat(), &graph()).unwrap();
+        assert_eq!(fit, GraphFit { viewpoints: 7, over_floor: 7, edges: 6, through_walls: 0 });
     }
 
     #[test]
@@ -262,13 +263,13 @@ mod tests {
             ("are turned by a quarter to the left:", |p| DVec3::new(-p.y, p.x, p.z), "pose[3] becomes pose[7]"),
             ("are in centimetres:", |p| 100.0 * p, "divide"),
         ];
-        assert_eq!(FRAMES.len(), wrongs.len());
+        assert_eq!(MISTAKEN_AXES.len(), wrongs.len());
         for (told, place, hint) in wrongs {
-            let misfit = judge(&flat(), &moved(place)).unwrap_err();
+            let misfit = judge_fit(&flat(), &moved(place)).unwrap_err();
             assert!(misfit.reason.contains(&format!("the viewpoints of this graph {told}")), "{told}: {misfit:?}");
             assert!(misfit.hint.contains(hint), "{told}: {misfit:?}");
         }
-        let elsewhere = judge(&flat(), &moved(|place| place + DVec3::new(40.0, 3.0, 9.0))).unwrap_err();
+        let elsewhere = judge_fit(&flat(), &moved(|place| place + DVec3::new(40.0, 3.0, 9.0))).unwrap_err();
         assert!(elsewhere.reason.contains("do not lie in this scene (expected: at least 90 %"), "{elsewhere:?}");
         assert!(elsewhere.reason.ends_with("0 of 7 viewpoints stand over a floor, 0 of 6 edges cross a wall"));
     }
@@ -278,22 +279,22 @@ mod tests {
         let mut graph = graph();
         // From the large room through its north wall into the other one.
         graph.edges.extend([(2, 5), (5, 2)]);
-        let misfit = judge(&flat(), &graph).unwrap_err();
+        let misfit = judge_fit(&flat(), &graph).unwrap_err();
         assert_eq!((misfit.fit.edges, misfit.fit.through_walls), (7, 1));
         assert!(misfit.reason.contains("do not lie in this scene"), "{misfit:?}");
         // One among a hundred edges in the open is tolerated.
         let copies = 20;
         for copy in 1..=copies {
             let offset = graph.viewpoints.len();
-            let place = |viewpoint: &Viewpoint| Viewpoint {
+            let place = |viewpoint: &PanoramaViewpoint| PanoramaViewpoint {
                 id: ViewpointId::new(format!("{}-{copy}", viewpoint.id)).unwrap(),
                 ..viewpoint.clone()
             };
-            let row: Vec<Viewpoint> = graph.viewpoints[..7].iter().map(place).collect();
+            let row: Vec<PanoramaViewpoint> = graph.viewpoints[..7].iter().map(place).collect();
             graph.viewpoints.extend(row);
             graph.edges.extend((1..7).map(|at| (offset + at - 1, offset + at)));
         }
-        let fit = judge(&flat(), &graph).unwrap();
+        let fit = judge_fit(&flat(), &graph).unwrap();
         assert_eq!((fit.edges, fit.through_walls), (7 + 6 * copies, 1));
     }
 
@@ -302,13 +303,13 @@ mod tests {
         let mut out = Vec::new();
         quad(&mut out, [[10.0, 0.0, 0.0], [20.0, 0.0, 0.0], [20.0, 12.0, 0.0], [10.0, 12.0, 0.0]]);
         quad(&mut out, [[18.0, 2.0, 1.3], [18.0, 4.0, 1.3], [18.0, 4.0, 1.9], [18.0, 2.0, 1.9]]);
-        let fit = of(&Columns::with_walls(out.into_iter()), &graph(), &RIGHT);
+        let fit = fit_in_axes(&TriangleColumns::with_walls(out.into_iter()), &graph(), &SCAN_AXES);
         assert_eq!((fit.edges, fit.through_walls), (6, 0));
     }
 
     #[test]
     fn a_graph_without_viewpoints_is_refused() {
-        let misfit = judge(&flat(), &Connectivity { viewpoints: Vec::new(), edges: Vec::new() }).unwrap_err();
+        let misfit = judge_fit(&flat(), &ConnectivityGraph { viewpoints: Vec::new(), edges: Vec::new() }).unwrap_err();
         assert!(misfit.reason.contains("are none that is included"), "{misfit:?}");
     }
 
@@ -316,7 +317,7 @@ mod tests {
     fn all_edges_are_examined_once_in_a_spread_order() {
         for count in [0, 1, 5, 100, 20_001] {
             let pairs: Vec<(usize, usize)> = (0..count).map(|at| (at, at + 1)).collect();
-            let mut spread: Vec<(usize, usize)> = spread(&pairs).collect();
+            let mut spread: Vec<(usize, usize)> = spread_pairs(&pairs).collect();
             spread.sort_unstable();
             spread.dedup();
             assert_eq!(spread.len(), if count > MOST_EDGES { count.div_ceil(2) } else { count });

@@ -1,40 +1,41 @@
 //! Reads the viewpoint graph of a scene from a file in Matterport's format.
 
 use super::fit;
-use crate::{columns::Columns, fault::FileError, scene::Model};
+use crate::{columns::TriangleColumns, fault::FileError, scene::SceneModel};
 use std::path::Path;
 use wayword_core::{DVec3, PlatformError, ViewpointGraph};
-use wayword_world::connectivity::{self, Connectivity};
+use wayword_world::connectivity::{self, ConnectivityGraph};
 
-const HINT: &str = "get the graph again from where it was published, or take it out of --connectivity";
+const GRAPH_HINT: &str = "get the graph again from where it was published, or take it out of --connectivity";
 /// Greatest distance from an edge at which a view may be taken, metres.
 const BESIDE_M: f64 = 0.5;
 /// Greatest height above or below an edge at which a view may be taken, metres: a robot's camera is lower than a person's eye.
 const ABOVE_M: f64 = 2.0;
 
 /// Reads a graph's file.
-pub(super) fn connectivity(file: &Path) -> Result<Connectivity, PlatformError> {
-    connectivity::read(file, HINT)?.ok_or_else(|| FileError::new(file, "there is no such file", HINT).into())
+pub(super) fn read_connectivity(file: &Path) -> Result<ConnectivityGraph, PlatformError> {
+    connectivity::read_connectivity_file(file, GRAPH_HINT)?
+        .ok_or_else(|| FileError::new(file, "there is no such file", GRAPH_HINT).into())
 }
 
 /// Reads the graph of a scene. If `model` is given, a graph that does not lie in it is refused.
-pub(super) fn read(file: &Path, model: Option<&Model>) -> Result<ViewpointGraph, PlatformError> {
-    let connectivity = connectivity(file)?;
+pub(super) fn read_graph(file: &Path, model: Option<&SceneModel>) -> Result<ViewpointGraph, PlatformError> {
+    let connectivity = read_connectivity(file)?;
     if let Some(model) = model {
-        let judged = fit::judge(&Columns::with_walls(model.triangles()), &connectivity);
+        let judged = fit::judge_fit(&TriangleColumns::with_walls(model.triangles()), &connectivity);
         judged.map_err(|misfit| FileError::new(file, misfit.reason, misfit.hint))?;
     }
-    build(file, &connectivity).map_err(PlatformError::from)
+    build_graph(file, &connectivity).map_err(PlatformError::from)
 }
 
 /// Makes the viewpoint graph from the contents of its file.
-pub(super) fn build(file: &Path, connectivity: &Connectivity) -> Result<ViewpointGraph, FileError> {
-    connectivity.graph(|_| None).map_err(|error| FileError::new(file, error.to_string(), HINT))
+pub(super) fn build_graph(file: &Path, connectivity: &ConnectivityGraph) -> Result<ViewpointGraph, FileError> {
+    connectivity.to_viewpoint_graph(|_| None).map_err(|error| FileError::new(file, error.to_string(), GRAPH_HINT))
 }
 
 /// Whether a place is at a viewpoint or on an edge, or near enough to one.
-pub(super) fn passes(graph: &ViewpointGraph, eye: DVec3) -> bool {
-    let place = |viewpoint| graph.position(viewpoint);
+pub(super) fn passes_by(graph: &ViewpointGraph, eye: DVec3) -> bool {
+    let place = |viewpoint| graph.position_of(viewpoint);
     let near = |on_way: DVec3| {
         let off = eye - on_way;
         off.truncate().length() <= BESIDE_M && off.z.abs() <= ABOVE_M

@@ -5,32 +5,32 @@
 //! are rooms below.
 
 use crate::{
-    columns::{Columns, Over},
-    ground::Ground,
+    columns::{OverheadCover, TriangleColumns},
+    ground::NavMeshGround,
 };
-use wayword_core::{Cover, Island, rng};
+use wayword_core::{GroundCover, GroundIsland, seeded_rng};
 
 /// Random places that are examined on each island.
-const PLACES: usize = 400;
+const PLACES_PER_ISLAND: usize = 400;
 /// Most islands that are examined, the largest first.
-const MOST: usize = 64;
+const MAX_ISLANDS: usize = 64;
 /// Least area of an island that is examined, square metres.
 const LEAST_M2: f64 = 1.0;
 /// Least share of an island that is under a ceiling, or under the sky on firm ground, for paths to stay on it.
-const FIT: f64 = 1.0 / 3.0;
+const LEAST_USABLE_SHARE: f64 = 1.0 / 3.0;
 /// Least share of an indoor island that is under a ceiling.
-const INDOORS: f64 = 0.25;
+const LEAST_INDOOR_SHARE: f64 = 0.25;
 /// Indoor islands come first only if their rooms have at least this share of the open ground's area: a shelter in a
 /// field is not preferred to the field.
-const ROOMS: f64 = 0.1;
+const LEAST_ROOMS_SHARE: f64 = 0.1;
 /// If another island has this share of the chosen one's area, the user may prefer that one.
-const RIVAL: f64 = 0.5;
+const RIVAL_AREA_SHARE: f64 = 0.5;
 /// Most islands that an error or warning lists.
-const NAMED: usize = 6;
+const MAX_LISTED_ISLANDS: usize = 6;
 
 /// The cover over the places of an island, as shares of its area.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Survey {
+pub(super) struct IslandSurvey {
     pub(super) number: usize,
     area_m2: f64,
     height_m: f64,
@@ -42,59 +42,62 @@ pub(super) struct Survey {
 
 /// The island that was chosen.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Choice {
+pub(super) struct IslandChoice {
     pub(super) number: usize,
     /// Whether the user may prefer another one.
     pub(super) is_doubtful: bool,
 }
 
 /// Examines the islands, the largest first.
-pub(super) fn survey(ground: &Ground, columns: &Columns) -> Vec<Survey> {
-    let worth = ground.islands_m2().enumerate().take(MOST).take_while(|(_, area_m2)| *area_m2 >= LEAST_M2);
-    worth.map(|(number, area_m2)| of(ground, columns, number, area_m2)).collect()
+pub(super) fn survey_islands(ground: &NavMeshGround, columns: &TriangleColumns) -> Vec<IslandSurvey> {
+    let worth = ground.islands_m2().enumerate().take(MAX_ISLANDS).take_while(|(_, area_m2)| *area_m2 >= LEAST_M2);
+    worth.map(|(number, area_m2)| survey_island(ground, columns, number, area_m2)).collect()
 }
 
-fn of(ground: &Ground, columns: &Columns, number: usize, area_m2: f64) -> Survey {
-    let mut dice = rng(0, &["habitat islands", &number.to_string()]);
-    let places = (0..PLACES).filter_map(|_| ground.random_place(number, &mut dice)).map(|foothold| foothold.place);
+fn survey_island(ground: &NavMeshGround, columns: &TriangleColumns, number: usize, area_m2: f64) -> IslandSurvey {
+    let mut dice = seeded_rng(0, &["habitat islands", &number.to_string()]);
+    let places =
+        (0..PLACES_PER_ISLAND).filter_map(|_| ground.random_place(number, &mut dice)).map(|foothold| foothold.place);
     let places: Vec<wayword_core::DVec3> = places.collect();
-    let over: Vec<Over> = places.iter().map(|place| columns.over(*place)).collect();
-    let share = |is: fn(&Over) -> bool| over.iter().filter(|over| is(over)).count() as f64 / over.len().max(1) as f64;
+    let over: Vec<OverheadCover> = places.iter().map(|place| columns.cover_over(*place)).collect();
+    let share =
+        |is: fn(&OverheadCover) -> bool| over.iter().filter(|over| is(over)).count() as f64 / over.len().max(1) as f64;
     let mut heights: Vec<f64> = places.iter().map(|place| place.z).collect();
     heights.sort_by(f64::total_cmp);
-    Survey {
+    IslandSurvey {
         number,
         area_m2,
         height_m: heights.get(heights.len() / 2).copied().unwrap_or_default(),
-        ceiling: share(|over| matches!(over, Over::Ceiling(_)) && over.is_headroom()),
-        sky: share(|over| *over == Over::Sky),
-        roof: share(|over| *over == Over::SkyOnRoof),
+        ceiling: share(|over| matches!(over, OverheadCover::Ceiling(_)) && over.is_headroom()),
+        sky: share(|over| *over == OverheadCover::Sky),
+        roof: share(|over| *over == OverheadCover::SkyOnRoof),
         low: share(|over| !over.is_headroom()),
     }
 }
 
 /// Chooses the island that paths stay on: of the indoor islands, the one with the most area under a ceiling; an island
 /// under the open sky only if the scene has almost no rooms. `None` if no island is a place to walk on.
-pub(super) fn choose(surveys: &[Survey]) -> Option<Choice> {
-    let fit = || surveys.iter().filter(|survey| survey.ceiling + survey.sky >= FIT);
-    let best = |most: fn(&Survey) -> f64, of: Vec<&Survey>| {
-        let better = |a: &&Survey, b: &&Survey| most(a).total_cmp(&most(b)).then(b.number.cmp(&a.number));
+pub(super) fn choose_island(surveys: &[IslandSurvey]) -> Option<IslandChoice> {
+    let fit = || surveys.iter().filter(|survey| survey.ceiling + survey.sky >= LEAST_USABLE_SHARE);
+    let best = |most: fn(&IslandSurvey) -> f64, of: Vec<&IslandSurvey>| {
+        let better = |a: &&IslandSurvey, b: &&IslandSurvey| most(a).total_cmp(&most(b)).then(b.number.cmp(&a.number));
         of.into_iter().max_by(better).copied()
     };
-    let open = best(Survey::open_m2, fit().collect());
-    let rooms = best(Survey::rooms_m2, fit().filter(|survey| survey.ceiling >= INDOORS).collect());
+    let open = best(IslandSurvey::open_m2, fit().collect());
+    let rooms = best(IslandSurvey::rooms_m2, fit().filter(|survey| survey.ceiling >= LEAST_INDOOR_SHARE).collect());
     let open_m2 = open.map_or(0.0, |open| open.open_m2());
-    let (chosen, room_m2): (Survey, fn(&Survey) -> f64) =
-        match rooms.filter(|rooms| rooms.rooms_m2() >= ROOMS * open_m2) {
-            Some(rooms) => (rooms, Survey::rooms_m2),
-            None => (open?, Survey::open_m2),
+    let (chosen, room_m2): (IslandSurvey, fn(&IslandSurvey) -> f64) =
+        match rooms.filter(|rooms| rooms.rooms_m2() >= LEAST_ROOMS_SHARE * open_m2) {
+            Some(rooms) => (rooms, IslandSurvey::rooms_m2),
+            None => (open?, IslandSurvey::open_m2),
         };
-    let is_rival = |other: &&Survey| other.number != chosen.number && room_m2(other) >= RIVAL * room_m2(&chosen);
+    let is_rival =
+        |other: &&IslandSurvey| other.number != chosen.number && room_m2(other) >= RIVAL_AREA_SHARE * room_m2(&chosen);
     let is_doubtful = surveys.iter().any(|other| other.area_m2 > chosen.area_m2) || fit().any(|other| is_rival(&other));
-    Some(Choice { number: chosen.number, is_doubtful })
+    Some(IslandChoice { number: chosen.number, is_doubtful })
 }
 
-impl Survey {
+impl IslandSurvey {
     fn rooms_m2(&self) -> f64 {
         self.area_m2 * self.ceiling
     }
@@ -104,32 +107,33 @@ impl Survey {
     }
 
     /// The island for display. `walked` is the number of the island that paths stay on.
-    pub(super) fn told(&self, walked: Option<usize>) -> Island {
+    pub(super) fn to_island(&self, walked: Option<usize>) -> GroundIsland {
         let covers = [
-            (self.ceiling, Cover::Ceiling),
-            (self.sky, Cover::Sky),
-            (self.roof, Cover::OnRoof),
-            (self.low, Cover::Low),
+            (self.ceiling, GroundCover::Ceiling),
+            (self.sky, GroundCover::Sky),
+            (self.roof, GroundCover::OnRoof),
+            (self.low, GroundCover::Low),
         ];
         // If two shares are equal, the first counts.
         let most = covers.into_iter().reduce(|best, other| if other.0 > best.0 { other } else { best });
-        Island {
+        GroundIsland {
             number: self.number,
             area_m2: self.area_m2,
             height_m: self.height_m,
-            cover: most.map_or(Cover::Sky, |(_, cover)| cover),
+            cover: most.map_or(GroundCover::Sky, |(_, cover)| cover),
             is_walked: walked == Some(self.number),
         }
     }
 }
 
 /// The islands in words, the largest first.
-pub(super) fn listed(surveys: &[Survey]) -> String {
+pub(super) fn list_islands(surveys: &[IslandSurvey]) -> String {
     if surveys.is_empty() {
         return format!("it has no island of at least {LEAST_M2} m2");
     }
-    let named: Vec<String> = surveys.iter().take(NAMED).map(|survey| survey.told(None).to_string()).collect();
-    let more = surveys.len().saturating_sub(NAMED);
+    let named: Vec<String> =
+        surveys.iter().take(MAX_LISTED_ISLANDS).map(|survey| survey.to_island(None).to_string()).collect();
+    let more = surveys.len().saturating_sub(MAX_LISTED_ISLANDS);
     let rest = if more > 0 { format!("; and {more} smaller") } else { String::new() };
     format!("{}{rest}", named.join("; "))
 }
@@ -139,12 +143,12 @@ mod tests {
     use super::*;
 
     /// Shares: ceiling, sky, roof.
-    fn island(number: usize, area_m2: f64, [ceiling, sky, roof]: [f64; 3]) -> Survey {
-        Survey { number, area_m2, height_m: 0.0, ceiling, sky, roof, low: 1.0 - ceiling - sky - roof }
+    fn island(number: usize, area_m2: f64, [ceiling, sky, roof]: [f64; 3]) -> IslandSurvey {
+        IslandSurvey { number, area_m2, height_m: 0.0, ceiling, sky, roof, low: 1.0 - ceiling - sky - roof }
     }
 
-    fn chosen(islands: &[Survey]) -> Option<(usize, bool)> {
-        choose(islands).map(|choice| (choice.number, choice.is_doubtful))
+    fn chosen(islands: &[IslandSurvey]) -> Option<(usize, bool)> {
+        choose_island(islands).map(|choice| (choice.number, choice.is_doubtful))
     }
 
     #[test]
@@ -179,7 +183,7 @@ mod tests {
 
     #[test]
     fn listed_islands_show_area_height_and_cover() {
-        let told = listed(&[island(0, 67.04, [0.0, 0.1, 0.9]), island(1, 43.5, [1.0, 0.0, 0.0])]);
+        let told = list_islands(&[island(0, 67.04, [0.0, 0.1, 0.9]), island(1, 43.5, [1.0, 0.0, 0.0])]);
         assert_eq!(
             told,
             "island 0: 67.0 m2 at height 0.0 m, on top of a roof; island 1: 43.5 m2 at height 0.0 m, under a ceiling"

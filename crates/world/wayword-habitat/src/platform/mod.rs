@@ -16,34 +16,34 @@ mod walkable;
 
 use crate::{
     navmesh::NavMesh,
-    scene::{Model, Stage},
+    scene::{HabitatStage, SceneModel},
 };
 use files::SceneFiles;
-use home::Home;
-use pairs::Pairs;
+use home::HabitatScene;
+use pairs::GraphPairing;
 use std::{
     collections::{BTreeMap, BTreeSet},
     path::{Path as FilePath, PathBuf},
     sync::{Arc, Mutex, PoisonError},
 };
 use wayword_core::{
-    Condition, Depth, Frame, FromAbove, Gaze, Island, ObjectId, Path, PathRequest, Platform, PlatformError, Recent,
-    SceneId, View, ViewpointGraph, ViewpointId, Way,
+    DepthImage, Frame, FromAbove, GroundIsland, GroundRoute, ObjectId, Path, PathRequest, Platform, PlatformError,
+    RecentCache, SceneCondition, SceneId, View, ViewGaze, ViewpointGraph, ViewpointId,
 };
-use wayword_render::flat;
-use wayword_world::said::Hear;
+use wayword_render::to_flat_gaze;
+use wayword_world::said::OutputListener;
 
 /// Scenes that are kept in memory at a time: one of HM3D takes a few hundred MB.
-const READY: usize = 2;
+const SCENES_IN_MEMORY: usize = 2;
 
 /// Scenes as Habitat reads them.
 pub struct HabitatPlatform {
     options: HabitatOptions,
-    hear: Hear,
-    pairs: Pairs,
-    ready: Recent<SceneId, Home>,
+    hear: OutputListener,
+    pairs: GraphPairing,
+    ready: RecentCache<SceneId, HabitatScene>,
     /// The condition of each scene that was examined, so that none is examined twice.
-    examined: Mutex<BTreeMap<SceneId, Condition>>,
+    examined: Mutex<BTreeMap<SceneId, SceneCondition>>,
     /// Scenes for which a warning was already given.
     told: Mutex<BTreeSet<SceneId>>,
 }
@@ -89,14 +89,15 @@ impl HabitatPlatform {
     ///
     /// # Errors
     /// If there is no scene, or a folder cannot be read.
-    pub fn open(place: &FilePath, options: HabitatOptions, hear: Hear) -> Result<Self, PlatformError> {
-        let scenes = files::scenes(place)?;
+    pub fn open(place: &FilePath, options: HabitatOptions, hear: OutputListener) -> Result<Self, PlatformError> {
+        let scenes = files::find_scenes(place)?;
         let pairs = match &options.connectivity {
-            Some(folder) => pairs::pair(scenes, folder)?,
-            None => Pairs::alone(scenes),
+            Some(folder) => pairs::pair_graphs(scenes, folder)?,
+            None => GraphPairing::without_graphs(scenes),
         };
-        let (ready, examined, told) = (Recent::one_at_a_time(READY), Mutex::default(), Mutex::default());
-        if let Some(idle) = pairs.idle() {
+        let (ready, examined, told) =
+            (RecentCache::one_at_a_time(SCENES_IN_MEMORY), Mutex::default(), Mutex::default());
+        if let Some(idle) = pairs.describe_idle_graphs() {
             hear(&idle);
         }
         Ok(Self { options, hear, pairs, ready, examined, told })
@@ -107,20 +108,20 @@ impl HabitatPlatform {
     /// # Errors
     /// If the scene is unknown, or its files cannot be read.
     pub fn navmesh(&self, scene: &SceneId) -> Result<NavMesh, PlatformError> {
-        if let Some(walkable) = &self.home(scene)?.walkable {
+        if let Some(walkable) = &self.prepared_scene(scene)?.walkable {
             return Ok(walkable.navmesh.clone());
         }
         let (_, files) = self.files_of(scene)?;
-        let stage = Stage::of(&files.stage)?;
-        Ok(walkable::navmesh(&Model::of(&stage)?, &stage, files, &self.options)?)
+        let stage = HabitatStage::from_file(&files.stage)?;
+        Ok(walkable::read_or_bake_navmesh(&SceneModel::from_stage(&stage)?, &stage, files, &self.options)?)
     }
 
-    fn home(&self, scene: &SceneId) -> Result<Arc<Home>, PlatformError> {
+    fn prepared_scene(&self, scene: &SceneId) -> Result<Arc<HabitatScene>, PlatformError> {
         let (scene, files) = self.files_of(scene)?;
         self.ready.get_or_make(scene.clone(), || {
-            let fits = self.known(scene).is_some_and(|condition| condition.unusable.is_none());
-            let home = Home::build(scene, files, &self.options, fits)?;
-            if let Some(doubt) = home.walkable.as_ref().and_then(|walkable| walkable.doubt())
+            let fits = self.known_condition(scene).is_some_and(|condition| condition.unusable.is_none());
+            let home = HabitatScene::from_files(scene, files, &self.options, fits)?;
+            if let Some(doubt) = home.walkable.as_ref().and_then(|walkable| walkable.island_doubt())
                 && self.told.lock().unwrap_or_else(PoisonError::into_inner).insert(scene.clone())
             {
                 (self.hear)(&format!("scene {scene}: {doubt}"));
@@ -132,15 +133,15 @@ impl HabitatPlatform {
     /// A scene's id and files, by its id or by another name that it has.
     fn files_of(&self, name: &SceneId) -> Result<(&SceneId, &SceneFiles), PlatformError> {
         let id = self.pairs.others.get(name).unwrap_or(name);
-        self.pairs.scenes.get_key_value(id).ok_or_else(|| self.unknown(name))
+        self.pairs.scenes.get_key_value(id).ok_or_else(|| self.unknown_scene(name))
     }
 
     /// The condition of a scene, if it was examined.
-    fn known(&self, scene: &SceneId) -> Option<Condition> {
+    fn known_condition(&self, scene: &SceneId) -> Option<SceneCondition> {
         self.examined.lock().unwrap_or_else(PoisonError::into_inner).get(scene).cloned()
     }
 
-    fn unknown(&self, scene: &SceneId) -> PlatformError {
+    fn unknown_scene(&self, scene: &SceneId) -> PlatformError {
         let some: Vec<&str> = self.pairs.scenes.keys().take(3).map(SceneId::as_str).collect();
         let hint = match self.pairs.unpaired.get(scene) {
             Some(lack) => format!("{}; {}", lack.what, lack.hint),
@@ -149,10 +150,15 @@ impl HabitatPlatform {
         PlatformError::UnknownScene { scene: scene.to_string(), hint }
     }
 
-    fn seen(&self, scene: &SceneId, from: &Frame, gaze: Gaze, pictured: bool) -> Result<View, PlatformError> {
-        let home = self.home(scene)?;
-        home.check(from)?;
-        home.view(from.pose.position, flat(gaze), [self.options.width_px, self.options.height_px], pictured)
+    fn view_from(&self, scene: &SceneId, from: &Frame, gaze: ViewGaze, pictured: bool) -> Result<View, PlatformError> {
+        let home = self.prepared_scene(scene)?;
+        home.check_frame(from)?;
+        home.view_from(
+            from.pose.position,
+            to_flat_gaze(gaze),
+            [self.options.width_px, self.options.height_px],
+            pictured,
+        )
     }
 }
 
@@ -161,71 +167,71 @@ impl Platform for HabitatPlatform {
         "habitat"
     }
 
-    fn scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
+    fn list_scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
         Ok(self.pairs.scenes.keys().cloned().collect())
     }
 
-    fn called(&self, scene: &SceneId) -> SceneId {
+    fn canonical_scene(&self, scene: &SceneId) -> SceneId {
         self.files_of(scene).map_or_else(|_| scene.clone(), |(id, _)| id.clone())
     }
 
-    fn candidates(&self) -> Result<Vec<SceneId>, PlatformError> {
+    fn candidate_scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
         let all: BTreeSet<&SceneId> = self.pairs.scenes.keys().chain(self.pairs.unpaired.keys()).collect();
         Ok(all.into_iter().cloned().collect())
     }
 
-    fn examine(&self, scene: &SceneId) -> Result<Option<Condition>, PlatformError> {
+    fn examine_scene(&self, scene: &SceneId) -> Result<Option<SceneCondition>, PlatformError> {
         if let Some(why) = self.pairs.unpaired.get(scene) {
-            return Ok(Some(Condition::unusable(scene.clone(), why.clone())));
+            return Ok(Some(SceneCondition::for_unusable(scene.clone(), why.clone())));
         }
         let (id, files) = self.files_of(scene)?;
-        let found = match self.known(id) {
+        let found = match self.known_condition(id) {
             Some(known) => known,
             None => {
-                let found = examine::examine(id, files)?;
+                let found = examine::examine_scene(id, files)?;
                 self.examined.lock().unwrap_or_else(PoisonError::into_inner).insert(id.clone(), found.clone());
                 found
             }
         };
         // The caller may have used another name of the scene, and gets that name back.
-        Ok(Some(Condition { scene: scene.clone(), ..found }))
+        Ok(Some(SceneCondition { scene: scene.clone(), ..found }))
     }
 
-    fn graph(&self, scene: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {
-        Ok(self.home(scene)?.graph.clone())
+    fn graph_for_scene(&self, scene: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {
+        Ok(self.prepared_scene(scene)?.graph.clone())
     }
 
     fn sample_path(&self, scene: &SceneId, request: &PathRequest, seed: u64) -> Result<Path, PlatformError> {
-        sample::path(&*self.home(scene)?, request, seed, self.options.interval_m)
+        sample::sample_path(&*self.prepared_scene(scene)?, request, seed, self.options.interval_m)
     }
 
-    fn look(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
-        self.seen(scene, from, gaze, true)
+    fn look_from(&self, scene: &SceneId, from: &Frame, gaze: ViewGaze) -> Result<View, PlatformError> {
+        self.view_from(scene, from, gaze, true)
     }
 
-    fn look_without_picture(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
-        self.seen(scene, from, gaze, false)
+    fn look_without_picture(&self, scene: &SceneId, from: &Frame, gaze: ViewGaze) -> Result<View, PlatformError> {
+        self.view_from(scene, from, gaze, false)
     }
 
-    fn depth(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<Option<Depth>, PlatformError> {
-        let home = self.home(scene)?;
-        home.check(from)?;
+    fn view_depth(&self, scene: &SceneId, from: &Frame, gaze: ViewGaze) -> Result<Option<DepthImage>, PlatformError> {
+        let home = self.prepared_scene(scene)?;
+        home.check_frame(from)?;
         let size = [self.options.width_px, self.options.height_px];
-        home.depth(from.pose.position, flat(gaze), size).map(Some)
+        home.depth_from(from.pose.position, to_flat_gaze(gaze), size).map(Some)
     }
 
     fn look_down(&self, scene: &SceneId, level: u32) -> Result<Option<FromAbove>, PlatformError> {
-        self.home(scene)?.look_down(level)
+        self.prepared_scene(scene)?.look_down(level)
     }
 
     fn object_name(&self, scene: &SceneId, _: &Frame, object: &ObjectId) -> Result<Option<String>, PlatformError> {
-        let home = self.home(scene)?;
-        let thing = home.semantics.as_ref().and_then(|semantics| semantics.named(object));
+        let home = self.prepared_scene(scene)?;
+        let thing = home.semantics.as_ref().and_then(|semantics| semantics.find_thing(object));
         Ok(thing.and_then(|thing| thing.name.clone()))
     }
 
     fn visible_from(&self, scene: &SceneId, object: &ObjectId) -> Result<Option<BTreeSet<ViewpointId>>, PlatformError> {
-        let home = self.home(scene)?;
+        let home = self.prepared_scene(scene)?;
         if home.semantics.is_none() {
             return Ok(None);
         }
@@ -233,12 +239,12 @@ impl Platform for HabitatPlatform {
     }
 
     /// The way over the navmesh, as Habitat measures it; `None` if the scene has a graph from a file instead.
-    fn way(&self, scene: &SceneId, from: &Frame, to: &Frame) -> Result<Option<Way>, PlatformError> {
-        Ok(self.home(scene)?.way(from.pose.position, to.pose.position))
+    fn ground_route(&self, scene: &SceneId, from: &Frame, to: &Frame) -> Result<Option<GroundRoute>, PlatformError> {
+        Ok(self.prepared_scene(scene)?.way_between(from.pose.position, to.pose.position))
     }
 
-    fn islands(&self, scene: &SceneId) -> Result<Vec<Island>, PlatformError> {
-        Ok(self.home(scene)?.islands())
+    fn ground_islands(&self, scene: &SceneId) -> Result<Vec<GroundIsland>, PlatformError> {
+        Ok(self.prepared_scene(scene)?.islands())
     }
 
     fn scene_file(&self, scene: &SceneId) -> Result<Option<PathBuf>, PlatformError> {
@@ -246,9 +252,9 @@ impl Platform for HabitatPlatform {
         Ok(Some(files.stage.clone()))
     }
 
-    fn files(&self, scene: &SceneId) -> Result<Vec<PathBuf>, PlatformError> {
+    fn source_files(&self, scene: &SceneId) -> Result<Vec<PathBuf>, PlatformError> {
         let (_, files) = self.files_of(scene)?;
-        let all = files.all(&Stage::of(&files.stage)?);
+        let all = files.all_files(&HabitatStage::from_file(&files.stage)?);
         Ok(all.into_iter().chain(self.options.navmesh.clone()).collect())
     }
 }

@@ -1,40 +1,40 @@
 //! Finds the viewpoint graph of each scene: the file `SCENE_connectivity.json` in a folder.
 
 use super::files::{MAX_ENTRIES, SceneFiles};
-use crate::{fault::FileError, scene::stem};
+use crate::{fault::FileError, scene::scene_stem};
 use std::{
     collections::BTreeMap,
     path::{Path, PathBuf},
 };
-use wayword_core::{Lack, SceneId};
-use wayword_world::connectivity::ENDING;
+use wayword_core::{SceneId, SceneLack};
+use wayword_world::connectivity::CONNECTIVITY_FILE_SUFFIX;
 
 /// Most graphs without a scene that a warning names.
-const NAMED: usize = 3;
-const HINT: &str = "give --connectivity the folder with the files SCENE_connectivity.json";
+const MAX_NAMED_GRAPHS: usize = 3;
+const CONNECTIVITY_HINT: &str = "give --connectivity the folder with the files SCENE_connectivity.json";
 
 /// Scenes with their graphs.
 #[derive(Debug, Default)]
-pub(super) struct Pairs {
+pub(super) struct GraphPairing {
     pub(super) scenes: BTreeMap<SceneId, SceneFiles>,
     /// Scenes and graphs that cannot be used, with the reason.
-    pub(super) unpaired: BTreeMap<SceneId, Lack>,
+    pub(super) unpaired: BTreeMap<SceneId, SceneLack>,
     /// Names of graphs without a scene. A folder of graphs usually has many more of them than there are scenes.
     idle: Vec<String>,
     /// Other names of scenes, which episodes may use.
     pub(super) others: BTreeMap<SceneId, SceneId>,
 }
 
-impl Pairs {
+impl GraphPairing {
     /// Scenes without graphs.
-    pub(super) fn alone(scenes: BTreeMap<SceneId, SceneFiles>) -> Self {
+    pub(super) fn without_graphs(scenes: BTreeMap<SceneId, SceneFiles>) -> Self {
         Self { scenes, ..Self::default() }
     }
 
     /// A line that names the graphs without a scene; `None` if every graph has one.
-    pub(super) fn idle(&self) -> Option<String> {
-        let named = self.idle.iter().take(NAMED).map(String::as_str).collect::<Vec<_>>().join(", ");
-        let more = if self.idle.len() > NAMED { " ..." } else { "" };
+    pub(super) fn describe_idle_graphs(&self) -> Option<String> {
+        let named = self.idle.iter().take(MAX_NAMED_GRAPHS).map(String::as_str).collect::<Vec<_>>().join(", ");
+        let more = if self.idle.len() > MAX_NAMED_GRAPHS { " ..." } else { "" };
         (!self.idle.is_empty())
             .then(|| format!("{} of the graphs have no scene below --data: {named}{more}", self.idle.len()))
     }
@@ -44,12 +44,12 @@ impl Pairs {
 ///
 /// HM3D's scenes are numbered: the folder `00800-TEEsavR23oF` holds `TEEsavR23oF.basis.glb`, and graphs have either
 /// name. The scene id has the number if the folder or the graph shows it, because official splits use it.
-pub(super) fn pair(scenes: BTreeMap<SceneId, SceneFiles>, folder: &Path) -> Result<Pairs, FileError> {
-    let graphs = graphs(folder)?;
+pub(super) fn pair_graphs(scenes: BTreeMap<SceneId, SceneFiles>, folder: &Path) -> Result<GraphPairing, FileError> {
+    let graphs = find_graphs(folder)?;
     let mut taken: BTreeMap<PathBuf, SceneId> = BTreeMap::new();
-    let mut pairs = Pairs::default();
+    let mut pairs = GraphPairing::default();
     for (id, files) in scenes {
-        let (stem, numbered) = names(&files.stage);
+        let (stem, numbered) = scene_names(&files.stage);
         let of_graph = graphs.keys().find(|name| number_of(name, &stem)).cloned();
         let candidates = [numbered.clone(), of_graph.clone(), Some(stem.clone())];
         let found = candidates.into_iter().flatten().find_map(|name| Some((graphs.get(&name)?.clone(), name)));
@@ -76,26 +76,33 @@ pub(super) fn pair(scenes: BTreeMap<SceneId, SceneFiles>, folder: &Path) -> Resu
 }
 
 /// The graphs of a folder by the names of their scenes.
-fn graphs(folder: &Path) -> Result<BTreeMap<String, PathBuf>, FileError> {
-    let wrong = |error: std::io::Error| FileError::new(folder, error.to_string(), HINT);
+fn find_graphs(folder: &Path) -> Result<BTreeMap<String, PathBuf>, FileError> {
+    let wrong = |error: std::io::Error| FileError::new(folder, error.to_string(), CONNECTIVITY_HINT);
     let mut graphs = BTreeMap::new();
     for entry in std::fs::read_dir(folder).map_err(wrong)?.take(MAX_ENTRIES) {
         let file = entry.map_err(wrong)?.path();
-        let name = file.file_name().and_then(|name| name.to_str()).and_then(|name| name.strip_suffix(ENDING));
+        let name = file
+            .file_name()
+            .and_then(|name| name.to_str())
+            .and_then(|name| name.strip_suffix(CONNECTIVITY_FILE_SUFFIX));
         if let Some(name) = name.filter(|name| !name.is_empty()) {
             graphs.insert(name.to_owned(), file);
         }
     }
     if graphs.is_empty() {
-        return Err(FileError::new(folder, format!("contains no viewpoint graph: no file ends in {ENDING}"), HINT));
+        return Err(FileError::new(
+            folder,
+            format!("contains no viewpoint graph: no file ends in {CONNECTIVITY_FILE_SUFFIX}"),
+            CONNECTIVITY_HINT,
+        ));
     }
     Ok(graphs)
 }
 
 /// A scene's own name, and its numbered name if its folder has one.
-fn names(stage: &Path) -> (String, Option<String>) {
+fn scene_names(stage: &Path) -> (String, Option<String>) {
     let text = |part: Option<&std::ffi::OsStr>| part.and_then(|part| part.to_str()).unwrap_or_default().to_owned();
-    let stem = stem(&text(stage.file_name())).to_owned();
+    let stem = scene_stem(&text(stage.file_name())).to_owned();
     let folder = text(stage.parent().and_then(Path::file_name));
     let numbered = number_of(&folder, &stem).then_some(folder);
     (stem, numbered)
@@ -107,16 +114,18 @@ fn number_of(name: &str, stem: &str) -> bool {
     number.is_some_and(|number| number.len() == 5 && number.bytes().all(|byte| byte.is_ascii_digit()))
 }
 
-fn no_graph(files: &SceneFiles, folder: &Path, stem: &str, numbered: Option<&str>) -> Lack {
+fn no_graph(files: &SceneFiles, folder: &Path, stem: &str, numbered: Option<&str>) -> SceneLack {
     let name = numbered.unwrap_or(stem);
-    Lack {
+    SceneLack {
         what: format!("{}: there is no viewpoint graph for it in {}", files.stage.display(), folder.display()),
-        hint: format!("put {name}{ENDING} there, or use the scene without --connectivity, over its navmesh"),
+        hint: format!(
+            "put {name}{CONNECTIVITY_FILE_SUFFIX} there, or use the scene without --connectivity, over its navmesh"
+        ),
     }
 }
 
-fn taken_already(files: &SceneFiles, graph: &Path, first: &SceneId) -> Lack {
-    Lack {
+fn taken_already(files: &SceneFiles, graph: &Path, first: &SceneId) -> SceneLack {
+    SceneLack {
         what: format!("{}: scene {first} has the graph {} already", files.stage.display(), graph.display()),
         hint: "give --data a folder in which each scene is once".to_owned(),
     }
@@ -136,9 +145,10 @@ mod tests {
         folder
     }
 
-    fn paired(files: &[&str]) -> Pairs {
+    fn paired(files: &[&str]) -> GraphPairing {
         let folder = folder(files);
-        pair(super::super::files::scenes(&folder.path().join("s")).unwrap(), &folder.path().join("g")).unwrap()
+        pair_graphs(super::super::files::find_scenes(&folder.path().join("s")).unwrap(), &folder.path().join("g"))
+            .unwrap()
     }
 
     fn texts<V>(of: &BTreeMap<SceneId, V>) -> Vec<&str> {
@@ -172,7 +182,7 @@ mod tests {
         let told = |name: &str| &pairs.unpaired[&SceneId::new(name).unwrap()];
         assert!(told("b").what.contains("b.glb: there is no viewpoint graph for it in"), "{pairs:?}");
         assert!(told("b").hint.contains("put b_connectivity.json there"), "{pairs:?}");
-        assert_eq!(pairs.idle().unwrap(), "1 of the graphs have no scene below --data: c");
+        assert_eq!(pairs.describe_idle_graphs().unwrap(), "1 of the graphs have no scene below --data: c");
         assert!(pairs.unpaired.values().any(|lack| lack.what.contains("has the graph")), "{pairs:?}");
         assert_eq!(pairs.unpaired.len(), 2);
     }
@@ -180,8 +190,8 @@ mod tests {
     #[test]
     fn a_folder_without_graphs_is_refused() {
         let folder = folder(&["s/a.glb", "g/readme.txt"]);
-        let scenes = super::super::files::scenes(&folder.path().join("s")).unwrap();
-        let told = |name: &str| pair(scenes.clone(), &folder.path().join(name)).unwrap_err().to_string();
+        let scenes = super::super::files::find_scenes(&folder.path().join("s")).unwrap();
+        let told = |name: &str| pair_graphs(scenes.clone(), &folder.path().join(name)).unwrap_err().to_string();
         assert!(told("g").contains("contains no viewpoint graph") && told("g").contains("--connectivity"));
         assert!(told("nowhere").contains("nowhere"));
     }

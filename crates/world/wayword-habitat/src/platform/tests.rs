@@ -3,7 +3,7 @@
 use super::*;
 use crate::scene::tests::glb;
 use serde_json::json;
-use wayword_core::{Cover, Heading};
+use wayword_core::{GroundCover, Heading};
 
 /// A quad as two triangles.
 fn quad(out: &mut Vec<[f32; 3]>, corners: [[f32; 3]; 4]) {
@@ -79,9 +79,9 @@ fn platform(has_labels: bool) -> (HabitatPlatform, SceneId) {
         Arc::new(|_: &str| {}),
     )
     .unwrap();
-    let scene = platform.scenes().unwrap().remove(0);
+    let scene = platform.list_scenes().unwrap().remove(0);
     // Reads the scene while the folder exists; the platform keeps it in memory.
-    platform.graph(&scene).unwrap();
+    platform.graph_for_scene(&scene).unwrap();
     (platform, scene)
 }
 
@@ -96,7 +96,9 @@ fn paths_over_baked_ground_lead_around_the_box() {
         for frame in &path.frames {
             let eye = frame.pose.position;
             assert!(!((3.0..5.0).contains(&eye.x) && (3.0..5.0).contains(&eye.y)), "{eye} stands in the box");
-            assert!(platform.look(&scene, frame, Gaze::quarter(frame.pose.heading)).unwrap().image.is_some());
+            assert!(
+                platform.look_from(&scene, frame, ViewGaze::quarter_view(frame.pose.heading)).unwrap().image.is_some()
+            );
         }
         let target = path.target.unwrap();
         assert_eq!((target.object.as_str(), target.name.as_str()), ("2", "toy box"));
@@ -106,27 +108,30 @@ fn paths_over_baked_ground_lead_around_the_box() {
 #[test]
 fn views_show_the_scene_and_label_it() {
     let (platform, scene) = platform(true);
-    let pose = wayword_core::Pose::level(wayword_core::DVec3::new(4.0, 0.8, 1.5), Heading::NORTH);
+    let pose = wayword_core::Pose::looking_level(wayword_core::DVec3::new(4.0, 0.8, 1.5), Heading::NORTH);
     let frame = Frame { pose, viewpoint: None, level: None };
-    let view = platform.look(&scene, &frame, Gaze::quarter(Heading::NORTH)).unwrap();
+    let view = platform.look_from(&scene, &frame, ViewGaze::quarter_view(Heading::NORTH)).unwrap();
     let image = view.image.unwrap();
     let middle = 3 * (60 * 160 + 80);
-    assert_eq!(image.rgb()[middle..middle + 3], [200, 10, 10]);
-    let depth = platform.depth(&scene, &frame, Gaze::quarter(Heading::NORTH)).unwrap().unwrap();
+    assert_eq!(image.rgb_bytes()[middle..middle + 3], [200, 10, 10]);
+    let depth = platform.view_depth(&scene, &frame, ViewGaze::quarter_view(Heading::NORTH)).unwrap().unwrap();
     let far_m = depth.level_m([0.4, 0.4, 0.6, 0.6], view.horizontal_fov_rad).unwrap();
     assert!((far_m - 2.2).abs() < 0.03, "the box begins at 3 m north, the eye stands at 0.8: {far_m}");
-    let behind = platform.look_without_picture(&scene, &frame, Gaze::quarter(Heading::NORTH.turned(3.0))).unwrap();
+    let behind =
+        platform.look_without_picture(&scene, &frame, ViewGaze::quarter_view(Heading::NORTH.turned_by(3.0))).unwrap();
     assert!(behind.image.is_none());
     let object = ObjectId::new("2").unwrap();
     assert_eq!(platform.object_name(&scene, &frame, &object).unwrap().as_deref(), Some("toy box"));
     assert!(!platform.visible_from(&scene, &object).unwrap().unwrap().is_empty());
-    let away =
-        Frame { pose: wayword_core::Pose::level(wayword_core::DVec3::new(90.0, 0.0, 1.5), Heading::NORTH), ..frame };
+    let away = Frame {
+        pose: wayword_core::Pose::looking_level(wayword_core::DVec3::new(90.0, 0.0, 1.5), Heading::NORTH),
+        ..frame
+    };
     assert!(matches!(
-        platform.look(&scene, &away, Gaze::quarter(Heading::NORTH)),
+        platform.look_from(&scene, &away, ViewGaze::quarter_view(Heading::NORTH)),
         Err(PlatformError::UnknownViewpoint { .. })
     ));
-    assert!(platform.depth(&scene, &away, Gaze::quarter(Heading::NORTH)).is_err());
+    assert!(platform.view_depth(&scene, &away, ViewGaze::quarter_view(Heading::NORTH)).is_err());
 }
 
 #[test]
@@ -136,7 +141,7 @@ fn a_scene_without_semantics_has_no_labels_and_targets() {
     let path = platform.sample_path(&scene, &PathRequest::default(), 3).unwrap();
     assert_eq!(path.target, None);
     assert!(NavMesh::from_bytes(&platform.navmesh(&scene).unwrap().to_bytes()).is_ok());
-    let elsewhere = platform.graph(&SceneId::new("attic").unwrap()).unwrap_err().to_string();
+    let elsewhere = platform.graph_for_scene(&SceneId::new("attic").unwrap()).unwrap_err().to_string();
     assert_eq!(elsewhere, "there is no scene attic: there are 1: yard ...");
 }
 
@@ -166,24 +171,24 @@ fn open_flat(options: HabitatOptions) -> (HabitatPlatform, SceneId, Arc<Mutex<Ve
     std::fs::write(folder.path().join("flat.glb"), painted(&flat(), &[[90; 4], [200; 4]])).unwrap();
     let heard = Arc::new(Mutex::new(Vec::new()));
     let hearing = Arc::clone(&heard);
-    let hear: Hear = Arc::new(move |line: &str| hearing.lock().unwrap().push(line.to_owned()));
+    let hear: OutputListener = Arc::new(move |line: &str| hearing.lock().unwrap().push(line.to_owned()));
     let platform = HabitatPlatform::open(folder.path(), options, hear).unwrap();
-    let scene = platform.scenes().unwrap().remove(0);
+    let scene = platform.list_scenes().unwrap().remove(0);
     (platform, scene, heard, folder)
 }
 
 #[test]
 fn walks_keep_to_the_floor_under_the_ceiling_and_not_to_its_larger_top() {
     let (platform, scene, heard, _folder) = open_flat(HabitatOptions::default());
-    let islands = platform.islands(&scene).unwrap();
-    let told: Vec<(Cover, bool)> = islands.iter().map(|island| (island.cover, island.is_walked)).collect();
-    assert_eq!(told, [(Cover::OnRoof, false), (Cover::Ceiling, true)]);
+    let islands = platform.ground_islands(&scene).unwrap();
+    let told: Vec<(GroundCover, bool)> = islands.iter().map(|island| (island.cover, island.is_walked)).collect();
+    assert_eq!(told, [(GroundCover::OnRoof, false), (GroundCover::Ceiling, true)]);
     for seed in 0..50 {
         let path = platform.sample_path(&scene, &PathRequest::default(), seed).unwrap();
         assert!(path.frames.iter().all(|frame| frame.pose.position.z < 1.8), "{path:?}");
     }
-    let graph = platform.graph(&scene).unwrap();
-    assert!(graph.viewpoints().all(|viewpoint| graph.position(viewpoint).unwrap().z < 1.8));
+    let graph = platform.graph_for_scene(&scene).unwrap();
+    assert!(graph.viewpoints().all(|viewpoint| graph.position_of(viewpoint).unwrap().z < 1.8));
     let heard = heard.lock().unwrap();
     assert_eq!(heard.len(), 1, "{heard:?}");
     assert!(heard[0].contains("paths stay on island 1") && heard[0].contains("use --island"), "{heard:?}");
@@ -196,7 +201,7 @@ fn an_island_that_is_named_is_walked_on_without_a_warning() {
     assert!(path.frames.iter().all(|frame| frame.pose.position.z > 4.0), "{path:?}");
     assert!(heard.lock().unwrap().is_empty());
     let (platform, scene, _heard, _folder) = open_flat(HabitatOptions { island: Some(2), ..HabitatOptions::default() });
-    let error = platform.graph(&scene).unwrap_err().to_string();
+    let error = platform.graph_for_scene(&scene).unwrap_err().to_string();
     assert!(error.contains("has no island 2: island 0: ") && error.contains("--island"), "{error}");
 }
 
@@ -205,13 +210,16 @@ fn a_navmesh_of_roofs_alone_is_refused_with_its_islands() {
     let folder = tempfile::tempdir().unwrap();
     let [_, slab] = flat();
     std::fs::write(folder.path().join("slab.glb"), painted(&[slab], &[[200; 4]])).unwrap();
-    let stage = crate::scene::Stage::of(&folder.path().join("slab.glb")).unwrap();
-    let roofs = crate::bake::bake(&crate::scene::Model::of(&stage).unwrap(), &crate::NavMeshSettings::default());
+    let stage = crate::scene::HabitatStage::from_file(&folder.path().join("slab.glb")).unwrap();
+    let roofs = crate::bake::bake_navmesh(
+        &crate::scene::SceneModel::from_stage(&stage).unwrap(),
+        &crate::NavMeshSettings::default(),
+    );
     let navmesh = folder.path().join("roofs.navmesh");
     std::fs::write(&navmesh, roofs.unwrap().to_bytes()).unwrap();
     let (platform, scene, _heard, _folder) =
         open_flat(HabitatOptions { navmesh: Some(navmesh), ..HabitatOptions::default() });
-    let error = platform.graph(&scene).unwrap_err().to_string();
+    let error = platform.graph_for_scene(&scene).unwrap_err().to_string();
     assert!(error.contains("flat.glb: no island of its navmesh is a place to walk on"), "{error}");
     assert!(
         error.contains("island 0: ") && error.contains("on top of a roof") && error.contains("--island"),
@@ -223,11 +231,11 @@ fn a_navmesh_of_roofs_alone_is_refused_with_its_islands() {
 fn a_way_leads_over_the_ground_with_a_corner_at_every_bend() {
     let (platform, scene) = platform(false);
     let standing = |x: f64, y: f64| {
-        let pose = wayword_core::Pose::level(wayword_core::DVec3::new(x, y, 1.5), Heading::NORTH);
+        let pose = wayword_core::Pose::looking_level(wayword_core::DVec3::new(x, y, 1.5), Heading::NORTH);
         Frame { pose, viewpoint: None, level: None }
     };
-    let way = platform.way(&scene, &standing(2.0, 4.0), &standing(6.0, 4.1)).unwrap().unwrap();
+    let way = platform.ground_route(&scene, &standing(2.0, 4.0), &standing(6.0, 4.1)).unwrap().unwrap();
     assert!(way.corners.len() >= 3 && way.length_m > 4.5, "{way:?}");
     assert!(way.corners.iter().all(|corner| corner.z.abs() < 0.3), "{way:?}");
-    assert_eq!(platform.way(&scene, &standing(2.0, 4.0), &standing(90.0, 4.0)).unwrap(), None);
+    assert_eq!(platform.ground_route(&scene, &standing(2.0, 4.0), &standing(90.0, 4.0)).unwrap(), None);
 }

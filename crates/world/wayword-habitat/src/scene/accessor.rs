@@ -1,6 +1,6 @@
 //! Reads the numbers in a glTF file through its accessors (glTF 2.0, section 3.6.2).
 
-use super::asset::Asset;
+use super::asset::GltfAsset;
 use gltf::json::{
     Index,
     accessor::{Accessor, ComponentType, Type},
@@ -8,8 +8,8 @@ use gltf::json::{
 };
 
 /// The entries of an accessor, each of `N` floats; normalised integers become fractions.
-pub(super) fn floats<const N: usize>(asset: &Asset, index: Index<Accessor>) -> Result<Vec<[f32; N]>, String> {
-    let entries = Entries::of(asset, index)?;
+pub(super) fn read_floats<const N: usize>(asset: &GltfAsset, index: Index<Accessor>) -> Result<Vec<[f32; N]>, String> {
+    let entries = AccessorEntries::from_accessor(asset, index)?;
     let given = entries.components;
     // Colours come with or without alpha: only the first `N` numbers are used.
     if given < N {
@@ -17,23 +17,23 @@ pub(super) fn floats<const N: usize>(asset: &Asset, index: Index<Accessor>) -> R
     }
     let mut all = Vec::with_capacity(entries.count);
     for entry in 0..entries.count {
-        all.push(std::array::from_fn(|at| entries.float(entry, at)));
+        all.push(std::array::from_fn(|at| entries.float_at(entry, at)));
     }
     Ok(all)
 }
 
 /// The entries of an accessor of whole numbers, one each.
-pub(super) fn indices(asset: &Asset, index: Index<Accessor>) -> Result<Vec<u32>, String> {
-    let entries = Entries::of(asset, index)?;
+pub(super) fn read_indices(asset: &GltfAsset, index: Index<Accessor>) -> Result<Vec<u32>, String> {
+    let entries = AccessorEntries::from_accessor(asset, index)?;
     let whole = matches!(entries.kind, ComponentType::U8 | ComponentType::U16 | ComponentType::U32);
     if !whole || entries.components != 1 {
         return Err(format!("accessor {} does not hold indices", index.value()));
     }
-    Ok((0..entries.count).map(|entry| entries.whole(entry)).collect())
+    Ok((0..entries.count).map(|entry| entries.index_at(entry)).collect())
 }
 
 /// The entries of an accessor; all of them lie within `bytes`.
-struct Entries<'a> {
+struct AccessorEntries<'a> {
     bytes: &'a [u8],
     stride: usize,
     count: usize,
@@ -42,8 +42,8 @@ struct Entries<'a> {
     is_normalised: bool,
 }
 
-impl<'a> Entries<'a> {
-    fn of(asset: &'a Asset, index: Index<Accessor>) -> Result<Self, String> {
+impl<'a> AccessorEntries<'a> {
+    fn from_accessor(asset: &'a GltfAsset, index: Index<Accessor>) -> Result<Self, String> {
         let number = index.value();
         let wrong = |reason: &str| format!("accessor {number} {reason}");
         let accessor = asset.root.accessors.get(number).ok_or_else(|| wrong("does not exist"))?;
@@ -51,7 +51,7 @@ impl<'a> Entries<'a> {
             return Err(wrong("is sparse, which Habitat does not read either"));
         }
         let view = accessor.buffer_view.ok_or_else(|| wrong("has no bytes"))?;
-        let (view, bytes) = asset.view(view).map_err(|reason| wrong(&reason))?;
+        let (view, bytes) = asset.view_bytes(view).map_err(|reason| wrong(&reason))?;
         let Checked::Valid(component) = accessor.component_type else { return Err(wrong("has an unknown type")) };
         let Checked::Valid(shape) = accessor.type_ else { return Err(wrong("has an unknown shape")) };
         let components = match shape {
@@ -80,30 +80,30 @@ impl<'a> Entries<'a> {
         Ok(Self { bytes, stride, count, components, kind: component.0, is_normalised: accessor.normalized })
     }
 
-    fn at<const N: usize>(&self, entry: usize, component: usize) -> [u8; N] {
+    fn component_bytes<const N: usize>(&self, entry: usize, component: usize) -> [u8; N] {
         let start = entry * self.stride + component * N;
         let mut bytes = [0; N];
         bytes.copy_from_slice(&self.bytes[start..start + N]);
         bytes
     }
 
-    fn float(&self, entry: usize, component: usize) -> f32 {
+    fn float_at(&self, entry: usize, component: usize) -> f32 {
         let (value, most) = match self.kind {
-            ComponentType::F32 => return f32::from_le_bytes(self.at(entry, component)),
-            ComponentType::U8 => (f32::from(self.at::<1>(entry, component)[0]), 255.0),
-            ComponentType::I8 => (f32::from(self.at::<1>(entry, component)[0] as i8), 127.0),
-            ComponentType::U16 => (f32::from(u16::from_le_bytes(self.at(entry, component))), 65_535.0),
-            ComponentType::I16 => (f32::from(i16::from_le_bytes(self.at(entry, component))), 32_767.0),
-            ComponentType::U32 => (u32::from_le_bytes(self.at(entry, component)) as f32, 1.0),
+            ComponentType::F32 => return f32::from_le_bytes(self.component_bytes(entry, component)),
+            ComponentType::U8 => (f32::from(self.component_bytes::<1>(entry, component)[0]), 255.0),
+            ComponentType::I8 => (f32::from(self.component_bytes::<1>(entry, component)[0] as i8), 127.0),
+            ComponentType::U16 => (f32::from(u16::from_le_bytes(self.component_bytes(entry, component))), 65_535.0),
+            ComponentType::I16 => (f32::from(i16::from_le_bytes(self.component_bytes(entry, component))), 32_767.0),
+            ComponentType::U32 => (u32::from_le_bytes(self.component_bytes(entry, component)) as f32, 1.0),
         };
         if self.is_normalised { (value / most).max(-1.0) } else { value }
     }
 
-    fn whole(&self, entry: usize) -> u32 {
+    fn index_at(&self, entry: usize) -> u32 {
         match self.kind {
-            ComponentType::U8 => u32::from(self.at::<1>(entry, 0)[0]),
-            ComponentType::U16 => u32::from(u16::from_le_bytes(self.at(entry, 0))),
-            _ => u32::from_le_bytes(self.at(entry, 0)),
+            ComponentType::U8 => u32::from(self.component_bytes::<1>(entry, 0)[0]),
+            ComponentType::U16 => u32::from(u16::from_le_bytes(self.component_bytes(entry, 0))),
+            _ => u32::from_le_bytes(self.component_bytes(entry, 0)),
         }
     }
 }

@@ -11,43 +11,44 @@ use std::{
     path::{Component, Path, PathBuf},
     rc::Rc,
 };
-use wayword_core::contain::decoded;
+use wayword_core::contain::run_decoder;
 
-const HINT: &str = "export the scene again as GLB";
+const EXPORT_HINT: &str = "export the scene again as GLB";
 /// Largest file that is read: HM3D's and Matterport3D's are below 1 GB.
 const MAX_BYTES: u64 = 4 << 30;
 /// Number of bytes before the document in a GLB.
 const GLB_HEAD_BYTES: u64 = 20;
 /// Extensions that a file may require: those that the reader supports, and those that change nothing in unlit pictures.
-const KNOWN: [&str; 4] = ["GOOGLE_texture_basis", "KHR_texture_transform", "KHR_mesh_quantization", "KHR_materials_"];
+const KNOWN_EXTENSIONS: [&str; 4] =
+    ["GOOGLE_texture_basis", "KHR_texture_transform", "KHR_mesh_quantization", "KHR_materials_"];
 
 /// A document and its bytes.
-pub(super) struct Asset {
+pub(super) struct GltfAsset {
     pub(super) root: Root,
     buffers: Vec<Rc<Vec<u8>>>,
-    beside: Beside,
+    beside: AdjacentFiles,
 }
 
-impl Asset {
+impl GltfAsset {
     pub(super) fn read(file: &Path) -> Result<Self, FileError> {
-        let wrong = |reason: String| FileError::new(file, reason, HINT);
-        let bytes = fault::bytes(file, MAX_BYTES, "use a GLB or glTF file")?;
+        let wrong = |reason: String| FileError::new(file, reason, EXPORT_HINT);
+        let bytes = fault::read_bytes(file, MAX_BYTES, "use a GLB or glTF file")?;
         // The library's validation rejects GOOGLE_texture_basis, so values are checked here where they are used.
-        let gltf = decoded(|| gltf::Gltf::from_slice_without_validation(&bytes).map_err(|error| error.to_string()))
+        let gltf = run_decoder(|| gltf::Gltf::from_slice_without_validation(&bytes).map_err(|error| error.to_string()))
             .map_err(&wrong)?;
         let (root, mut blob) = (gltf.document.into_json(), gltf.blob);
-        let foreign = |name: &&String| !KNOWN.iter().any(|known| name.starts_with(known));
+        let foreign = |name: &&String| !KNOWN_EXTENSIONS.iter().any(|known| name.starts_with(known));
         if let Some(name) = root.extensions_required.iter().find(foreign) {
             let hint = "export it without geometry compression";
             return Err(FileError::new(file, format!("needs the extension {name:.60}, which cannot be read"), hint));
         }
         let folder = file.parent().unwrap_or(Path::new("")).to_owned();
-        let beside = Beside { folder, read: RefCell::default(), bytes: Cell::new(bytes.len() as u64) };
+        let beside = AdjacentFiles { folder, read: RefCell::default(), bytes: Cell::new(bytes.len() as u64) };
         let mut buffers = Vec::with_capacity(root.buffers.len());
         for (index, buffer) in root.buffers.iter().enumerate() {
             let bytes = match &buffer.uri {
                 None => Rc::new(blob.take().ok_or_else(|| wrong(format!("buffer {index} has no bytes")))?),
-                Some(uri) => beside.bytes(uri).map_err(|reason| wrong(format!("buffer {index}: {reason}")))?,
+                Some(uri) => beside.read_uri(uri).map_err(|reason| wrong(format!("buffer {index}: {reason}")))?,
             };
             buffers.push(bytes);
         }
@@ -58,11 +59,11 @@ impl Asset {
     /// lacks some of them.
     pub(super) fn check_views(&self) -> Result<(), String> {
         for number in 0..self.root.buffer_views.len() {
-            self.view(Index::new(u32::try_from(number).unwrap_or(u32::MAX)))?;
+            self.view_bytes(Index::new(u32::try_from(number).unwrap_or(u32::MAX)))?;
         }
         for (number, image) in self.root.images.iter().enumerate() {
             let Some(uri) = image.uri.as_deref().filter(|uri| !uri.starts_with("data:")) else { continue };
-            let file = target(uri).map(|target| self.beside.folder.join(target));
+            let file = uri_target(uri).map(|target| self.beside.folder.join(target));
             let there = file.and_then(|file| match file.is_file() {
                 true => Ok(()),
                 false => Err(format!("{} is not there", file.display())),
@@ -73,18 +74,18 @@ impl Asset {
     }
 
     /// The bytes that a URI refers to.
-    pub(super) fn beside(&self, uri: &str) -> Result<Rc<Vec<u8>>, String> {
-        self.beside.bytes(uri)
+    pub(super) fn read_adjacent(&self, uri: &str) -> Result<Rc<Vec<u8>>, String> {
+        self.beside.read_uri(uri)
     }
 
     /// Length of the file and of all other files that were read for it so far, bytes. The limits for meshes and textures depend
     /// on it.
-    pub(super) fn length(&self) -> u64 {
+    pub(super) fn total_bytes(&self) -> u64 {
         self.beside.bytes.get()
     }
 
     /// The bytes of a view.
-    pub(super) fn view(&self, index: Index<View>) -> Result<(&View, &[u8]), String> {
+    pub(super) fn view_bytes(&self, index: Index<View>) -> Result<(&View, &[u8]), String> {
         let number = index.value();
         let view = self.root.buffer_views.get(number).ok_or_else(|| format!("view {number} does not exist"))?;
         let start = view.byte_offset.map_or(0, |offset| offset.0);
@@ -98,25 +99,26 @@ impl Asset {
 }
 
 /// The files in a file's folder to which it refers. Each is read once, however often and in whatever spelling it is named.
-struct Beside {
+struct AdjacentFiles {
     folder: PathBuf,
     read: RefCell<BTreeMap<PathBuf, Rc<Vec<u8>>>>,
     bytes: Cell<u64>,
 }
 
-impl Beside {
+impl AdjacentFiles {
     /// The bytes that a relative URI refers to: a file in the folder, or data within the URI itself.
-    fn bytes(&self, uri: &str) -> Result<Rc<Vec<u8>>, String> {
+    fn read_uri(&self, uri: &str) -> Result<Rc<Vec<u8>>, String> {
         if let Some(data) = uri.strip_prefix("data:") {
             let (_, text) = data.split_once(";base64,").ok_or("a data URI without base64")?;
             let decoded = base64::Engine::decode(&base64::engine::general_purpose::STANDARD, text);
             return decoded.map(Rc::new).map_err(|error| error.to_string());
         }
-        let target = target(uri)?;
+        let target = uri_target(uri)?;
         if let Some(known) = self.read.borrow().get(&target) {
             return Ok(known.clone());
         }
-        let bytes = fault::bytes(&self.folder.join(&target), MAX_BYTES, HINT).map_err(|error| error.to_string())?;
+        let bytes =
+            fault::read_bytes(&self.folder.join(&target), MAX_BYTES, EXPORT_HINT).map_err(|error| error.to_string())?;
         self.bytes.set(self.bytes.get().saturating_add(bytes.len() as u64));
         let bytes = Rc::new(bytes);
         self.read.borrow_mut().insert(target, bytes.clone());
@@ -125,7 +127,7 @@ impl Beside {
 }
 
 /// The file that a relative URI names, relative to the folder of the file that contains the URI.
-fn target(uri: &str) -> Result<PathBuf, String> {
+fn uri_target(uri: &str) -> Result<PathBuf, String> {
     let name = uri.replace("%20", " ");
     let mut target = PathBuf::new();
     for part in Path::new(&name).components() {
@@ -141,28 +143,28 @@ fn target(uri: &str) -> Result<PathBuf, String> {
 /// The parts of a document that name other files.
 #[derive(Default, Deserialize)]
 #[serde(default)]
-struct Addresses {
-    buffers: Vec<Address>,
-    images: Vec<Address>,
+struct GltfAddresses {
+    buffers: Vec<GltfAddress>,
+    images: Vec<GltfAddress>,
 }
 
 #[derive(Deserialize)]
-struct Address {
+struct GltfAddress {
     uri: Option<String>,
 }
 
-/// The existing files to which a GLB or glTF file refers. Errors in the file are ignored here, because [`Asset::read`]
+/// The existing files to which a GLB or glTF file refers. Errors in the file are ignored here, because [`GltfAsset::read`]
 /// reports them.
 pub(crate) fn files_beside(file: &Path) -> Vec<PathBuf> {
-    let addresses: Option<Addresses> = document(file).and_then(|text| serde_json::from_slice(&text).ok());
-    let Addresses { buffers, images } = addresses.unwrap_or_default();
-    let targets = buffers.into_iter().chain(images).filter_map(|address| target(&address.uri?).ok());
+    let addresses: Option<GltfAddresses> = read_document(file).and_then(|text| serde_json::from_slice(&text).ok());
+    let GltfAddresses { buffers, images } = addresses.unwrap_or_default();
+    let targets = buffers.into_iter().chain(images).filter_map(|address| uri_target(&address.uri?).ok());
     let folder = file.parent().unwrap_or(Path::new(""));
     targets.map(|target| folder.join(target)).filter(|file| file.is_file()).collect()
 }
 
 /// The document of a glTF or GLB file.
-fn document(file: &Path) -> Option<Vec<u8>> {
+fn read_document(file: &Path) -> Option<Vec<u8>> {
     // Opening a pipe would block until another process writes into it.
     if !file.is_file() {
         return None;

@@ -11,16 +11,16 @@ mod studio;
 pub(crate) mod tests;
 
 pub(crate) use asset::files_beside;
-pub use stage::Stage;
-pub(crate) use stage::stem;
+pub use stage::HabitatStage;
+pub(crate) use stage::scene_stem;
 
 use crate::{axes::wayword_from_habitat, fault::FileError};
-use asset::Asset;
+use asset::GltfAsset;
 use glam::{DMat3, Vec3};
 use std::{collections::BTreeMap, path::Path};
-use wayword_render::{Material, Mesh, Texture};
+use wayword_render::{Mesh, MeshMaterial, Texture};
 
-const HINT: &str = "export the scene again as GLB";
+const EXPORT_HINT: &str = "export the scene again as GLB";
 /// Triangle corners that any file may have. There is a limit because a file can place one mesh many times.
 const FREE_CORNERS: u64 = 1 << 22;
 /// Further triangle corners that a file may have for each of its bytes.
@@ -28,37 +28,37 @@ const CORNERS_PER_BYTE: u64 = 64;
 
 /// The geometry and textures of a scene, in Wayword's frame.
 #[derive(Debug, Default)]
-pub struct Model {
+pub struct SceneModel {
     /// Triangles, grouped by material.
     pub meshes: Vec<Mesh>,
     /// The materials.
-    pub materials: Vec<Material>,
+    pub materials: Vec<MeshMaterial>,
     /// The materials' textures.
     pub textures: Vec<Texture>,
 }
 
-impl Model {
+impl SceneModel {
     /// Reads a stage's file.
     ///
     /// # Errors
     /// If it cannot be read; the message names the faulty item of the file.
-    pub fn of(stage: &Stage) -> Result<Self, FileError> {
-        Self::read(&stage.asset, stage.habitat_from_asset)
+    pub fn from_stage(stage: &HabitatStage) -> Result<Self, FileError> {
+        Self::read_file(&stage.asset, stage.habitat_from_asset)
     }
 
-    pub(crate) fn read(file: &Path, habitat_from_asset: DMat3) -> Result<Self, FileError> {
-        let asset = Asset::read(file)?;
-        let mut reading = Reading::of(&asset);
-        reading.surfaces(file)?;
-        reading.placed(file, habitat_from_asset)
+    pub(crate) fn read_file(file: &Path, habitat_from_asset: DMat3) -> Result<Self, FileError> {
+        let asset = GltfAsset::read(file)?;
+        let mut reading = SceneModelBuilder::from_asset(&asset);
+        reading.read_materials(file)?;
+        reading.place_meshes(file, habitat_from_asset)
     }
 
     /// Reads a file's triangles without decoding its pictures; it checks only that their bytes are there. This takes a small
     /// part of the time and memory.
-    pub(crate) fn shape(file: &Path, habitat_from_asset: DMat3) -> Result<Self, FileError> {
-        let asset = Asset::read(file)?;
-        asset.check_views().map_err(|reason| FileError::new(file, reason, HINT))?;
-        Reading::of(&asset).placed(file, habitat_from_asset)
+    pub(crate) fn read_shape(file: &Path, habitat_from_asset: DMat3) -> Result<Self, FileError> {
+        let asset = GltfAsset::read(file)?;
+        asset.check_views().map_err(|reason| FileError::new(file, reason, EXPORT_HINT))?;
+        SceneModelBuilder::from_asset(&asset).place_meshes(file, habitat_from_asset)
     }
 
     /// Its triangles.
@@ -71,56 +71,57 @@ impl Model {
 }
 
 /// Lights a mesh without a material, face by face.
-fn light(mesh: &mut Mesh) {
+fn light_mesh(mesh: &mut Mesh) {
     let corner = |vertex: u32| mesh.positions.get(vertex as usize).copied().unwrap_or_default();
     let faces: Vec<[Vec3; 3]> = mesh.triangles.iter().map(|triangle| triangle.map(corner)).collect();
     mesh.triangles = (0..faces.len() as u32).map(|face| [3 * face, 3 * face + 1, 3 * face + 2]).collect();
-    mesh.colours = faces.iter().flat_map(|[a, b, c]| [studio::light((*b - *a).cross(*c - *a)); 3]).collect();
+    mesh.colours = faces.iter().flat_map(|[a, b, c]| [studio::studio_light((*b - *a).cross(*c - *a)); 3]).collect();
     mesh.positions = faces.into_iter().flatten().collect();
 }
 
 /// A model that is being read.
-struct Reading<'a> {
-    asset: &'a Asset,
-    model: Model,
+struct SceneModelBuilder<'a> {
+    asset: &'a GltfAsset,
+    model: SceneModel,
     /// Index in the model of each texture of the file.
     textures: BTreeMap<usize, usize>,
     /// The material for meshes without one.
     plain: Option<usize>,
 }
 
-impl<'a> Reading<'a> {
-    fn of(asset: &'a Asset) -> Self {
-        Self { asset, model: Model::default(), textures: BTreeMap::new(), plain: None }
+impl<'a> SceneModelBuilder<'a> {
+    fn from_asset(asset: &'a GltfAsset) -> Self {
+        Self { asset, model: SceneModel::default(), textures: BTreeMap::new(), plain: None }
     }
 
     /// The triangles, placed in Wayword's frame.
-    fn placed(mut self, file: &Path, habitat_from_asset: DMat3) -> Result<Model, FileError> {
+    fn place_meshes(mut self, file: &Path, habitat_from_asset: DMat3) -> Result<SceneModel, FileError> {
         let asset = self.asset;
-        let most_corners = FREE_CORNERS + CORNERS_PER_BYTE.saturating_mul(asset.length());
+        let most_corners = FREE_CORNERS + CORNERS_PER_BYTE.saturating_mul(asset.total_bytes());
         let mut corners = 0;
         for (number, place) in nodes::placed_meshes(&asset.root) {
             let mesh = asset.root.meshes.get(number);
             for (index, primitive) in mesh.iter().flat_map(|mesh| mesh.primitives.iter().enumerate()) {
-                let wrong = |reason| FileError::new(file, format!("mesh {number}, primitive {index}: {reason}"), HINT);
-                let Some(mut mesh) = primitive::read(asset, primitive).map_err(wrong)? else { continue };
+                let wrong =
+                    |reason| FileError::new(file, format!("mesh {number}, primitive {index}: {reason}"), EXPORT_HINT);
+                let Some(mut mesh) = primitive::read_primitive(asset, primitive).map_err(wrong)? else { continue };
                 corners += mesh.positions.len() as u64 + 3 * mesh.triangles.len() as u64;
                 if corners > most_corners {
                     let reason =
                         format!("its meshes are placed so often that they have more than {most_corners} corners");
-                    return Err(FileError::new(file, reason, HINT));
+                    return Err(FileError::new(file, reason, EXPORT_HINT));
                 }
                 mesh.material = match primitive.material.map(|material| material.value()) {
                     Some(material) if material < asset.root.materials.len() => material,
-                    _ => self.plain(),
+                    _ => self.plain_material(),
                 };
-                self.finish(&mut mesh, primitive);
+                self.finish_uvs(&mut mesh, primitive);
                 for position in &mut mesh.positions {
                     let placed = habitat_from_asset * place.transform_point3(position.as_dvec3());
                     *position = wayword_from_habitat(placed).as_vec3();
                 }
                 if self.plain == Some(mesh.material) && mesh.colours.is_empty() {
-                    light(&mut mesh);
+                    light_mesh(&mut mesh);
                 }
                 self.model.meshes.push(mesh);
             }
@@ -130,31 +131,31 @@ impl<'a> Reading<'a> {
 
     /// Reads the file's materials with their textures. Factors are used without conversion, because Habitat's unlit
     /// shader multiplies stored colours by them (Magnum's `FlatGL`).
-    fn surfaces(&mut self, file: &Path) -> Result<(), FileError> {
+    fn read_materials(&mut self, file: &Path) -> Result<(), FileError> {
         for (number, material) in self.asset.root.materials.iter().enumerate() {
             let surface = &material.pbr_metallic_roughness;
             let texture = match &surface.base_color_texture {
                 None => None,
                 Some(info) => {
-                    let wrong = |reason| FileError::new(file, format!("material {number}: {reason}"), HINT);
-                    Some(self.texture(info.index.value()).map_err(wrong)?)
+                    let wrong = |reason| FileError::new(file, format!("material {number}: {reason}"), EXPORT_HINT);
+                    Some(self.texture_index(info.index.value()).map_err(wrong)?)
                 }
             };
             let base_colour =
                 surface.base_color_factor.0.map(|factor| if factor.is_finite() { factor.max(0.0) } else { 1.0 });
-            self.model.materials.push(Material { base_colour, texture, double_sided: material.double_sided });
+            self.model.materials.push(MeshMaterial { base_colour, texture, double_sided: material.double_sided });
         }
         Ok(())
     }
 
-    fn texture(&mut self, number: usize) -> Result<usize, String> {
+    fn texture_index(&mut self, number: usize) -> Result<usize, String> {
         if let Some(known) = self.textures.get(&number) {
             return Ok(*known);
         }
-        self.model.textures.push(pictures::texture(self.asset, number)?);
+        self.model.textures.push(pictures::read_texture(self.asset, number)?);
         let (index, texels) =
             (self.model.textures.len() - 1, self.model.textures.iter().map(|texture| texture.texels.len() as u64));
-        let most = pictures::most_texels(self.asset.length());
+        let most = pictures::most_texels(self.asset.total_bytes());
         if texels.sum::<u64>() > most {
             return Err(format!("texture {number}: the pictures have more than {most} texels together"));
         }
@@ -162,16 +163,16 @@ impl<'a> Reading<'a> {
         Ok(index)
     }
 
-    fn plain(&mut self) -> usize {
+    fn plain_material(&mut self) -> usize {
         *self.plain.get_or_insert_with(|| {
-            self.model.materials.push(Material::default());
+            self.model.materials.push(MeshMaterial::default());
             self.model.materials.len() - 1
         })
     }
 
     /// Transforms texture coordinates according to the material. A textured mesh without coordinates shows the texture's
     /// corner.
-    fn finish(&self, mesh: &mut Mesh, primitive: &gltf::json::mesh::Primitive) {
+    fn finish_uvs(&self, mesh: &mut Mesh, primitive: &gltf::json::mesh::Primitive) {
         if self.model.materials.get(mesh.material).is_none_or(|material| material.texture.is_none()) {
             mesh.uvs = Vec::new();
             return;

@@ -11,7 +11,7 @@ pub(super) fn placed_meshes(root: &Root) -> Vec<(usize, DMat4)> {
     let mut open: Vec<(usize, DMat4)> = match root.scenes.get(first) {
         Some(scene) => scene.nodes.iter().rev().map(|node| (node.value(), DMat4::IDENTITY)).collect(),
         // If a file has no scenes, all nodes without a parent are shown.
-        None => roots(root).into_iter().rev().map(|node| (node, DMat4::IDENTITY)).collect(),
+        None => root_nodes(root).into_iter().rev().map(|node| (node, DMat4::IDENTITY)).collect(),
     };
     let mut placed = Vec::new();
     while let Some((index, above)) = open.pop() {
@@ -19,7 +19,7 @@ pub(super) fn placed_meshes(root: &Root) -> Vec<(usize, DMat4)> {
         if std::mem::replace(&mut seen[index], true) {
             continue;
         }
-        let here = above * local(node);
+        let here = above * local_transform(node);
         if let Some(mesh) = node.mesh {
             placed.push((mesh.value(), here));
         }
@@ -28,7 +28,7 @@ pub(super) fn placed_meshes(root: &Root) -> Vec<(usize, DMat4)> {
     placed
 }
 
-fn roots(root: &Root) -> Vec<usize> {
+fn root_nodes(root: &Root) -> Vec<usize> {
     let mut hangs = vec![false; root.nodes.len()];
     for child in root.nodes.iter().flat_map(|node| node.children.iter().flatten()) {
         if let Some(hangs) = hangs.get_mut(child.value()) {
@@ -38,7 +38,7 @@ fn roots(root: &Root) -> Vec<usize> {
     (0..hangs.len()).filter(|node| !hangs[*node]).collect()
 }
 
-fn local(node: &Node) -> DMat4 {
+fn local_transform(node: &Node) -> DMat4 {
     if let Some(matrix) = node.matrix {
         return DMat4::from_cols_array(&matrix.map(f64::from));
     }

@@ -1,9 +1,9 @@
 //! Reads textures: PNG and JPEG, and Basis as HM3D uses it (`GOOGLE_texture_basis`).
 
-use super::asset::Asset;
+use super::asset::GltfAsset;
 use basisu::{DecodeFlags, TargetFormat, Transcoder};
 use std::io::Cursor;
-use wayword_core::contain::decoded;
+use wayword_core::contain::run_decoder;
 use wayword_render::{MAX_TEXTURE_SIDE, Texture};
 
 /// Texels that any picture may have.
@@ -13,7 +13,7 @@ const FREE_TEXELS: u64 = 1 << 20;
 const TEXELS_PER_BYTE: u64 = 512;
 
 /// Reads the texture with this number.
-pub(super) fn texture(asset: &Asset, number: usize) -> Result<Texture, String> {
+pub(super) fn read_texture(asset: &GltfAsset, number: usize) -> Result<Texture, String> {
     let texture = asset.root.textures.get(number).ok_or_else(|| format!("texture {number} does not exist"))?;
     let basis = texture.extensions.as_ref().and_then(|all| all.others.get("GOOGLE_texture_basis"));
     let basis = basis.and_then(|basis| basis.get("source")).and_then(serde_json::Value::as_u64);
@@ -22,20 +22,20 @@ pub(super) fn texture(asset: &Asset, number: usize) -> Result<Texture, String> {
     let image = asset.root.images.get(source).ok_or_else(|| wrong("does not exist".to_owned()))?;
     let read;
     let bytes = match (&image.buffer_view, &image.uri) {
-        (Some(view), _) => asset.view(*view).map_err(wrong)?.1,
+        (Some(view), _) => asset.view_bytes(*view).map_err(wrong)?.1,
         (None, Some(uri)) => {
-            read = asset.beside(uri).map_err(wrong)?;
+            read = asset.read_adjacent(uri).map_err(wrong)?;
             &read
         }
         (None, None) => return Err(wrong("has no bytes".to_owned())),
     };
-    decode(bytes).map_err(wrong)
+    decode_texture(bytes).map_err(wrong)
 }
 
 /// Decodes a picture. The first bytes determine its format.
-fn decode(bytes: &[u8]) -> Result<Texture, String> {
+fn decode_texture(bytes: &[u8]) -> Result<Texture, String> {
     // "sB", the signature of a .basis file.
-    if bytes.starts_with(b"sB") { basis(bytes) } else { common(bytes) }
+    if bytes.starts_with(b"sB") { decode_basis(bytes) } else { decode_common(bytes) }
 }
 
 /// Most texels of all pictures together, for a file of this many bytes. A limit for each picture is not enough, because
@@ -44,7 +44,7 @@ pub(super) fn most_texels(bytes: u64) -> u64 {
     4 * FREE_TEXELS + TEXELS_PER_BYTE.saturating_mul(bytes)
 }
 
-fn check(width: u32, height: u32, bytes: usize) -> Result<(), String> {
+fn check_size(width: u32, height: u32, bytes: usize) -> Result<(), String> {
     let texels = u64::from(width) * u64::from(height);
     if width.max(height) > MAX_TEXTURE_SIDE || texels > FREE_TEXELS + TEXELS_PER_BYTE * bytes as u64 {
         return Err(format!("{width} x {height} texels in {bytes} bytes: too large"));
@@ -52,11 +52,11 @@ fn check(width: u32, height: u32, bytes: usize) -> Result<(), String> {
     Ok(())
 }
 
-fn common(bytes: &[u8]) -> Result<Texture, String> {
+fn decode_common(bytes: &[u8]) -> Result<Texture, String> {
     let open = || image::ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|error| error.to_string());
-    let picture = decoded(|| {
+    let picture = run_decoder(|| {
         let (width, height) = open()?.into_dimensions().map_err(|error| error.to_string())?;
-        check(width, height, bytes.len())?;
+        check_size(width, height, bytes.len())?;
         open()?.decode().map_err(|error| error.to_string())
     })?;
     let picture = picture.into_rgba8();
@@ -64,11 +64,11 @@ fn common(bytes: &[u8]) -> Result<Texture, String> {
     Texture::new(picture.width(), picture.height(), texels).map_err(|error| error.to_string())
 }
 
-fn basis(bytes: &[u8]) -> Result<Texture, String> {
-    decoded(|| {
+fn decode_basis(bytes: &[u8]) -> Result<Texture, String> {
+    run_decoder(|| {
         let transcoder = Transcoder::new(bytes).map_err(|error| format!("Basis: {error:?}"))?;
         let (width, height) = transcoder.base_dimensions();
-        check(width, height, bytes.len())?;
+        check_size(width, height, bytes.len())?;
         let rgba = transcoder.transcode(0, TargetFormat::Rgba32, DecodeFlags::NONE);
         let rgba = rgba.map_err(|error| format!("Basis: {error:?}"))?;
         Texture::new(width, height, rgba.as_chunks().0.to_vec()).map_err(|error| error.to_string())
@@ -92,7 +92,7 @@ pub(crate) mod tests {
 
     #[test]
     fn basis_files_are_unpacked() {
-        let texture = decode(&etc1s()).unwrap();
+        let texture = decode_texture(&etc1s()).unwrap();
         assert_eq!((texture.width, texture.height), (16, 16));
         for (x, y, expected) in [(2, 8, [200, 40, 40]), (13, 2, [40, 200, 40]), (13, 13, [40, 40, 200])] {
             let [red, green, blue, _] = texture.texels[16 * y + x];
@@ -110,7 +110,7 @@ pub(crate) mod tests {
 
     #[test]
     fn pngs_keep_their_texels() {
-        let texture = decode(&png(2, 1, &[1, 2, 3, 255, 4, 5, 6, 7])).unwrap();
+        let texture = decode_texture(&png(2, 1, &[1, 2, 3, 255, 4, 5, 6, 7])).unwrap();
         assert_eq!((texture.width, texture.height, texture.texels), (2, 1, vec![[1, 2, 3, 255], [4, 5, 6, 7]]));
     }
 
@@ -123,13 +123,13 @@ pub(crate) mod tests {
         let mut crc = flate2::Crc::new();
         crc.update(&bytes[12..29]);
         bytes[29..33].copy_from_slice(&crc.sum().to_be_bytes());
-        assert!(decode(&bytes).unwrap_err().contains("16000 x 16000 texels in"));
+        assert!(decode_texture(&bytes).unwrap_err().contains("16000 x 16000 texels in"));
     }
 
     #[test]
     fn decode_refuses_bytes_that_are_no_picture() {
-        assert!(decode(b"").is_err());
-        assert!(decode(b"sB").unwrap_err().starts_with("Basis: "));
-        assert!(decode(&[b's', b'B', 0x13, 0, 77, 0, 0xff, 0xff, 0xff, 0xff].repeat(20)).is_err());
+        assert!(decode_texture(b"").is_err());
+        assert!(decode_texture(b"sB").unwrap_err().starts_with("Basis: "));
+        assert!(decode_texture(&[b's', b'B', 0x13, 0, 77, 0, 0xff, 0xff, 0xff, 0xff].repeat(20)).is_err());
     }
 }

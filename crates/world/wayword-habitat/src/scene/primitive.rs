@@ -1,6 +1,6 @@
 //! Reads the triangles of one primitive of a glTF mesh.
 
-use super::{accessor, asset::Asset};
+use super::{accessor, asset::GltfAsset};
 use glam::{Vec2, Vec3};
 use gltf::json::{
     mesh::{Mode, Primitive, Semantic},
@@ -9,37 +9,37 @@ use gltf::json::{
 use wayword_render::Mesh;
 
 /// The triangles in the node's frame, without a material; `None` for points and lines.
-pub(super) fn read(asset: &Asset, primitive: &Primitive) -> Result<Option<Mesh>, String> {
+pub(super) fn read_primitive(asset: &GltfAsset, primitive: &Primitive) -> Result<Option<Mesh>, String> {
     let Checked::Valid(mode) = primitive.mode else { return Err("has an unknown mode".to_owned()) };
     if !matches!(mode, Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan) {
         return Ok(None);
     }
     let attribute = |semantic| primitive.attributes.get(&Checked::Valid(semantic)).copied();
     let positions = attribute(Semantic::Positions).ok_or("has no positions")?;
-    let positions: Vec<Vec3> = accessor::floats(asset, positions)?.into_iter().map(Vec3::from_array).collect();
+    let positions: Vec<Vec3> = accessor::read_floats(asset, positions)?.into_iter().map(Vec3::from_array).collect();
     let uvs = match attribute(Semantic::TexCoords(texture_set(asset, primitive))) {
-        Some(index) => accessor::floats(asset, index)?.into_iter().map(Vec2::from_array).collect(),
+        Some(index) => accessor::read_floats(asset, index)?.into_iter().map(Vec2::from_array).collect(),
         None => Vec::new(),
     };
     let colours = match attribute(Semantic::Colors(0)) {
-        Some(index) => accessor::floats::<3>(asset, index)?,
+        Some(index) => accessor::read_floats::<3>(asset, index)?,
         None => Vec::new(),
     };
     let order = match primitive.indices {
-        Some(index) => accessor::indices(asset, index)?,
+        Some(index) => accessor::read_indices(asset, index)?,
         None => (0..positions.len() as u32).collect(),
     };
-    Ok(Some(Mesh { positions, uvs, colours, triangles: triangles(mode, &order), ..Mesh::default() }))
+    Ok(Some(Mesh { positions, uvs, colours, triangles: triangles_from_order(mode, &order), ..Mesh::default() }))
 }
 
 /// Number of the coordinate set that the base colour's texture uses.
-fn texture_set(asset: &Asset, primitive: &Primitive) -> u32 {
+fn texture_set(asset: &GltfAsset, primitive: &Primitive) -> u32 {
     let material = primitive.material.and_then(|material| asset.root.materials.get(material.value()));
     let info = material.and_then(|material| material.pbr_metallic_roughness.base_color_texture.as_ref());
     info.map_or(0, |info| info.tex_coord)
 }
 
-fn triangles(mode: Mode, order: &[u32]) -> Vec<[u32; 3]> {
+fn triangles_from_order(mode: Mode, order: &[u32]) -> Vec<[u32; 3]> {
     match mode {
         Mode::TriangleStrip => {
             let winding = |(at, [a, b, c]): (usize, [u32; 3])| if at % 2 == 0 { [a, b, c] } else { [b, a, c] };
@@ -59,9 +59,9 @@ mod tests {
 
     #[test]
     fn strips_and_fans_keep_their_winding() {
-        assert_eq!(triangles(Mode::TriangleStrip, &[0, 1, 2, 3]), [[0, 1, 2], [2, 1, 3]]);
-        assert_eq!(triangles(Mode::TriangleFan, &[0, 1, 2, 3]), [[0, 1, 2], [0, 2, 3]]);
-        assert_eq!(triangles(Mode::Triangles, &[0, 1, 2, 3]), [[0, 1, 2]]);
-        assert!(triangles(Mode::TriangleFan, &[]).is_empty());
+        assert_eq!(triangles_from_order(Mode::TriangleStrip, &[0, 1, 2, 3]), [[0, 1, 2], [2, 1, 3]]);
+        assert_eq!(triangles_from_order(Mode::TriangleFan, &[0, 1, 2, 3]), [[0, 1, 2], [0, 2, 3]]);
+        assert_eq!(triangles_from_order(Mode::Triangles, &[0, 1, 2, 3]), [[0, 1, 2]]);
+        assert!(triangles_from_order(Mode::TriangleFan, &[]).is_empty());
     }
 }

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 /// How a stage's file lies in Habitat's frame.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Stage {
+pub struct HabitatStage {
     /// The GLB or glTF file.
     pub asset: PathBuf,
     /// From the file's frame to Habitat's (metres, y up, front is -z).
@@ -20,7 +20,7 @@ pub struct Stage {
 
 /// The fields of a `*.stage_config.json` that are used (Habitat's `StageAttributes`).
 #[derive(Deserialize)]
-struct Config {
+struct StageConfig {
     render_asset: Option<String>,
     up: Option<[f64; 3]>,
     front: Option<[f64; 3]>,
@@ -29,30 +29,32 @@ struct Config {
     semantic_asset: Option<String>,
 }
 
-const HINT: &str = "see Habitat's documentation of stage_config.json";
+const STAGE_CONFIG_HINT: &str = "see Habitat's documentation of stage_config.json";
 const MAX_BYTES: u64 = 1 << 20;
-const ENDING: &str = ".stage_config.json";
+const STAGE_CONFIG_ENDING: &str = ".stage_config.json";
 
-impl Stage {
+impl HabitatStage {
     /// The stage of a file: a configuration, or a GLB or glTF file, which may have a configuration in its folder. A
     /// stage without a configuration has z up and y in front (`StageAttributesManager.cpp`,
     /// `setDefaultAssetNameBasedAttributes`).
     ///
     /// # Errors
     /// If there is a configuration and it cannot be read, or if the given configuration does not exist.
-    pub fn of(file: &Path) -> Result<Self, FileError> {
+    pub fn from_file(file: &Path) -> Result<Self, FileError> {
         let name = file.file_name().and_then(|name| name.to_str()).unwrap_or_default();
-        let config = if name.ends_with(ENDING) {
+        let config = if name.ends_with(STAGE_CONFIG_ENDING) {
             file.to_owned()
         } else {
-            file.with_file_name(format!("{}{ENDING}", stem(name)))
+            file.with_file_name(format!("{}{STAGE_CONFIG_ENDING}", scene_stem(name)))
         };
-        match fault::text_if_there(&config, MAX_BYTES, HINT)? {
+        match fault::text_if_there(&config, MAX_BYTES, STAGE_CONFIG_HINT)? {
             Some(text) => Self::parse(&config, file, &text),
-            None if name.ends_with(ENDING) => Err(FileError::new(file, "there is no such file", HINT)),
+            None if name.ends_with(STAGE_CONFIG_ENDING) => {
+                Err(FileError::new(file, "there is no such file", STAGE_CONFIG_HINT))
+            }
             None => Ok(Self {
                 asset: file.to_owned(),
-                habitat_from_asset: turned(DVec3::Z, DVec3::Y),
+                habitat_from_asset: habitat_from_axes(DVec3::Z, DVec3::Y),
                 navmesh: None,
                 semantics: None,
             }),
@@ -60,8 +62,8 @@ impl Stage {
     }
 
     fn parse(config: &Path, file: &Path, text: &str) -> Result<Self, FileError> {
-        let wrong = |reason: String| FileError::new(config, reason, HINT);
-        let read: Config = serde_json::from_str(text).map_err(|error| wrong(error.to_string()))?;
+        let wrong = |reason: String| FileError::new(config, reason, STAGE_CONFIG_HINT);
+        let read: StageConfig = serde_json::from_str(text).map_err(|error| wrong(error.to_string()))?;
         let axis = |field: &str, given: Option<[f64; 3]>, default: DVec3| {
             let axis = given.map_or(default, DVec3::from);
             let length = axis.length();
@@ -84,7 +86,7 @@ impl Stage {
         };
         Ok(Self {
             asset,
-            habitat_from_asset: turned(up, front) * scale,
+            habitat_from_asset: habitat_from_axes(up, front) * scale,
             navmesh: read.nav_asset.as_deref().filter(|name| name.ends_with(".navmesh")).map(beside),
             semantics: read.semantic_asset.as_deref().map(beside),
         })
@@ -92,14 +94,16 @@ impl Stage {
 }
 
 /// A file's name without the ending for its format; `x.basis.glb` and `x.glb` both give `x`.
-pub(crate) fn stem(name: &str) -> &str {
-    let name =
-        [".glb", ".gltf", ".navmesh", ENDING].iter().find_map(|ending| name.strip_suffix(ending)).unwrap_or(name);
+pub(crate) fn scene_stem(name: &str) -> &str {
+    let name = [".glb", ".gltf", ".navmesh", STAGE_CONFIG_ENDING]
+        .iter()
+        .find_map(|ending| name.strip_suffix(ending))
+        .unwrap_or(name);
     name.strip_suffix(".basis").unwrap_or(name)
 }
 
 /// The rotation that takes `up` to +y and `front` to -z.
-fn turned(up: DVec3, front: DVec3) -> DMat3 {
+fn habitat_from_axes(up: DVec3, front: DVec3) -> DMat3 {
     let right = front.cross(up).normalize();
     let front = up.cross(right);
     DMat3::from_cols(right, up, -front).transpose()
@@ -109,8 +113,9 @@ fn turned(up: DVec3, front: DVec3) -> DMat3 {
 mod tests {
     use super::*;
 
-    fn stage(text: &str) -> Result<Stage, String> {
-        Stage::parse(Path::new("a/x.stage_config.json"), Path::new("a/x.glb"), text).map_err(|error| error.to_string())
+    fn stage(text: &str) -> Result<HabitatStage, String> {
+        HabitatStage::parse(Path::new("a/x.stage_config.json"), Path::new("a/x.glb"), text)
+            .map_err(|error| error.to_string())
     }
 
     #[test]
@@ -134,6 +139,6 @@ mod tests {
 
     #[test]
     fn stems_leave_out_the_format() {
-        assert_eq!(["a.basis.glb", "a.glb", "a.b.gltf", "a"].map(stem), ["a", "a", "a.b", "a"]);
+        assert_eq!(["a.basis.glb", "a.glb", "a.b.gltf", "a"].map(scene_stem), ["a", "a", "a.b", "a"]);
     }
 }

@@ -11,7 +11,7 @@ use glam::Vec3;
 
 /// Colour of the light on surfaces that look east, west, north, south, up and down, 0..=255. Only east, south and up
 /// were measured: west and down are assumed to equal south, and north to equal east.
-const LIGHT: [[f32; 3]; 6] = [
+const LIGHT_BY_DIRECTION: [[f32; 3]; 6] = [
     [142.0, 132.0, 104.0],
     [109.0, 95.0, 79.0],
     [142.0, 132.0, 104.0],
@@ -22,11 +22,11 @@ const LIGHT: [[f32; 3]; 6] = [
 
 /// The light on a surface with this normal, as factors: the mean of the axes' colours, weighted with the squares of the
 /// normal's components.
-pub(super) fn light(normal: Vec3) -> [f32; 3] {
+pub(super) fn studio_light(normal: Vec3) -> [f32; 3] {
     let normal = normal.normalize_or(Vec3::Z);
     let mut light = [0.0; 3];
     for axis in 0..3 {
-        let towards = LIGHT[2 * axis + usize::from(normal[axis] < 0.0)];
+        let towards = LIGHT_BY_DIRECTION[2 * axis + usize::from(normal[axis] < 0.0)];
         for (sum, part) in light.iter_mut().zip(towards) {
             *sum += normal[axis] * normal[axis] * part / 255.0;
         }
@@ -40,8 +40,8 @@ mod tests {
 
     #[test]
     fn studio_light_depends_on_the_normal() {
-        assert_eq!(light(Vec3::Z).map(|part| (part * 255.0).round()), [141.0, 124.0, 85.0]);
-        let between = light(Vec3::new(1.0, 0.0, 1.0));
+        assert_eq!(studio_light(Vec3::Z).map(|part| (part * 255.0).round()), [141.0, 124.0, 85.0]);
+        let between = studio_light(Vec3::new(1.0, 0.0, 1.0));
         assert!((between[2] * 255.0 - 94.5).abs() < 0.1);
     }
 }

@@ -56,11 +56,11 @@ pub(crate) fn triangle() -> (serde_json::Value, Vec<u8>) {
     (document, bytes)
 }
 
-fn read(bytes: &[u8]) -> Result<Model, String> {
+fn read(bytes: &[u8]) -> Result<SceneModel, String> {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("x.glb");
     std::fs::write(&file, bytes).unwrap();
-    Model::of(&Stage::of(&file).unwrap()).map_err(|error| error.to_string())
+    SceneModel::from_stage(&HabitatStage::from_file(&file).unwrap()).map_err(|error| error.to_string())
 }
 
 #[test]
@@ -166,9 +166,9 @@ fn a_file_beside_is_read_once_however_it_is_spelt() {
     document["buffers"] = spellings.map(|uri| json!({ "byteLength": bytes.len(), "uri": uri })).to_vec().into();
     let file = folder.path().join("x.gltf");
     std::fs::write(&file, document.to_string()).unwrap();
-    let asset = asset::Asset::read(&file).unwrap();
-    assert_eq!(asset.length(), document.to_string().len() as u64 + bytes.len() as u64);
-    assert_eq!(Model::of(&Stage::of(&file).unwrap()).unwrap().triangles().count(), 1);
+    let asset = asset::GltfAsset::read(&file).unwrap();
+    assert_eq!(asset.total_bytes(), document.to_string().len() as u64 + bytes.len() as u64);
+    assert_eq!(SceneModel::from_stage(&HabitatStage::from_file(&file).unwrap()).unwrap().triangles().count(), 1);
 }
 
 proptest! {
@@ -182,7 +182,7 @@ proptest! {
             *byte = new;
         }
         if let Ok(model) = read(&file) {
-            let _ = wayword_render::Scene::new(model.meshes, model.materials, model.textures);
+            let _ = wayword_render::RenderScene::new(model.meshes, model.materials, model.textures);
         }
     }
 }

@@ -3,29 +3,29 @@
 //! A header, then `id,RRGGBB,"category",region` on each line; a category may contain commas (HM3D's semantics, version
 //! 0.2).
 
-use super::Thing;
+use super::SemanticThing;
 use std::collections::BTreeMap;
 use wayword_core::ObjectId;
 
-const HEADER: &str = "HM3D Semantic Annotations";
+const ANNOTATIONS_HEADER: &str = "HM3D Semantic Annotations";
 
 /// The contents of the file.
 #[derive(Debug, Default, PartialEq)]
-pub(super) struct Annotations {
-    pub(super) things: Vec<Thing>,
+pub(super) struct Hm3dAnnotations {
+    pub(super) things: Vec<SemanticThing>,
     /// Index of the thing of each colour.
     pub(super) by_colour: BTreeMap<[u8; 3], usize>,
 }
 
-pub(super) fn parse(text: &str) -> Result<Annotations, String> {
+pub(super) fn parse_annotations(text: &str) -> Result<Hm3dAnnotations, String> {
     let mut lines = text.lines().enumerate();
     let header = lines.next().map_or("", |(_, line)| line.trim_start_matches('\u{feff}').trim());
-    if header != HEADER {
-        return Err(format!("line 1: is {header:.40?}, expected {HEADER:?}"));
+    if header != ANNOTATIONS_HEADER {
+        return Err(format!("line 1: is {header:.40?}, expected {ANNOTATIONS_HEADER:?}"));
     }
-    let mut annotations = Annotations::default();
+    let mut annotations = Hm3dAnnotations::default();
     for (number, line) in lines.filter(|(_, line)| !line.trim().is_empty()) {
-        let (colour, thing) = entry(line.trim()).map_err(|reason| format!("line {}: {reason}", number + 1))?;
+        let (colour, thing) = parse_line(line.trim()).map_err(|reason| format!("line {}: {reason}", number + 1))?;
         if annotations.by_colour.insert(colour, annotations.things.len()).is_some() {
             return Err(format!("line {}: an earlier line has the same colour", number + 1));
         }
@@ -34,7 +34,7 @@ pub(super) fn parse(text: &str) -> Result<Annotations, String> {
     Ok(annotations)
 }
 
-fn entry(line: &str) -> Result<([u8; 3], Thing), String> {
+fn parse_line(line: &str) -> Result<([u8; 3], SemanticThing), String> {
     let columns = || {
         let (id, rest) = line.split_once(',')?;
         let (colour, rest) = rest.split_once(',')?;
@@ -51,7 +51,7 @@ fn entry(line: &str) -> Result<([u8; 3], Thing), String> {
     let id = ObjectId::new(number.to_string()).map_err(|error| error.to_string())?;
     // HM3D gives the region -1 to objects outside all rooms.
     let room = u32::try_from(region).ok();
-    Ok(([red, green, blue], Thing { room, ..Thing::new(id, category.trim().trim_matches('"')) }))
+    Ok(([red, green, blue], SemanticThing { room, ..SemanticThing::new(id, category.trim().trim_matches('"')) }))
 }
 
 #[cfg(test)]
@@ -62,7 +62,7 @@ mod tests {
     #[test]
     fn categories_may_hold_commas() {
         let text = "HM3D Semantic Annotations\n1,BC0FF7,\"table, round\",3\r\n2,00ff10,\"wall\",-1\n";
-        let annotations = parse(text).unwrap();
+        let annotations = parse_annotations(text).unwrap();
         assert_eq!(annotations.by_colour, [([0xbc, 0x0f, 0xf7], 0), ([0, 0xff, 0x10], 1)].into());
         assert_eq!(annotations.things[0].name.as_deref(), Some("table round"));
         // A wall is a part of the building, so it has no name.
@@ -72,8 +72,8 @@ mod tests {
 
     #[test]
     fn errors_name_the_line() {
-        let refusal = |lines: &str| parse(&format!("{HEADER}\n{lines}")).unwrap_err();
-        assert!(parse("ply").unwrap_err().starts_with("line 1: is \"ply\""));
+        let refusal = |lines: &str| parse_annotations(&format!("{ANNOTATIONS_HEADER}\n{lines}")).unwrap_err();
+        assert!(parse_annotations("ply").unwrap_err().starts_with("line 1: is \"ply\""));
         assert_eq!(refusal("1,BC0FF7"), "line 2: does not have four columns: id, colour, category, region");
         assert_eq!(refusal("\n1,BC0FF,\"a\",0"), "line 3: \"BC0FF\" is not a 6-digit hex colour");
         assert_eq!(refusal("x,BC0FF7,\"a\",0"), "line 2: \"x\" is not an id");
@@ -83,8 +83,8 @@ mod tests {
     proptest! {
         #[test]
         fn any_text_is_read_or_refused(text in "\\PC{0,200}") {
-            let _ = parse(&format!("{HEADER}\n1,{text}"));
-            let _ = parse(&text);
+            let _ = parse_annotations(&format!("{ANNOTATIONS_HEADER}\n1,{text}"));
+            let _ = parse_annotations(&text);
         }
     }
 }

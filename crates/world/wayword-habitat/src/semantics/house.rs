@@ -4,20 +4,20 @@
 //! Format: Matterport3D's `data_organization.md`. This reader uses the lines `R` (regions with their boxes), `O` (objects)
 //! and `C` (categories), and skips the others.
 
-use super::{Region, Thing};
+use super::{HouseRegion, SemanticThing};
 use std::collections::BTreeMap;
 use wayword_core::{DVec3, ObjectId};
 
 /// The contents of the file.
 #[derive(Debug, Default, PartialEq)]
-pub(super) struct House {
-    pub(super) things: Vec<Thing>,
+pub(super) struct MatterportHouse {
+    pub(super) things: Vec<SemanticThing>,
     /// Index in `things` of the thing of each number; the mesh refers to things by these numbers.
     pub(super) by_number: BTreeMap<u32, usize>,
-    pub(super) regions: Vec<Region>,
+    pub(super) regions: Vec<HouseRegion>,
 }
 
-pub(super) fn parse(text: &str) -> Result<House, String> {
+pub(super) fn parse_house(text: &str) -> Result<MatterportHouse, String> {
     if !text.starts_with("ASCII") {
         return Err("line 1: does not begin with ASCII".to_owned());
     }
@@ -26,15 +26,15 @@ pub(super) fn parse(text: &str) -> Result<House, String> {
     let mut objects: BTreeMap<u32, i64> = BTreeMap::new();
     for (number, line) in text.lines().enumerate().skip(1) {
         let words: Vec<&str> = line.split_whitespace().take(32).collect();
-        let record = Record { words: &words };
+        let record = HouseLine { words: &words };
         let mut read = || -> Result<(), String> {
             match words.first().copied() {
-                Some("R") => regions.push(record.region()?),
+                Some("R") => regions.push(record.read_region()?),
                 Some("O") => {
-                    objects.insert(record.number(1)?, record.number(3)?);
+                    objects.insert(record.number_at(1)?, record.number_at(3)?);
                 }
                 Some("C") => {
-                    categories.insert(record.number(1)?, record.word(3)?);
+                    categories.insert(record.number_at(1)?, record.word_at(3)?);
                 }
                 _ => {}
             }
@@ -42,40 +42,40 @@ pub(super) fn parse(text: &str) -> Result<House, String> {
         };
         read().map_err(|reason| format!("line {}: {reason}", number + 1))?;
     }
-    let mut house = House { regions, ..House::default() };
+    let mut house = MatterportHouse { regions, ..MatterportHouse::default() };
     for (number, category) in objects {
         let id = ObjectId::new(number.to_string()).map_err(|error| error.to_string())?;
         house.by_number.insert(number, house.things.len());
-        house.things.push(Thing::new(id, categories.get(&category).copied().unwrap_or_default()));
+        house.things.push(SemanticThing::new(id, categories.get(&category).copied().unwrap_or_default()));
     }
     Ok(house)
 }
 
 /// The words of a line, by column.
-struct Record<'a, 'b> {
+struct HouseLine<'a, 'b> {
     words: &'b [&'a str],
 }
 
-impl<'a> Record<'a, '_> {
-    fn word(&self, column: usize) -> Result<&'a str, String> {
+impl<'a> HouseLine<'a, '_> {
+    fn word_at(&self, column: usize) -> Result<&'a str, String> {
         let count = self.words.len();
         self.words.get(column).copied().ok_or_else(|| format!("has {count} columns; column {} is missing", column + 1))
     }
 
-    fn number<T: std::str::FromStr>(&self, column: usize) -> Result<T, String> {
-        let word = self.word(column)?;
+    fn number_at<T: std::str::FromStr>(&self, column: usize) -> Result<T, String> {
+        let word = self.word_at(column)?;
         word.parse().map_err(|_| format!("column {}: {word:.20?} is not a valid number", column + 1))
     }
 
-    fn place(&self, column: usize) -> Result<DVec3, String> {
-        let place = DVec3::new(self.number(column)?, self.number(column + 1)?, self.number(column + 2)?);
+    fn place_at(&self, column: usize) -> Result<DVec3, String> {
+        let place = DVec3::new(self.number_at(column)?, self.number_at(column + 1)?, self.number_at(column + 2)?);
         if place.is_finite() { Ok(place) } else { Err(format!("column {}: is not a position", column + 1)) }
     }
 
     /// `R index level 0 0 label px py pz xlo ylo zlo xhi yhi zhi height ...`
-    fn region(&self) -> Result<Region, String> {
-        let letter = self.word(5)?.chars().next().unwrap_or('Z');
-        Ok(Region { low: self.place(9)?, high: self.place(12)?, letter })
+    fn read_region(&self) -> Result<HouseRegion, String> {
+        let letter = self.word_at(5)?.chars().next().unwrap_or('Z');
+        Ok(HouseRegion { low: self.place_at(9)?, high: self.place_at(12)?, letter })
     }
 }
 
@@ -90,21 +90,21 @@ mod tests {
 
     #[test]
     fn objects_are_found_by_their_number() {
-        let house = parse(TEXT).unwrap();
+        let house = parse_house(TEXT).unwrap();
         let names: Vec<_> = house.things.iter().map(|thing| thing.name.as_deref()).collect();
         assert_eq!((names.as_slice(), house.by_number.get(&1)), (&[Some("coffee table")][..], Some(&0)));
         assert_eq!(
             house.regions,
-            [Region { low: DVec3::new(-1.0, -2.0, 0.0), high: DVec3::new(3.0, 4.0, 2.5), letter: 'k' }]
+            [HouseRegion { low: DVec3::new(-1.0, -2.0, 0.0), high: DVec3::new(3.0, 4.0, 2.5), letter: 'k' }]
         );
     }
 
     #[test]
     fn errors_name_the_line_and_the_column() {
-        assert_eq!(parse("ply").unwrap_err(), "line 1: does not begin with ASCII");
-        assert_eq!(parse("ASCII\nO 0 0").unwrap_err(), "line 2: has 3 columns; column 4 is missing");
+        assert_eq!(parse_house("ply").unwrap_err(), "line 1: does not begin with ASCII");
+        assert_eq!(parse_house("ASCII\nO 0 0").unwrap_err(), "line 2: has 3 columns; column 4 is missing");
         assert_eq!(
-            parse("ASCII\nO 9999999999 0 0").unwrap_err(),
+            parse_house("ASCII\nO 9999999999 0 0").unwrap_err(),
             "line 2: column 2: \"9999999999\" is not a valid number"
         );
     }

@@ -1,21 +1,25 @@
 //! Makes the labels of a view from the pixels of the semantic picture.
 
-use super::{Semantics, Thing};
-use wayword_core::{Gaze, Heading, Label};
-use wayword_render::{Camera, RenderError, Visible, box_corners, evident_objects};
+use super::{SceneSemantics, SemanticThing};
+use wayword_core::{Heading, ObjectLabel, ViewGaze};
+use wayword_render::{PinholeCamera, RenderError, VisibleObject, box_corners, evident_objects};
 
-impl Semantics {
+impl SceneSemantics {
     /// Labels of the visible objects, the largest first. An object counts if it has a name and the middle of its box is
     /// within the gaze. Hidden objects do not count, nor do objects of which only a sliver is visible.
-    pub(crate) fn labels(&self, camera: &Camera, gaze: Gaze) -> Result<Vec<Label>, RenderError> {
-        let picture = self.picture(camera)?;
+    pub(crate) fn visible_labels(
+        &self,
+        camera: &PinholeCamera,
+        gaze: ViewGaze,
+    ) -> Result<Vec<ObjectLabel>, RenderError> {
+        let picture = self.draw_ids(camera)?;
         let seen = evident_objects(&picture);
-        let told = seen.iter().filter_map(|each| label(camera, each, self.thing(each.id)?));
-        Ok(told.filter(|label| gaze.holds(label.heading)).collect())
+        let told = seen.iter().filter_map(|each| label_for_thing(camera, each, self.thing_with_id(each.id)?));
+        Ok(told.filter(|label| gaze.holds_heading(label.heading)).collect())
     }
 }
 
-fn label(camera: &Camera, seen: &Visible, thing: &Thing) -> Option<Label> {
+fn label_for_thing(camera: &PinholeCamera, seen: &VisibleObject, thing: &SemanticThing) -> Option<ObjectLabel> {
     let (name, (low, high)) = (thing.name.as_ref()?, thing.bounds?);
     if seen.is_sliver(camera, &box_corners(low, high)) {
         return None;
@@ -23,7 +27,7 @@ fn label(camera: &Camera, seen: &Visible, thing: &Thing) -> Option<Label> {
     let centre = (low + high) / 2.0;
     let offset = centre - camera.position;
     let level_m = libm::sqrt(offset.x * offset.x + offset.y * offset.y);
-    Some(Label {
+    Some(ObjectLabel {
         object: thing.id.clone(),
         name: name.clone(),
         heading: Heading::new(libm::atan2(offset.x, offset.y)).ok()?,

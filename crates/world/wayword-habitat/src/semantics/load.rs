@@ -1,10 +1,10 @@
 //! Reads the semantic files of a scene: a mesh that is painted in the colours of its objects, or one with numbered faces.
 
-use super::{Semantics, Thing, hm3d, house, ply, rooms::Rooms};
+use super::{SceneSemantics, SemanticThing, hm3d, house, ply, rooms::NumberedRooms};
 use crate::{
     axes::wayword_from_habitat,
     fault::{self, FileError},
-    scene::Model,
+    scene::SceneModel,
 };
 use glam::{DMat3, Vec2, Vec3};
 use std::{
@@ -12,7 +12,7 @@ use std::{
     path::{Path, PathBuf},
 };
 use wayword_core::RoomNames;
-use wayword_render::{Filter, Material, Mesh, Scene, Texture};
+use wayword_render::{Mesh, MeshMaterial, RenderScene, Texture, TextureFilter};
 
 const MAX_TEXT: u64 = 64 << 20;
 const MAX_MESH: u64 = 4 << 30;
@@ -20,7 +20,7 @@ const HM3D_HINT: &str = "download it again from HM3D's semantic annotations";
 const MATTERPORT_HINT: &str = "download it again from Matterport3D for Habitat";
 
 /// The id of triangles with painted textures: their objects follow from the colours in the picture.
-pub(super) const PAINTED: u32 = u32::MAX;
+pub(super) const PAINTED_ID: u32 = u32::MAX;
 
 /// The semantic files of a scene.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -32,101 +32,112 @@ pub(crate) struct SemanticFiles {
 }
 
 /// Reads the files; `None` if a scene has none.
-pub(crate) fn load(files: &SemanticFiles, habitat_from_asset: DMat3) -> Result<Option<Semantics>, FileError> {
+pub(crate) fn load_semantics(
+    files: &SemanticFiles,
+    habitat_from_asset: DMat3,
+) -> Result<Option<SceneSemantics>, FileError> {
     if let Some((mesh, text)) = &files.painted {
-        return painted(mesh, text, habitat_from_asset).map(Some);
+        return load_painted(mesh, text, habitat_from_asset).map(Some);
     }
     match &files.numbered {
-        Some((mesh, text)) => numbered(mesh, text, habitat_from_asset).map(Some),
+        Some((mesh, text)) => load_numbered(mesh, text, habitat_from_asset).map(Some),
         None => Ok(None),
     }
 }
 
-/// Reads the files as [`load`] does, but decodes no picture. Returns the source of the rooms' names.
-pub(crate) fn check(files: &SemanticFiles, habitat_from_asset: DMat3) -> Result<RoomNames, FileError> {
+/// Reads the files as [`load_semantics`] does, but decodes no picture. Returns the source of the rooms' names.
+pub(crate) fn check_semantics(files: &SemanticFiles, habitat_from_asset: DMat3) -> Result<RoomNames, FileError> {
     if let Some((mesh, names)) = &files.painted {
-        hm3d::parse(&text(names, HM3D_HINT)?).map_err(|reason| FileError::new(names, reason, HM3D_HINT))?;
-        Model::shape(mesh, habitat_from_asset)?;
+        hm3d::parse_annotations(&read_text(names, HM3D_HINT)?)
+            .map_err(|reason| FileError::new(names, reason, HM3D_HINT))?;
+        SceneModel::read_shape(mesh, habitat_from_asset)?;
         return Ok(RoomNames::Rules);
     }
     match &files.numbered {
-        Some((mesh, names)) => numbered(mesh, names, habitat_from_asset).map(|_| RoomNames::Dataset),
+        Some((mesh, names)) => load_numbered(mesh, names, habitat_from_asset).map(|_| RoomNames::Dataset),
         None => Ok(RoomNames::Unknown),
     }
 }
 
-fn text(file: &Path, hint: &'static str) -> Result<String, FileError> {
+fn read_text(file: &Path, hint: &'static str) -> Result<String, FileError> {
     fault::text_if_there(file, MAX_TEXT, hint)?.ok_or_else(|| FileError::new(file, "there is no such file", hint))
 }
 
-fn painted(mesh: &Path, annotations: &Path, habitat_from_asset: DMat3) -> Result<Semantics, FileError> {
-    let hm3d::Annotations { mut things, by_colour } =
-        hm3d::parse(&text(annotations, HM3D_HINT)?).map_err(|reason| FileError::new(annotations, reason, HM3D_HINT))?;
-    let model = Model::read(mesh, habitat_from_asset)?;
+fn load_painted(mesh: &Path, annotations: &Path, habitat_from_asset: DMat3) -> Result<SceneSemantics, FileError> {
+    let hm3d::Hm3dAnnotations { mut things, by_colour } = hm3d::parse_annotations(&read_text(annotations, HM3D_HINT)?)
+        .map_err(|reason| FileError::new(annotations, reason, HM3D_HINT))?;
+    let model = SceneModel::read_file(mesh, habitat_from_asset)?;
     let (mut meshes, mut shells) = (Vec::new(), Vec::new());
     for each in model.meshes {
         let texture = model.materials.get(each.material).and_then(|material| material.texture);
         let texture = texture.and_then(|texture| model.textures.get(texture));
         let colour = |corners: [u32; 3]| match texture {
-            Some(texture) => Some(texel(texture, middle(&each.uvs, corners))),
+            Some(texture) => Some(texel_at(texture, uv_middle(&each.uvs, corners))),
             // The vertices are painted: a triangle belongs to the object of its first corner.
             None => each.colours.get(corners[0] as usize).map(|all| all.map(|factor| (factor * 255.0 + 0.5) as u8)),
         };
         let thing = |corners: [u32; 3]| colour(corners).and_then(|colour| by_colour.get(&colour)).copied();
-        let told: Vec<Told> = each.triangles.iter().map(|corners| (*corners, thing(*corners))).collect();
-        measure(&each.positions, &told, &mut things);
-        shells.extend(shell(&each.positions, &told, &things));
+        let told: Vec<OwnedTriangle> = each.triangles.iter().map(|corners| (*corners, thing(*corners))).collect();
+        measure_things(&each.positions, &told, &mut things);
+        shells.extend(shell_triangles(&each.positions, &told, &things));
         match texture {
-            Some(_) => meshes.push(Mesh { id: PAINTED, colours: Vec::new(), ..each }),
+            Some(_) => meshes.push(Mesh { id: PAINTED_ID, colours: Vec::new(), ..each }),
             None => meshes.extend(by_thing(&each.positions, &told)),
         }
     }
     // The picture must have the colours of the file, so no material may change them.
-    let bare = |material: Material| Material { base_colour: [1.0; 4], ..material };
-    let mut materials: Vec<Material> = model.materials.into_iter().map(bare).collect();
-    materials.push(Material::default());
+    let bare = |material: MeshMaterial| MeshMaterial { base_colour: [1.0; 4], ..material };
+    let mut materials: Vec<MeshMaterial> = model.materials.into_iter().map(bare).collect();
+    materials.push(MeshMaterial::default());
     let plain = materials.len() - 1;
-    for each in meshes.iter_mut().filter(|each| each.id != PAINTED) {
+    for each in meshes.iter_mut().filter(|each| each.id != PAINTED_ID) {
         each.material = plain;
     }
-    let scene = Scene::new(meshes, materials, model.textures);
+    let scene = RenderScene::new(meshes, materials, model.textures);
     let scene = scene.map_err(|error| FileError::new(mesh, error.to_string(), HM3D_HINT))?;
-    let rooms = Rooms::of(&things, shells);
-    Ok(Semantics { scene: scene.with_filter(Filter::Nearest), by_colour, things, regions: Vec::new(), rooms })
+    let rooms = NumberedRooms::from_things(&things, shells);
+    Ok(SceneSemantics {
+        scene: scene.with_filter(TextureFilter::Nearest),
+        by_colour,
+        things,
+        regions: Vec::new(),
+        rooms,
+    })
 }
 
-fn numbered(mesh: &Path, house: &Path, habitat_from_asset: DMat3) -> Result<Semantics, FileError> {
-    let house::House { mut things, by_number, regions } = house::parse(&text(house, MATTERPORT_HINT)?)
-        .map_err(|reason| FileError::new(house, reason, MATTERPORT_HINT))?;
+fn load_numbered(mesh: &Path, house: &Path, habitat_from_asset: DMat3) -> Result<SceneSemantics, FileError> {
+    let house::MatterportHouse { mut things, by_number, regions } =
+        house::parse_house(&read_text(house, MATTERPORT_HINT)?)
+            .map_err(|reason| FileError::new(house, reason, MATTERPORT_HINT))?;
     let wrong = |reason: String| FileError::new(mesh, reason, MATTERPORT_HINT);
-    let faces = ply::parse(&fault::bytes(mesh, MAX_MESH, MATTERPORT_HINT)?).map_err(wrong)?;
+    let faces = ply::parse_faces(&fault::read_bytes(mesh, MAX_MESH, MATTERPORT_HINT)?).map_err(wrong)?;
     let place = |position: &Vec3| wayword_from_habitat(habitat_from_asset * position.as_dvec3()).as_vec3();
     let positions: Vec<Vec3> = faces.positions.iter().map(place).collect();
     let thing = |object: u32| by_number.get(&object).copied();
-    let told: Vec<Told> = faces.triangles.iter().map(|(corners, object)| (*corners, thing(*object))).collect();
-    measure(&positions, &told, &mut things);
+    let told: Vec<OwnedTriangle> = faces.triangles.iter().map(|(corners, object)| (*corners, thing(*object))).collect();
+    measure_things(&positions, &told, &mut things);
     let meshes = by_thing(&positions, &told);
     // Scans are seen only from inside, and the winding of their faces is not reliable.
-    let material = Material { double_sided: true, ..Material::default() };
-    let scene = Scene::new(meshes, vec![material], Vec::new()).map_err(|error| wrong(error.to_string()))?;
-    Ok(Semantics { scene, by_colour: BTreeMap::new(), things, regions, rooms: Rooms::default() })
+    let material = MeshMaterial { double_sided: true, ..MeshMaterial::default() };
+    let scene = RenderScene::new(meshes, vec![material], Vec::new()).map_err(|error| wrong(error.to_string()))?;
+    Ok(SceneSemantics { scene, by_colour: BTreeMap::new(), things, regions, rooms: NumberedRooms::default() })
 }
 
 /// A triangle and the thing that it belongs to.
-type Told = ([u32; 3], Option<usize>);
+type OwnedTriangle = ([u32; 3], Option<usize>);
 
 /// Extends the boxes of things to contain their triangles.
-fn measure(positions: &[Vec3], told: &[Told], things: &mut [Thing]) {
+fn measure_things(positions: &[Vec3], told: &[OwnedTriangle], things: &mut [SemanticThing]) {
     for (corners, thing) in told {
         if let Some(thing) = thing.and_then(|thing| things.get_mut(thing)) {
             let places = corners.iter().filter_map(|corner| positions.get(*corner as usize));
-            places.for_each(|place| thing.include(place.as_dvec3()));
+            places.for_each(|place| thing.include_place(place.as_dvec3()));
         }
     }
 }
 
 /// The triangles of floors, stairs and ceilings of numbered rooms, each with the index of its thing.
-fn shell(positions: &[Vec3], told: &[Told], things: &[Thing]) -> Vec<([Vec3; 3], u32)> {
+fn shell_triangles(positions: &[Vec3], told: &[OwnedTriangle], things: &[SemanticThing]) -> Vec<([Vec3; 3], u32)> {
     let place = |corner: u32| positions.get(corner as usize).copied().unwrap_or_default();
     let tells = |thing: usize| things.get(thing).is_some_and(|thing| thing.part.is_some() && thing.room.is_some());
     let told = told.iter().filter_map(|(corners, thing)| Some((corners, (*thing)?)));
@@ -134,7 +145,7 @@ fn shell(positions: &[Vec3], told: &[Told], things: &[Thing]) -> Vec<([Vec3; 3],
 }
 
 /// One mesh for each thing. Its id is the thing's index plus 1; for triangles without a thing it is 0.
-fn by_thing(positions: &[Vec3], told: &[Told]) -> Vec<Mesh> {
+fn by_thing(positions: &[Vec3], told: &[OwnedTriangle]) -> Vec<Mesh> {
     let mut parts: BTreeMap<u32, Mesh> = BTreeMap::new();
     for (corners, thing) in told {
         let id = thing.map_or(0, |thing| thing as u32 + 1);
@@ -146,12 +157,12 @@ fn by_thing(positions: &[Vec3], told: &[Told]) -> Vec<Mesh> {
     parts.into_values().collect()
 }
 
-fn middle(uvs: &[Vec2], corners: [u32; 3]) -> Vec2 {
+fn uv_middle(uvs: &[Vec2], corners: [u32; 3]) -> Vec2 {
     corners.iter().filter_map(|corner| uvs.get(*corner as usize)).copied().sum::<Vec2>() / 3.0
 }
 
 /// The texel at texture coordinates.
-fn texel(texture: &Texture, uv: Vec2) -> [u8; 3] {
+fn texel_at(texture: &Texture, uv: Vec2) -> [u8; 3] {
     let at = |u: f32, side: u32| ((u - u.floor()) * side as f32) as u32;
     let (x, y) = (at(uv.x, texture.width).min(texture.width - 1), at(uv.y, texture.height).min(texture.height - 1));
     let [red, green, blue, _] = texture.texels[(y * texture.width + x) as usize];

@@ -9,17 +9,17 @@ mod rooms;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use load::{SemanticFiles, check, load};
+pub(crate) use load::{SemanticFiles, check_semantics, load_semantics};
 
-use rooms::{Part, Rooms};
+use rooms::{NumberedRooms, ShellPart};
 use std::collections::BTreeMap;
 use wayword_core::{DVec3, Heading, ObjectId};
-use wayword_render::{Camera, Picture, RenderError, Scene, render, render_ids};
+use wayword_render::{PinholeCamera, RenderError, RenderScene, RenderedPicture, render_ids, render_scene};
 use wayword_world::{object_names, region};
 
 /// An object of a scene.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Thing {
+pub(crate) struct SemanticThing {
     pub(crate) id: ObjectId,
     /// In plain words; `None` for parts of the building and for objects that the annotators could not name.
     pub(crate) name: Option<String>,
@@ -28,18 +28,18 @@ pub(crate) struct Thing {
     /// The number of its room, where rooms are numbered and not named.
     room: Option<u32>,
     /// The part of the room's shell that it is, if it is one: only those show where the room is.
-    part: Option<Part>,
+    part: Option<ShellPart>,
 }
 
-impl Thing {
+impl SemanticThing {
     fn new(id: ObjectId, raw: &str) -> Self {
-        let plain = object_names::plain(raw);
-        let part = plain.as_deref().and_then(rooms::part);
+        let plain = object_names::plain_name(raw);
+        let part = plain.as_deref().and_then(rooms::shell_part);
         let name = plain.filter(|name| object_names::is_furnishing(name));
         Self { id, name, bounds: None, room: None, part }
     }
 
-    fn include(&mut self, place: DVec3) {
+    fn include_place(&mut self, place: DVec3) {
         let (low, high) = self.bounds.unwrap_or((place, place));
         self.bounds = Some((low.min(place), high.max(place)));
     }
@@ -47,7 +47,7 @@ impl Thing {
 
 /// A room: a box, and the letter of its kind.
 #[derive(Clone, Debug, PartialEq)]
-struct Region {
+struct HouseRegion {
     low: DVec3,
     high: DVec3,
     letter: char,
@@ -55,47 +55,47 @@ struct Region {
 
 /// A scene in which each surface belongs to an object.
 #[derive(Debug)]
-pub(crate) struct Semantics {
-    scene: Scene,
+pub(crate) struct SceneSemantics {
+    scene: RenderScene,
     /// Index of the thing of each colour, if surfaces are painted.
     by_colour: BTreeMap<[u8; 3], usize>,
-    things: Vec<Thing>,
-    regions: Vec<Region>,
+    things: Vec<SemanticThing>,
+    regions: Vec<HouseRegion>,
     /// The rooms, where they are numbered.
-    rooms: Rooms,
+    rooms: NumberedRooms,
 }
 
-impl Semantics {
+impl SceneSemantics {
     /// Draws the scene with the indices of things plus 1 as ids; 0 means no thing.
-    fn picture(&self, camera: &Camera) -> Result<Picture, RenderError> {
+    fn draw_ids(&self, camera: &PinholeCamera) -> Result<RenderedPicture, RenderError> {
         if self.by_colour.is_empty() {
             return render_ids(&self.scene, camera);
         }
-        let mut picture = render(&self.scene, camera)?;
+        let mut picture = render_scene(&self.scene, camera)?;
         let painted = picture.rgb.as_chunks::<3>().0;
-        for (id, colour) in picture.ids.iter_mut().zip(painted).filter(|(id, _)| **id == load::PAINTED) {
+        for (id, colour) in picture.ids.iter_mut().zip(painted).filter(|(id, _)| **id == load::PAINTED_ID) {
             *id = self.by_colour.get(colour).map_or(0, |thing| *thing as u32 + 1);
         }
         Ok(picture)
     }
 
-    fn thing(&self, id: u32) -> Option<&Thing> {
+    fn thing_with_id(&self, id: u32) -> Option<&SemanticThing> {
         self.things.get((id as usize).checked_sub(1)?)
     }
 
     /// The object with this id.
-    pub(crate) fn named(&self, object: &ObjectId) -> Option<&Thing> {
+    pub(crate) fn find_thing(&self, object: &ObjectId) -> Option<&SemanticThing> {
         self.things.iter().find(|thing| thing.id == *object)
     }
 
     /// The word for the room that an eye sees. Of several boxes around the eye the smallest counts. Where rooms are only
     /// numbered, the word follows from the things in the room, and in an opening from those in the room ahead.
-    pub(crate) fn room(&self, eye: DVec3, heading: Heading) -> Option<&'static str> {
-        let holds = |region: &&Region| region.low.cmple(eye).all() && region.high.cmpge(eye).all();
-        let size = |region: &Region| (region.high - region.low).element_product();
+    pub(crate) fn room_at(&self, eye: DVec3, heading: Heading) -> Option<&'static str> {
+        let holds = |region: &&HouseRegion| region.low.cmple(eye).all() && region.high.cmpge(eye).all();
+        let size = |region: &HouseRegion| (region.high - region.low).element_product();
         match self.regions.iter().filter(holds).min_by(|a, b| size(a).total_cmp(&size(b))) {
-            Some(inside) => region::room(inside.letter),
-            None => self.rooms.seen(eye, heading),
+            Some(inside) => region::room_for_letter(inside.letter),
+            None => self.rooms.room_in_view(eye, heading),
         }
     }
 }

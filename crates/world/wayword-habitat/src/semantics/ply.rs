@@ -10,28 +10,28 @@ use ply_rs_bw::{
     ply::{Encoding, Header, Property, PropertyAccess, PropertyAccessResult},
 };
 use std::io::ErrorKind;
-use wayword_core::contain::decoded;
+use wayword_core::contain::run_decoder;
 
 /// Longest header, bytes.
 const MAX_HEADER: usize = 1 << 14;
 
 /// Triangles with the number of their object.
 #[derive(Debug, Default, PartialEq)]
-pub(super) struct Faces {
+pub(super) struct SemanticFaces {
     pub(super) positions: Vec<Vec3>,
     pub(super) triangles: Vec<([u32; 3], u32)>,
 }
 
 /// The contents of a vertex or a face.
-struct Entry {
+struct PlyEntry {
     position: Vec3,
     corners: Vec<u32>,
     object: u32,
 }
 
-pub(super) fn parse(bytes: &[u8]) -> Result<Faces, String> {
-    decoded(|| {
-        let faces = read(bytes)?;
+pub(super) fn parse_faces(bytes: &[u8]) -> Result<SemanticFaces, String> {
+    run_decoder(|| {
+        let faces = read_faces(bytes)?;
         let vertices = faces.positions.len();
         let mut corners = faces.triangles.iter().flat_map(|(corners, _)| corners);
         match corners.find(|corner| **corner as usize >= vertices) {
@@ -41,10 +41,10 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Faces, String> {
     })
 }
 
-fn read(bytes: &[u8]) -> Result<Faces, String> {
-    let (header, mut rest) = header(bytes)?;
-    let parser = Parser::<Entry>::new();
-    let mut faces = Faces::default();
+fn read_faces(bytes: &[u8]) -> Result<SemanticFaces, String> {
+    let (header, mut rest) = read_header(bytes)?;
+    let parser = Parser::<PlyEntry>::new();
+    let mut faces = SemanticFaces::default();
     for element in header.elements.values() {
         // Every entry takes at least one byte, so there cannot be more entries than bytes.
         if element.properties.is_empty() || element.count > rest.len() {
@@ -57,7 +57,7 @@ fn read(bytes: &[u8]) -> Result<Faces, String> {
             let at = bytes.len() - rest.len();
             let entry = parser.read_little_endian_element(&mut rest, element).map_err(|error| match error.kind() {
                 ErrorKind::UnexpectedEof => format!("byte {at}: the file is cut off"),
-                _ => format!("byte {at}: {}", brief(&error)),
+                _ => format!("byte {at}: {}", brief_message(&error)),
             })?;
             match element.name.as_str() {
                 "vertex" => faces.positions.push(entry.position),
@@ -74,11 +74,11 @@ fn read(bytes: &[u8]) -> Result<Faces, String> {
 }
 
 /// The header, and the bytes after it.
-fn header(bytes: &[u8]) -> Result<(Header, &[u8]), String> {
+fn read_header(bytes: &[u8]) -> Result<(Header, &[u8]), String> {
     let within = &bytes[..bytes.len().min(MAX_HEADER)];
     let mut reader = Reader::new(within);
-    let header = Parser::<Entry>::new().read_header(&mut reader);
-    let header = header.map_err(|error| format!("has no header of a PLY file: {}", brief(&error)))?;
+    let header = Parser::<PlyEntry>::new().read_header(&mut reader);
+    let header = header.map_err(|error| format!("has no header of a PLY file: {}", brief_message(&error)))?;
     if header.encoding != Encoding::BinaryLittleEndian {
         return Err("is not a binary little-endian PLY file".to_owned());
     }
@@ -93,11 +93,11 @@ fn header(bytes: &[u8]) -> Result<(Header, &[u8]), String> {
 }
 
 /// The first line of the reader's message; the next one quotes the header, which may be very long.
-fn brief(error: &ParseError) -> String {
+fn brief_message(error: &ParseError) -> String {
     error.to_string().lines().next().unwrap_or_default().chars().take(200).collect()
 }
 
-impl PropertyAccess for Entry {
+impl PropertyAccess for PlyEntry {
     fn new() -> Self {
         Self { position: Vec3::ZERO, corners: Vec::new(), object: u32::MAX }
     }
@@ -109,14 +109,14 @@ impl PropertyAccess for Entry {
             "z" => value.to_f32_lossy().map(|z| self.position.z = z),
             "vertex_indices" | "vertex_index" => value.to_u32_list().map(|corners| self.corners = corners),
             // Casts saturate; -1, which means no object, becomes a number that no object has.
-            "object_id" => number(&value).map(|id| self.object = if id >= 0.0 { id as u32 } else { u32::MAX }),
+            "object_id" => property_number(&value).map(|id| self.object = if id >= 0.0 { id as u32 } else { u32::MAX }),
             _ => return PropertyAccessResult::Ignored,
         };
         if is_known.is_some() { PropertyAccessResult::Set } else { PropertyAccessResult::UnsupportedType }
     }
 }
 
-fn number(property: &Property) -> Option<f64> {
+fn property_number(property: &Property) -> Option<f64> {
     Some(match *property {
         Property::Char(number) => number.into(),
         Property::UChar(number) => number.into(),
@@ -153,7 +153,7 @@ mod tests {
 
     #[test]
     fn faces_become_triangles_that_name_their_object() {
-        let faces = parse(&square()).unwrap();
+        let faces = parse_faces(&square()).unwrap();
         assert_eq!(faces.positions[2], Vec3::new(1.0, 1.0, 2.5));
         assert_eq!(faces.triangles, [([0, 1, 2], 300), ([0, 2, 3], 300)]);
     }
@@ -161,10 +161,10 @@ mod tests {
     #[test]
     fn parse_refuses_cut_and_foreign_ply_files() {
         let cut = square();
-        assert!(parse(&cut[..cut.len() - 1]).unwrap_err().contains("the file is cut off"));
+        assert!(parse_faces(&cut[..cut.len() - 1]).unwrap_err().contains("the file is cut off"));
         let many = String::from_utf8_lossy(&square()[..60]).replace("vertex 4", "vertex 999999999");
-        assert!(parse(many.as_bytes()).unwrap_err().contains("no header"));
-        assert!(parse(b"ply\nformat ascii 1.0\nend_header\n").unwrap_err().contains("not a binary"));
+        assert!(parse_faces(many.as_bytes()).unwrap_err().contains("no header"));
+        assert!(parse_faces(b"ply\nformat ascii 1.0\nend_header\n").unwrap_err().contains("not a binary"));
     }
 
     proptest! {
@@ -175,7 +175,7 @@ mod tests {
             for (byte, new) in file.iter_mut().skip(at).zip(with) {
                 *byte = new;
             }
-            let _ = parse(&file);
+            let _ = parse_faces(&file);
         }
     }
 }

@@ -1,10 +1,10 @@
 //! Tests with semantic meshes that are written here: two panels north of the eye, the left one in front of a third.
 
 use super::*;
-use crate::scene::{Stage, tests::glb};
+use crate::scene::{HabitatStage, tests::glb};
 use serde_json::json;
 use std::path::Path;
-use wayword_core::{Gaze, Heading};
+use wayword_core::{Heading, ViewGaze};
 
 const ANNOTATIONS: &str =
     "HM3D Semantic Annotations\n1,FF0000,\"sofa\",0\n2,00FF00,\"lamp\",0\n3,0000FF,\"wall\",0\n4,00FFFF,\"bed\",0\n";
@@ -104,7 +104,7 @@ const HOUSE: &str = "ASCII 1.0\n\
     O 0 0 0 0 0 0\nO 1 0 1 0 0 0\nO 2 0 2 0 0 0\nO 3 0 3 0 0 0\n\
     C 0 1 sofa\nC 1 2 lamp\nC 2 3 wall\nC 3 4 bed\n";
 
-fn semantics(mesh: (&str, &[u8]), text: (&str, &str)) -> Semantics {
+fn semantics(mesh: (&str, &[u8]), text: (&str, &str)) -> SceneSemantics {
     let folder = tempfile::tempdir().unwrap();
     let (mesh_file, text_file) = (folder.path().join(mesh.0), folder.path().join(text.0));
     std::fs::write(&mesh_file, mesh.1).unwrap();
@@ -114,12 +114,12 @@ fn semantics(mesh: (&str, &[u8]), text: (&str, &str)) -> Semantics {
     } else {
         SemanticFiles { painted: Some((mesh_file, text_file)), numbered: None }
     };
-    let stage = Stage::of(Path::new("x.glb")).unwrap();
-    load(&files, stage.habitat_from_asset).unwrap().unwrap()
+    let stage = HabitatStage::from_file(Path::new("x.glb")).unwrap();
+    load_semantics(&files, stage.habitat_from_asset).unwrap().unwrap()
 }
 
-fn seen_labels(semantics: &Semantics) -> Vec<(String, String)> {
-    let camera = Camera {
+fn seen_labels(semantics: &SceneSemantics) -> Vec<(String, String)> {
+    let camera = PinholeCamera {
         position: DVec3::new(0.0, 0.0, 1.5),
         heading_rad: 0.0,
         elevation_rad: 0.0,
@@ -127,7 +127,7 @@ fn seen_labels(semantics: &Semantics) -> Vec<(String, String)> {
         width: 160,
         height: 120,
     };
-    let labels = semantics.labels(&camera, Gaze::quarter(Heading::NORTH)).unwrap();
+    let labels = semantics.visible_labels(&camera, ViewGaze::quarter_view(Heading::NORTH)).unwrap();
     labels.into_iter().map(|label| (label.object.to_string(), label.name)).collect()
 }
 
@@ -140,7 +140,7 @@ fn labels_match_the_pixels_for_vertex_and_texture_paint() {
     for mesh in [by_vertices(), by_texture()] {
         let semantics = semantics(("x.semantic.glb", &mesh), ("x.semantic.txt", ANNOTATIONS));
         assert_eq!(seen_labels(&semantics), two(("1", "sofa"), ("2", "lamp")));
-        assert_eq!(semantics.room(DVec3::ZERO, Heading::NORTH), None);
+        assert_eq!(semantics.room_at(DVec3::ZERO, Heading::NORTH), None);
     }
 }
 
@@ -148,9 +148,9 @@ fn labels_match_the_pixels_for_vertex_and_texture_paint() {
 fn numbered_faces_have_the_names_of_their_house() {
     let semantics = semantics(("x_semantic.ply", &by_numbers()), ("x.house", HOUSE));
     assert_eq!(seen_labels(&semantics), two(("0", "sofa"), ("1", "lamp")));
-    assert_eq!(semantics.room(DVec3::new(0.0, 0.0, 1.5), Heading::NORTH), Some("bedroom"));
-    assert_eq!(semantics.room(DVec3::new(5.0, 0.0, 1.5), Heading::NORTH), Some("living room"));
-    let lamp = semantics.named(&ObjectId::new("1").unwrap()).unwrap();
+    assert_eq!(semantics.room_at(DVec3::new(0.0, 0.0, 1.5), Heading::NORTH), Some("bedroom"));
+    assert_eq!(semantics.room_at(DVec3::new(5.0, 0.0, 1.5), Heading::NORTH), Some("living room"));
+    let lamp = semantics.find_thing(&ObjectId::new("1").unwrap()).unwrap();
     assert_eq!(lamp.bounds, Some((DVec3::new(0.2_f32.into(), 3.0, 0.5), DVec3::new(1.5, 3.0, 2.5))));
 }
 
@@ -166,7 +166,7 @@ fn real_house_files_are_read() {
             eprintln!("SKIPPED: no {} (set WAYWORD_DATA)", file.display());
             continue;
         };
-        let house = super::house::parse(&text).unwrap();
+        let house = super::house::parse_house(&text).unwrap();
         let objects = text.lines().filter(|line| line.starts_with("O ")).count();
         let regions = text.lines().filter(|line| line.starts_with("R ")).count();
         assert_eq!((house.things.len(), house.regions.len()), (objects, regions));

@@ -4,11 +4,11 @@
 //! a little ahead on the line. Where the agent got stuck behind a corner, it compares ways over the ground instead of straight lines.
 
 use super::{
-    actions::{Gait, Stance},
-    line::Line,
+    actions::{AgentGait, AgentStance},
+    line::GroundLine,
 };
-use crate::ground::{Ground, NoWay};
-use wayword_core::{Action, DVec3, Heading};
+use crate::ground::{GeodesicError, NavMeshGround};
+use wayword_core::{AgentAction, DVec3, Heading};
 
 /// How far ahead on the line the agent aims, in steps.
 const AIM_STEPS: f64 = 2.0;
@@ -28,11 +28,11 @@ const MOST_ACTIONS: usize = 20_000;
 
 /// A walk by single actions.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Walked {
-    /// The actions; the last is [`Action::Stop`].
-    pub actions: Vec<Action>,
+pub struct ActionWalk {
+    /// The actions; the last is [`AgentAction::Stop`].
+    pub actions: Vec<AgentAction>,
     /// The position of the agent before each action.
-    pub stances: Vec<Stance>,
+    pub stances: Vec<AgentStance>,
     /// For each place of the walk, the number of the action before which the agent has reached it.
     pub reached: Vec<usize>,
     /// How far the agent stops from the last place, metres.
@@ -41,14 +41,14 @@ pub struct Walked {
 
 /// Why a walk cannot be followed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum Astray {
+pub enum WalkFollowError {
     /// There is no ground at a place, or no way to it.
     #[error("place {place} of the walk: {reason}")]
     NoWay {
         /// Its number, from 0.
         place: usize,
         /// Why it cannot be reached.
-        reason: NoWay,
+        reason: GeodesicError,
     },
     /// The nearest ground is not under the place but at some distance from it, so the walk would lead elsewhere.
     #[error("place {place} of the walk: the nearest ground is {off_m:.2} m beside it")]
@@ -81,55 +81,58 @@ pub enum Astray {
 /// left.
 ///
 /// # Errors
-/// [`Astray`] names the place of the walk, or where the agent was blocked.
-pub fn follow(
-    ground: &Ground,
+/// [`WalkFollowError`] names the place of the walk, or where the agent was blocked.
+pub fn follow_places(
+    ground: &NavMeshGround,
     places: &[DVec3],
     heading: Heading,
-    gait: Gait,
+    gait: AgentGait,
     tolerance_m: f64,
-) -> Result<Walked, Astray> {
-    let (line, marks) = joined(ground, places)?;
+) -> Result<ActionWalk, WalkFollowError> {
+    let (line, marks) = join_places(ground, places)?;
     let first = places.first().copied().unwrap_or_default();
-    let off_ground = || Astray::NoWay { place: 0, reason: NoWay::OffGround(first) };
-    let start = Stance::new(ground.nearest(first).ok_or_else(off_ground)?, heading);
-    let follower = Follower { ground, line: &line, gait, tolerance_m };
-    let walked = follower.walk(start, &marks)?;
+    let off_ground = || WalkFollowError::NoWay { place: 0, reason: GeodesicError::OffGround(first) };
+    let start = AgentStance::new(ground.nearest_foothold(first).ok_or_else(off_ground)?, heading);
+    let follower = LineFollower { ground, line: &line, gait, tolerance_m };
+    let walked = follower.walk_line(start, &marks)?;
     let last = places.last().copied().unwrap_or_default();
     let end = walked.stances.last().map_or(last, |stance| stance.foothold.place);
-    Ok(Walked { off_m: (end - last).truncate().length(), ..walked })
+    Ok(ActionWalk { off_m: (end - last).truncate().length(), ..walked })
 }
 
 /// The position of an agent before each of these actions and after the last. A step that the ground blocks gives `None`, and ends
 /// the sequence.
-pub fn replay<'a>(
-    ground: &'a Ground,
-    start: Stance,
-    actions: &'a [Action],
-    gait: Gait,
-) -> impl Iterator<Item = Option<Stance>> + 'a {
+pub fn replay_actions<'a>(
+    ground: &'a NavMeshGround,
+    start: AgentStance,
+    actions: &'a [AgentAction],
+    gait: AgentGait,
+) -> impl Iterator<Item = Option<AgentStance>> + 'a {
     let mut now = Some(start);
     std::iter::once(Some(start)).chain(actions.iter().map_while(move |action| {
-        let (next, is_blocked) = now?.after(*action, ground, gait);
+        let (next, is_blocked) = now?.after_action(*action, ground, gait);
         now = (!is_blocked).then_some(next);
         Some(now)
     }))
 }
 
 /// The line along the shortest ways from place to place, and how far along it each place is.
-fn joined(ground: &Ground, places: &[DVec3]) -> Result<(Line, Vec<f64>), Astray> {
-    let mut line = Line::default();
+fn join_places(ground: &NavMeshGround, places: &[DVec3]) -> Result<(GroundLine, Vec<f64>), WalkFollowError> {
+    let mut line = GroundLine::default();
     let mut marks = Vec::with_capacity(places.len());
     let on_ground = |place: usize| {
         let at = places.get(place).copied().unwrap_or_default();
-        let on = ground.nearest(at).ok_or(Astray::NoWay { place, reason: NoWay::OffGround(at) })?.place;
+        let on = ground
+            .nearest_foothold(at)
+            .ok_or(WalkFollowError::NoWay { place, reason: GeodesicError::OffGround(at) })?
+            .place;
         let off_m = (on - at).truncate().length();
-        if off_m > BESIDE_M { Err(Astray::Beside { place, off_m }) } else { Ok(on) }
+        if off_m > BESIDE_M { Err(WalkFollowError::Beside { place, off_m }) } else { Ok(on) }
     };
     marks.push(line.push(on_ground(0)?));
     for (number, pair) in places.windows(2).enumerate() {
         let way = ground.geodesic(pair[0], pair[1]);
-        let way = way.map_err(|reason| Astray::NoWay { place: number + 1, reason })?;
+        let way = way.map_err(|reason| WalkFollowError::NoWay { place: number + 1, reason })?;
         for corner in way.corners {
             line.push(corner);
         }
@@ -138,15 +141,15 @@ fn joined(ground: &Ground, places: &[DVec3]) -> Result<(Line, Vec<f64>), Astray>
     Ok((line, marks))
 }
 
-struct Follower<'a> {
-    ground: &'a Ground,
-    line: &'a Line,
-    gait: Gait,
+struct LineFollower<'a> {
+    ground: &'a NavMeshGround,
+    line: &'a GroundLine,
+    gait: AgentGait,
     tolerance_m: f64,
 }
 
-impl Follower<'_> {
-    fn walk(&self, mut now: Stance, marks: &[f64]) -> Result<Walked, Astray> {
+impl LineFollower<'_> {
+    fn walk_line(&self, mut now: AgentStance, marks: &[f64]) -> Result<ActionWalk, WalkFollowError> {
         let forward_m = self.gait.forward_m();
         let (mut actions, mut stances, mut reached) = (Vec::new(), Vec::new(), Vec::new());
         let mut along = 0.0;
@@ -155,66 +158,66 @@ impl Follower<'_> {
                 reached.push(actions.len());
             }
             if actions.len() > MOST_ACTIONS {
-                return Err(Astray::TooLong);
+                return Err(WalkFollowError::TooLong);
             }
-            let Some((turns, next)) = self.best(now, along) else {
+            let Some((turns, next)) = self.best_step(now, along) else {
                 let left_m = self.line.length_m() - along;
                 let (at, tolerance_m) = (now.foothold.place, self.tolerance_m);
-                return Err(Astray::Blocked { at, actions: actions.len(), left_m, tolerance_m });
+                return Err(WalkFollowError::Blocked { at, actions: actions.len(), left_m, tolerance_m });
             };
-            let turn = if turns < 0 { Action::Left } else { Action::Right };
-            for action in std::iter::repeat_n(turn, turns.unsigned_abs() as usize).chain([Action::Forward]) {
+            let turn = if turns < 0 { AgentAction::Left } else { AgentAction::Right };
+            for action in std::iter::repeat_n(turn, turns.unsigned_abs() as usize).chain([AgentAction::Forward]) {
                 stances.push(now);
                 actions.push(action);
-                (now, _) = now.after(action, self.ground, self.gait);
+                (now, _) = now.after_action(action, self.ground, self.gait);
             }
             along = next;
         }
         reached.resize(marks.len(), actions.len());
         stances.push(now);
-        actions.push(Action::Stop);
-        Ok(Walked { actions, stances, reached, off_m: 0.0 })
+        actions.push(AgentAction::Stop);
+        Ok(ActionWalk { actions, stances, reached, off_m: 0.0 })
     }
 
     /// The number of turns before the next step forward (negative to the left), and how far along the line that step ends. Of equally
     /// good steps, the one with fewer turns wins, and then the one to the left.
-    fn best(&self, now: Stance, along: f64) -> Option<(i32, f64)> {
-        let aim = self.line.at(along + AIM_STEPS * self.gait.forward_m());
-        let steps = self.steps(now, along).filter(|step| step.along - along >= self.least_m());
-        let straight = |step: Step| ((step.end - aim).truncate().length() + self.price_m(step.turns), step);
-        let found = least(steps.map(straight)).or_else(|| self.round_a_corner(now, along, aim))?;
+    fn best_step(&self, now: AgentStance, along: f64) -> Option<(i32, f64)> {
+        let aim = self.line.place_at(along + AIM_STEPS * self.gait.forward_m());
+        let steps = self.possible_steps(now, along).filter(|step| step.along - along >= self.least_m());
+        let straight = |step: CandidateStep| ((step.end - aim).truncate().length() + self.price_m(step.turns), step);
+        let found = cheapest_step(steps.map(straight)).or_else(|| self.round_a_corner(now, along, aim))?;
         Some((found.turns, found.along))
     }
 
     /// The step that shortens the way to the aim most. It is needed where no step gets farther along the line, because the agent cut a
     /// corner and now faces the wall behind it.
-    fn round_a_corner(&self, now: Stance, along: f64, aim: DVec3) -> Option<Step> {
+    fn round_a_corner(&self, now: AgentStance, along: f64, aim: DVec3) -> Option<CandidateStep> {
         let left_m = |place: DVec3| self.ground.geodesic(place, aim).ok().map(|way| way.length_m);
         let before_m = left_m(now.foothold.place)?;
         let from_m = (along - REACH_STEPS * self.gait.forward_m()).max(0.0);
-        let steps = self.steps(now, from_m).filter_map(|step| {
+        let steps = self.possible_steps(now, from_m).filter_map(|step| {
             let left_m = left_m(step.end)?;
-            let step = Step { along: step.along.max(along), ..step };
+            let step = CandidateStep { along: step.along.max(along), ..step };
             (before_m - left_m >= self.least_m()).then_some((left_m + self.price_m(step.turns), step))
         });
-        least(steps)
+        cheapest_step(steps)
     }
 
     /// The steps forward that the ground allows and that end within the tolerance, for every number of turns before them.
-    fn steps(&self, now: Stance, from_m: f64) -> impl Iterator<Item = Step> {
+    fn possible_steps(&self, now: AgentStance, from_m: f64) -> impl Iterator<Item = CandidateStep> {
         let to_m = from_m + REACH_STEPS * self.gait.forward_m();
         let turns = (0..=self.gait.turns_around()).flat_map(|turns| [-turns, turns]);
         turns.filter_map(move |turns| {
-            let stride = now.turned(turns).ahead(self.ground, self.gait);
-            let (along, off_m) = self.line.nearest(stride.end.place, from_m, to_m)?;
+            let stride = now.turned_by(turns).stride_ahead(self.ground, self.gait);
+            let (along, off_m) = self.line.nearest_point(stride.end.place, from_m, to_m)?;
             if stride.is_blocked || off_m > self.tolerance_m {
                 return None;
             }
             // Otherwise the step could end next to a part of the walk that is beyond a wall or on another level.
-            let on_line = self.ground.nearest(self.line.at(along))?.place;
-            let across = self.ground.stride(&stride.end, on_line);
+            let on_line = self.ground.nearest_foothold(self.line.place_at(along))?.place;
+            let across = self.ground.stride_to(&stride.end, on_line);
             let is_beside = !across.is_blocked && (across.end.place.z - on_line.z).abs() <= LEVEL_M;
-            is_beside.then_some(Step { turns, end: stride.end.place, along })
+            is_beside.then_some(CandidateStep { turns, end: stride.end.place, along })
         })
     }
 
@@ -230,7 +233,7 @@ impl Follower<'_> {
 
 /// A step forward after some turns.
 #[derive(Clone, Copy)]
-struct Step {
+struct CandidateStep {
     turns: i32,
     end: DVec3,
     /// How far along the line it ends, metres.
@@ -238,7 +241,7 @@ struct Step {
 }
 
 /// The step with the least cost; of equal ones, the first.
-fn least(steps: impl Iterator<Item = (f64, Step)>) -> Option<Step> {
+fn cheapest_step(steps: impl Iterator<Item = (f64, CandidateStep)>) -> Option<CandidateStep> {
     steps.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, step)| step)
 }
 

@@ -9,11 +9,11 @@ const HEIGHT_M: f64 = 1.2;
 
 /// Points with how far along the line each is, seen from above.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Line {
+pub(super) struct GroundLine {
     points: Vec<(DVec3, f64)>,
 }
 
-impl Line {
+impl GroundLine {
     /// Appends a place to the line. Returns how far along the line the place is, metres.
     pub(super) fn push(&mut self, place: DVec3) -> f64 {
         let at = match self.points.last() {
@@ -32,7 +32,7 @@ impl Line {
     }
 
     /// The place at a distance along the line, metres.
-    pub(super) fn at(&self, along_m: f64) -> DVec3 {
+    pub(super) fn place_at(&self, along_m: f64) -> DVec3 {
         let after = self.points.partition_point(|(_, at)| *at < along_m);
         match (after.checked_sub(1).and_then(|before| self.points.get(before)), self.points.get(after)) {
             (Some((a, from)), Some((b, to))) => a.lerp(*b, (along_m - from) / (to - from)),
@@ -43,7 +43,7 @@ impl Line {
 
     /// The nearest point to a place on the part of the line from `from_m` to `to_m`: how far along the line it is, and how far from
     /// the place, metres. `None` where the line is on another storey.
-    pub(super) fn nearest(&self, place: DVec3, from_m: f64, to_m: f64) -> Option<(f64, f64)> {
+    pub(super) fn nearest_point(&self, place: DVec3, from_m: f64, to_m: f64) -> Option<(f64, f64)> {
         let first = self.points.partition_point(|(_, at)| *at <= from_m).saturating_sub(1);
         let pieces = self.points[first..].windows(2).take_while(|pair| pair[0].1 <= to_m);
         let near = pieces.map(|pair| {
@@ -66,15 +66,18 @@ mod tests {
 
     #[test]
     fn places_are_found_along_the_line_and_only_within_the_part_that_is_asked_for() {
-        let mut line = Line::default();
+        let mut line = GroundLine::default();
         let place = |x, y| DVec3::new(x, y, 0.0);
         let marks = [place(0.0, 0.0), place(4.0, 0.0), place(4.0, 0.0), place(4.0, 3.0)].map(|place| line.push(place));
         assert_eq!((marks, line.length_m()), ([0.0, 4.0, 4.0, 7.0], 7.0));
-        assert_eq!((line.at(2.0), line.at(5.5), line.at(99.0)), (place(2.0, 0.0), place(4.0, 1.5), place(4.0, 3.0)));
-        let (along, off) = line.nearest(place(1.0, 0.5), 0.0, 2.0).unwrap();
+        assert_eq!(
+            (line.place_at(2.0), line.place_at(5.5), line.place_at(99.0)),
+            (place(2.0, 0.0), place(4.0, 1.5), place(4.0, 3.0))
+        );
+        let (along, off) = line.nearest_point(place(1.0, 0.5), 0.0, 2.0).unwrap();
         assert!((along - 1.0).abs() < 1e-9 && (off - 0.5).abs() < 1e-9);
-        let (along, off) = line.nearest(place(1.0, 0.0), 5.0, 6.0).unwrap();
+        let (along, off) = line.nearest_point(place(1.0, 0.0), 5.0, 6.0).unwrap();
         assert!((along - 5.0).abs() < 1e-9 && off > 3.0);
-        assert!(line.nearest(DVec3::new(1.0, 0.0, 3.0), 0.0, 2.0).is_none());
+        assert!(line.nearest_point(DVec3::new(1.0, 0.0, 3.0), 0.0, 2.0).is_none());
     }
 }

@@ -4,5 +4,5 @@ mod actions;
 mod follow;
 mod line;
 
-pub use actions::{Gait, NoGait, Stance};
-pub use follow::{Astray, Walked, follow, replay};
+pub use actions::{AgentGait, AgentStance, GaitError};
+pub use follow::{ActionWalk, WalkFollowError, follow_places, replay_actions};

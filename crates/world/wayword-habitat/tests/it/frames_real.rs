@@ -5,12 +5,12 @@
 
 use wayword_core::DVec3;
 use wayword_habitat::{
-    Ground, NavMesh,
+    NavMesh, NavMeshGround,
     axes::{EYE_M, forward_from_habitat_rotation},
-    bake::bake,
-    scene::{Model, Stage},
+    bake::bake_navmesh,
+    scene::{HabitatStage, SceneModel},
 };
-use wayword_render::{Camera, Picture, Scene, render};
+use wayword_render::{PinholeCamera, RenderScene, RenderedPicture, render_scene};
 
 /// Pixels of a frame.
 const PIXELS: f64 = 640.0 * 480.0;
@@ -20,13 +20,13 @@ fn every_frame_of_habitat_is_drawn_the_same() {
     let Some(folder) = crate::oracles::folder() else { return };
     let folder = folder.join("habitat_frames");
     for (name, stage) in [("traj_flat_a", "flat.glb"), ("traj_simple_room", "simple_room.stage_config.json")] {
-        let mut model = Model::of(&Stage::of(&folder.join(stage)).unwrap()).unwrap();
+        let mut model = SceneModel::from_stage(&HabitatStage::from_file(&folder.join(stage)).unwrap()).unwrap();
         // Habitat lights surfaces without a material with the image of a studio, which is not available: they are
         // counted apart.
         for mesh in model.meshes.iter_mut().filter(|mesh| !mesh.colours.is_empty()) {
             mesh.id = 1;
         }
-        let scene = Scene::new(model.meshes, model.materials, model.textures).unwrap();
+        let scene = RenderScene::new(model.meshes, model.materials, model.textures).unwrap();
         let trajectory = crate::oracles::json(&folder.join(name).join("trajectory.json"));
         for frame in trajectory["frames"].as_array().unwrap() {
             let ours = draw(&scene, frame);
@@ -57,13 +57,13 @@ fn every_frame_of_habitat_is_drawn_the_same() {
     }
 }
 
-fn draw(scene: &Scene, frame: &serde_json::Value) -> Picture {
+fn draw(scene: &RenderScene, frame: &serde_json::Value) -> RenderedPicture {
     let number = |field: &str, at: usize| frame[field][at].as_f64().unwrap();
     let eye = crate::oracles::place(&frame["agent_position"]) + DVec3::Z * EYE_M;
     let forward = forward_from_habitat_rotation(std::array::from_fn(|at| number("rotation_wxyz", at)));
     // 90 degrees wide.
     let vertical_fov_rad = 2.0 * libm::atan(0.75);
-    render(scene, &Camera::looking_along(eye, forward, vertical_fov_rad, 640, 480)).unwrap()
+    render_scene(scene, &PinholeCamera::looking_along(eye, forward, vertical_fov_rad, 640, 480)).unwrap()
 }
 
 /// The median difference in millimetres, and the number of pixels with a difference of more than 2 mm. A pixel that
@@ -81,14 +81,14 @@ fn a_baked_navmesh_has_the_area_of_habitats_own() {
     let folder = folder.join("habitat_frames");
     for (name, stage) in [("traj_flat_a", "flat.glb"), ("traj_simple_room", "simple_room.stage_config.json")] {
         let theirs = NavMesh::from_bytes(&std::fs::read(folder.join(name).join("scene.navmesh")).unwrap()).unwrap();
-        let model = Model::of(&Stage::of(&folder.join(stage)).unwrap()).unwrap();
-        let ours = bake(&model, theirs.settings().unwrap()).unwrap();
+        let model = SceneModel::from_stage(&HabitatStage::from_file(&folder.join(stage)).unwrap()).unwrap();
+        let ours = bake_navmesh(&model, theirs.settings().unwrap()).unwrap();
         assert_eq!(NavMesh::from_bytes(&ours.to_bytes()).unwrap(), ours);
-        let areas = [&ours, &theirs].map(|mesh| Ground::new(mesh).islands_m2().collect::<Vec<_>>());
+        let areas = [&ours, &theirs].map(|mesh| NavMeshGround::new(mesh).islands_m2().collect::<Vec<_>>());
         println!(
             "{name}: {} polygons of {}, islands {:?} of {:?}",
-            ours.polygons(),
-            theirs.polygons(),
+            ours.polygon_count(),
+            theirs.polygon_count(),
             areas[0],
             areas[1]
         );

@@ -2,13 +2,13 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail as tests do")]
 
-use wayword_core::{DVec3, Path, rng};
+use wayword_core::{DVec3, Path, seeded_rng};
 use wayword_habitat::{
-    Ground, NavMesh, NavMeshSettings,
+    NavMesh, NavMeshGround, NavMeshSettings,
     axes::{EYE_M, forward_from_habitat_rotation, wayword_from_habitat},
-    bake::bake,
+    bake::bake_navmesh,
     ground::{stops_along, viewpoint_graph},
-    scene::Model,
+    scene::SceneModel,
 };
 use wayword_render::Mesh;
 
@@ -18,7 +18,7 @@ fn every_navmesh_of_habitat_is_written_back_byte_for_byte() {
         let bytes = std::fs::read(&file).unwrap();
         let mesh = NavMesh::from_bytes(&bytes).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
         assert_eq!(mesh.version(), 2);
-        assert!(mesh.polygons() > 0);
+        assert!(mesh.polygon_count() > 0);
         assert!(mesh.to_bytes() == bytes, "{} is written back differently", file.display());
     }
 }
@@ -33,7 +33,8 @@ fn geodesics_along_habitats_own_trajectories_agree_to_a_millimetre() {
     let Some(folder) = crate::oracles::folder() else { return };
     for name in ["traj_flat_a", "traj_simple_room"] {
         let folder = folder.join("habitat_frames").join(name);
-        let ground = Ground::new(&NavMesh::from_bytes(&std::fs::read(folder.join("scene.navmesh")).unwrap()).unwrap());
+        let ground =
+            NavMeshGround::new(&NavMesh::from_bytes(&std::fs::read(folder.join("scene.navmesh")).unwrap()).unwrap());
         let trajectory = crate::oracles::json(&folder.join("trajectory.json"));
         let expected = corners(&trajectory["path_points"]);
         let way = ground.geodesic(expected[0], *expected.last().unwrap()).unwrap();
@@ -52,7 +53,8 @@ fn frames_stand_where_those_of_the_trajectories_do() {
     let Some(folder) = crate::oracles::folder() else { return };
     for name in ["traj_flat_a", "traj_simple_room"] {
         let folder = folder.join("habitat_frames").join(name);
-        let ground = Ground::new(&NavMesh::from_bytes(&std::fs::read(folder.join("scene.navmesh")).unwrap()).unwrap());
+        let ground =
+            NavMeshGround::new(&NavMesh::from_bytes(&std::fs::read(folder.join("scene.navmesh")).unwrap()).unwrap());
         let trajectory = crate::oracles::json(&folder.join("trajectory.json"));
         let expected = corners(&trajectory["path_points"]);
         let way = ground.geodesic(expected[0], *expected.last().unwrap()).unwrap();
@@ -60,7 +62,7 @@ fn frames_stand_where_those_of_the_trajectories_do() {
         // Habitat's frames are about a metre apart: ours are to be as many.
         let stops = stops_along(&ground, &way, way.length_m / (frames.len() - 1) as f64);
         // Before the first bend, Habitat's agent looks in the same direction as ours.
-        let ours = Path::frames_along(stops.clone(), None)[0].pose.heading.direction();
+        let ours = Path::frames_along(stops.clone(), None)[0].pose.heading.unit_vector();
         let rotation = std::array::from_fn(|at| frames[0]["rotation_wxyz"][at].as_f64().unwrap());
         assert!((ours - forward_from_habitat_rotation(rotation)).length() < 1e-3);
         for (stop, frame) in stops.iter().zip(frames) {
@@ -74,7 +76,8 @@ fn frames_stand_where_those_of_the_trajectories_do() {
 fn geodesics_and_area_agree_with_habitats_path_finder() {
     let Some(folder) = crate::oracles::folder() else { return };
     let folder = folder.join("habitat_navmesh");
-    let ground = Ground::new(&NavMesh::from_bytes(&std::fs::read(folder.join("rooms.navmesh")).unwrap()).unwrap());
+    let ground =
+        NavMeshGround::new(&NavMesh::from_bytes(&std::fs::read(folder.join("rooms.navmesh")).unwrap()).unwrap());
     let rooms = crate::oracles::json(&folder.join("rooms.json"));
     let area_m2 = rooms["area"].as_f64().unwrap();
     println!("area {} of {area_m2} m2", ground.area_m2());
@@ -98,8 +101,8 @@ fn solid(ends: [[f32; 3]; 2]) -> Mesh {
 fn a_navmesh_baked_with_the_default_settings_is_habitats() {
     let Some(folder) = crate::oracles::folder() else { return };
     let folder = folder.join("habitat_navmesh");
-    let model = Model { meshes: crate::oracles::ROOMS.map(solid).to_vec(), ..Model::default() };
-    let ground = Ground::new(&bake(&model, &NavMeshSettings::default()).unwrap());
+    let model = SceneModel { meshes: crate::oracles::ROOMS.map(solid).to_vec(), ..SceneModel::default() };
+    let ground = NavMeshGround::new(&bake_navmesh(&model, &NavMeshSettings::default()).unwrap());
     let rooms = crate::oracles::json(&folder.join("rooms.json"));
     let area_m2 = rooms["area"].as_f64().unwrap();
     println!("baked area {} of {area_m2} m2", ground.area_m2());
@@ -115,8 +118,8 @@ fn a_navmesh_baked_with_the_default_settings_is_habitats() {
 #[test]
 fn places_and_viewpoints_lie_on_the_largest_island() {
     for file in crate::oracles::navmeshes() {
-        let ground = Ground::new(&NavMesh::from_bytes(&std::fs::read(&file).unwrap()).unwrap());
-        let mut rng = rng(7, &["places"]);
+        let ground = NavMeshGround::new(&NavMesh::from_bytes(&std::fs::read(&file).unwrap()).unwrap());
+        let mut rng = seeded_rng(7, &["places"]);
         for _ in 0..200 {
             let place = ground.random_place(0, &mut rng).unwrap().place;
             assert!(ground.nearest_on(0, place).unwrap().place.distance(place) < 1e-6);
@@ -129,6 +132,6 @@ fn places_and_viewpoints_lie_on_the_largest_island() {
             graph.len(),
             graph.edges().count()
         );
-        assert_eq!(graph.components(), 1);
+        assert_eq!(graph.count_components(), 1);
     }
 }

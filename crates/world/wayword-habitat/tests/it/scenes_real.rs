@@ -2,8 +2,8 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests may fail and tell as tests do")]
 
-use wayword_core::{DVec3, Gaze, PathRequest, Platform, rng};
-use wayword_habitat::{Ground, HabitatOptions, HabitatPlatform};
+use wayword_core::{DVec3, PathRequest, Platform, ViewGaze, seeded_rng};
+use wayword_habitat::{HabitatOptions, HabitatPlatform, NavMeshGround};
 
 /// A scene, and the length of its unit in metres.
 const SCENES: [(&str, f64); 3] =
@@ -23,32 +23,33 @@ fn scenes_without_navmesh_are_baked_walked_and_seen() {
         let platform =
             HabitatPlatform::open(&config, HabitatOptions::default(), std::sync::Arc::new(|line| println!("{line}")))
                 .unwrap();
-        let scene = platform.scenes().unwrap().remove(0);
+        let scene = platform.list_scenes().unwrap().remove(0);
         let mesh = platform.navmesh(&scene).unwrap();
-        let ground = Ground::new(&mesh);
-        let graph = platform.graph(&scene).unwrap();
+        let ground = NavMeshGround::new(&mesh);
+        let graph = platform.graph_for_scene(&scene).unwrap();
         println!(
             "{name}: {} polygons, {:.1} m2, islands {:.1?}, {} viewpoints, {} edges",
-            mesh.polygons(),
+            mesh.polygon_count(),
             ground.area_m2(),
             ground.islands_m2().take(5).collect::<Vec<_>>(),
             graph.len(),
             graph.edges().count()
         );
-        assert_eq!(graph.components(), 1);
+        assert_eq!(graph.count_components(), 1);
         walk_all_over(&ground);
         let path = platform.sample_path(&scene, &PathRequest { hops: 0..=99, length_m: 1.0..=30.0 }, 5).unwrap();
-        let view = platform.look(&scene, &path.frames[0], Gaze::quarter(path.frames[0].pose.heading)).unwrap();
+        let view =
+            platform.look_from(&scene, &path.frames[0], ViewGaze::quarter_view(path.frames[0].pose.heading)).unwrap();
         let image = view.image.unwrap();
-        let lit = image.rgb().chunks(3).filter(|pixel| pixel.iter().any(|byte| *byte > 0)).count();
+        let lit = image.rgb_bytes().chunks(3).filter(|pixel| pixel.iter().any(|byte| *byte > 0)).count();
         assert!(lit > 640 * 480 / 10, "{name}: {lit} pixels show something");
     }
 }
 
 /// Checks that there is a way between any two places of an island, that it is not shorter than the straight line, has
 /// the same length backwards, and is almost never longer than the way over a third place.
-fn walk_all_over(ground: &Ground) {
-    let mut rng = rng(3, &["all over"]);
+fn walk_all_over(ground: &NavMeshGround) {
+    let mut rng = seeded_rng(3, &["all over"]);
     let mut longer = 0;
     for _ in 0..1000 {
         let [a, b, c] = [0; 3].map(|island| ground.random_place(island, &mut rng).unwrap().place);

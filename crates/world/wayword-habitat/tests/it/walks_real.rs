@@ -7,11 +7,11 @@ use std::{
     path::{Path, PathBuf},
     sync::Arc,
 };
-use wayword_core::{DVec3, Frame, Heading, PathRequest, Platform, Pose, Way};
+use wayword_core::{DVec3, Frame, GroundRoute, Heading, PathRequest, Platform, Pose};
 use wayword_habitat::{
     HabitatOptions, HabitatPlatform,
     axes::EYE_M,
-    scene::{Model, Stage},
+    scene::{HabitatStage, SceneModel},
 };
 
 /// A scene, its navmesh, and the area of the island that people walk on, square metres.
@@ -63,8 +63,8 @@ fn every_frame_of_a_walk_stands_on_a_storey_with_headroom() {
     for oracle in scenes(&folder, written.path()) {
         let name = oracle.name;
         let platform = open(&oracle, None);
-        let scene = platform.scenes().unwrap().remove(0);
-        let islands = platform.islands(&scene).unwrap();
+        let scene = platform.list_scenes().unwrap().remove(0);
+        let islands = platform.ground_islands(&scene).unwrap();
         for island in &islands {
             println!("{name}: {island}{}", if island.is_walked { ", walked" } else { "" });
         }
@@ -94,12 +94,12 @@ fn an_island_that_is_asked_for_is_walked_on_even_if_it_is_a_roof() {
     let flat = scenes(&folder, written.path()).remove(0);
     let geometry = Geometry::of(&flat.stage);
     let platform = open(&flat, Some(0));
-    let scene = platform.scenes().unwrap().remove(0);
+    let scene = platform.list_scenes().unwrap().remove(0);
     for seed in 0..20 {
         let path = platform.sample_path(&scene, &PathRequest::default(), seed).unwrap();
         assert!(!path.frames.iter().any(|frame| geometry.is_on_storey(frame)));
     }
-    let error = open(&flat, Some(9)).graph(&scene).unwrap_err().to_string();
+    let error = open(&flat, Some(9)).graph_for_scene(&scene).unwrap_err().to_string();
     assert!(
         error.contains("no island 9: island 0: 67.0 m2 at height 2.9 m, on top of a roof; island 1: 43.5 m2"),
         "{error}"
@@ -107,7 +107,7 @@ fn an_island_that_is_asked_for_is_walked_on_even_if_it_is_a_roof() {
 }
 
 /// The way from one place on the ground to another.
-type Measure = dyn Fn(DVec3, DVec3) -> Way;
+type Measure = dyn Fn(DVec3, DVec3) -> GroundRoute;
 
 #[test]
 fn ways_are_as_long_as_habitats_and_straight_between_their_corners() {
@@ -117,8 +117,8 @@ fn ways_are_as_long_as_habitats_and_straight_between_their_corners() {
         let oracle = scenes(&folder, written.path()).remove(number);
         assert_eq!(oracle.name, scene);
         let platform = open(&oracle, None);
-        let scene = platform.scenes().unwrap().remove(0);
-        move |from: DVec3, to: DVec3| platform.way(&scene, &standing(from), &standing(to)).unwrap().unwrap()
+        let scene = platform.list_scenes().unwrap().remove(0);
+        move |from: DVec3, to: DVec3| platform.ground_route(&scene, &standing(from), &standing(to)).unwrap().unwrap()
     };
     let mut expected: Vec<(Box<Measure>, DVec3, DVec3, f64)> = Vec::new();
     for (name, number) in [("flat", 0), ("simple_room", 2)] {
@@ -144,7 +144,7 @@ fn ways_are_as_long_as_habitats_and_straight_between_their_corners() {
 }
 
 fn standing(feet: DVec3) -> Frame {
-    Frame { pose: Pose::level(feet + DVec3::Z * EYE_M, Heading::NORTH), viewpoint: None, level: None }
+    Frame { pose: Pose::looking_level(feet + DVec3::Z * EYE_M, Heading::NORTH), viewpoint: None, level: None }
 }
 
 /// The triangles of a scene, searched one by one without any code of the platform.
@@ -155,7 +155,7 @@ struct Geometry {
 
 impl Geometry {
     fn of(stage: &Path) -> Self {
-        let model = Model::of(&Stage::of(stage).unwrap()).unwrap();
+        let model = SceneModel::from_stage(&HabitatStage::from_file(stage).unwrap()).unwrap();
         let of_mesh = |mesh: &wayword_render::Mesh| {
             let corner = |vertex: &u32| mesh.positions[*vertex as usize].as_dvec3();
             mesh.triangles.iter().map(|triangle| std::array::from_fn(|at| corner(&triangle[at]))).collect::<Vec<_>>()

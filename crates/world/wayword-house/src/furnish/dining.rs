@@ -2,51 +2,51 @@
 
 use super::super::{
     catalogue::FurnitureKind as K,
-    rect::{RectCm, Wall},
+    rect::{RectCm, WallSide},
 };
-use super::placing::{Along, Furnisher};
+use super::placing::{RoomFurnisher, WallPreference};
 
-pub(super) fn furnish(room: &mut Furnisher<'_>) {
+pub(super) fn furnish_dining_room(room: &mut RoomFurnisher<'_>) {
     let (x, y) = room.inner.centre();
     let along_x = room.inner.width() >= room.inner.depth();
     room.on_ceiling(K::Chandelier);
     for length in [180, 150, 120] {
         let (w, d) = if along_x { (length, 90) } else { (90, length) };
         let footprint = RectCm::new(x - w / 2, y - d / 2, x + w / 2, y + d / 2);
-        let wall = if along_x { Wall::North } else { Wall::West };
+        let wall = if along_x { WallSide::North } else { WallSide::West };
         if let Some(table) = room.try_at(K::DiningTable, footprint, wall, false) {
-            room.finish(table);
+            room.apply_finish(table);
             room.on_top(table, K::Vase, 0, 0);
-            chairs(room, footprint, along_x, length);
+            add_chairs(room, footprint, along_x, length);
             break;
         }
     }
     let walls = room.quiet_walls();
-    if let Some(sideboard) = room.stand(K::Sideboard, &walls, Along::Middle, 45) {
-        room.finish(sideboard);
+    if let Some(sideboard) = room.stand_at_walls(K::Sideboard, &walls, WallPreference::Middle, 45) {
+        room.apply_finish(sideboard);
         room.on_top(sideboard, K::TableLamp, 45, 0);
         room.hang_over(sideboard, K::Painting, 50);
     }
-    room.stand_anywhere(K::Plant, Along::Ends, 0);
-    room.stand_anywhere(K::Bookshelf, Along::Ends, 50);
+    room.stand_anywhere(K::Plant, WallPreference::Ends, 0);
+    room.stand_anywhere(K::Bookshelf, WallPreference::Ends, 50);
     if room.dice.chance(30) {
-        room.stand_anywhere(K::GrandfatherClock, Along::Ends, 60);
+        room.stand_anywhere(K::GrandfatherClock, WallPreference::Ends, 60);
     }
-    room.curtains();
+    room.hang_curtains();
 }
 
 /// Chairs on the long sides, and at the heads where there is room.
-fn chairs(room: &mut Furnisher<'_>, table: RectCm, along_x: bool, length: i32) {
-    let colour = K::Chair.colour(&mut room.dice);
+fn add_chairs(room: &mut RoomFurnisher<'_>, table: RectCm, along_x: bool, length: i32) {
+    let colour = K::Chair.draw_colour(&mut room.dice);
     let shifts: &[i32] = if length >= 150 { &[-42, 42] } else { &[0] };
     let (long, heads) = if along_x {
-        ([Wall::North, Wall::South], [Wall::West, Wall::East])
+        ([WallSide::North, WallSide::South], [WallSide::West, WallSide::East])
     } else {
-        ([Wall::West, Wall::East], [Wall::North, Wall::South])
+        ([WallSide::West, WallSide::East], [WallSide::North, WallSide::South])
     };
     let sides = long.iter().flat_map(|wall| shifts.iter().map(|shift| (*wall, *shift)));
     for (back, shift) in sides.chain(heads.map(|wall| (wall, 0))) {
-        let middle = table.edge(back).middle();
+        let middle = table.edge_at(back).middle();
         let (dx, dy) = back.inward();
         // Pushed under the table by a third of its depth.
         let (x, y) = (middle.0 - dx * 10, middle.1 - dy * 10);
@@ -54,7 +54,7 @@ fn chairs(room: &mut Furnisher<'_>, table: RectCm, along_x: bool, length: i32) {
         let (w, d) = if back.along_x() { (44, 48) } else { (48, 44) };
         let footprint = RectCm::new(x - w / 2, y - d / 2, x + w / 2, y + d / 2);
         if let Some(chair) = room.try_under(K::Chair, footprint, back, &table) {
-            room.paint(chair, colour);
+            room.set_colour(chair, colour);
         }
     }
 }

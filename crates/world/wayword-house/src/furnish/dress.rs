@@ -5,9 +5,9 @@
 use super::super::{
     catalogue::FurnitureKind as K,
     model::RoomKind,
-    rect::{RectCm, Wall},
+    rect::{RectCm, WallSide},
 };
-use super::placing::Furnisher;
+use super::placing::RoomFurnisher;
 
 /// Distance between two hanging things side by side, and to a room's corner, centimetres.
 const GAP_CM: i32 = 9;
@@ -17,21 +17,22 @@ const STRIP_CM: i32 = 5;
 const NARROWEST_CM: i32 = 36;
 
 /// So many things of a kind in a row differ in colour, and another colour is drawn at most so often to achieve this.
-const APART: usize = 4;
-const TRIES: usize = 8;
+const LIKE_COLOURS_APART_PIECES: usize = 4;
+const MAX_COLOUR_DRAWS: usize = 8;
 
 /// The bands of height for hanging things, centimetres above the floor: over the bare floor, over low furniture, and over
 /// high furniture.
-const BANDS: [Band; 3] = [Band { base: 58, top: 226 }, Band { base: 116, top: 226 }, Band { base: 160, top: 226 }];
+const WALL_BANDS: [WallBand; 3] =
+    [WallBand { base: 58, top: 226 }, WallBand { base: 116, top: 226 }, WallBand { base: 160, top: 226 }];
 
 #[derive(Debug, Clone, Copy)]
-struct Band {
+struct WallBand {
     base: i32,
     top: i32,
 }
 
 /// The things that may hang in a kind of room, each with its share in percent; the shares of a room sum to 100.
-fn usual(kind: RoomKind) -> &'static [(K, i32)] {
+fn usual_hangings(kind: RoomKind) -> &'static [(K, i32)] {
     match kind {
         RoomKind::Hallway | RoomKind::Entryway | RoomKind::Staircase => {
             &[(K::Photos, 28), (K::Painting, 34), (K::Tapestry, 14), (K::Mirror, 10), (K::CoatHooks, 14)]
@@ -49,7 +50,7 @@ fn usual(kind: RoomKind) -> &'static [(K, i32)] {
 }
 
 /// Least and greatest usual width of a hanging thing, and its greatest height, centimetres.
-fn measure(kind: K) -> ([i32; 2], i32) {
+fn hanging_size(kind: K) -> ([i32; 2], i32) {
     match kind {
         K::Mirror => ([46, 74], 150),
         K::Towel => ([44, 64], 110),
@@ -62,21 +63,21 @@ fn measure(kind: K) -> ([i32; 2], i32) {
     }
 }
 
-impl Furnisher<'_> {
+impl RoomFurnisher<'_> {
     /// Covers bare walls, one band of height after another.
     pub(super) fn dress_walls(&mut self) {
-        for wall in Wall::ALL {
-            for band in BANDS {
+        for wall in WallSide::ALL {
+            for band in WALL_BANDS {
                 for (from, to) in self.bare_runs(wall, band) {
-                    self.fill(wall, band, from, to);
+                    self.fill_run(wall, band, from, to);
                 }
             }
         }
     }
 
     /// The stretches of a wall that are bare in a band of height.
-    fn bare_runs(&self, wall: Wall, band: Band) -> Vec<(i32, i32)> {
-        let edge = self.inner.edge(wall);
+    fn bare_runs(&self, wall: WallSide, band: WallBand) -> Vec<(i32, i32)> {
+        let edge = self.inner.edge_at(wall);
         let mut runs: Vec<(i32, i32)> = Vec::new();
         let (from, to) = (edge.from + GAP_CM, edge.to - GAP_CM);
         for at in (from..to - STRIP_CM).step_by(STRIP_CM as usize) {
@@ -94,12 +95,12 @@ impl Furnisher<'_> {
     }
 
     /// Hangs things side by side, at equal distances.
-    fn fill(&mut self, wall: Wall, band: Band, from: i32, to: i32) {
+    fn fill_run(&mut self, wall: WallSide, band: WallBand, from: i32, to: i32) {
         let mut chosen: Vec<(K, i32)> = Vec::new();
         let mut left = to - from;
         while left >= NARROWEST_CM {
             let last = chosen.last().map(|(kind, _)| *kind);
-            let (kind, width) = self.choose(left, last);
+            let (kind, width) = self.choose_hanging(left, last);
             left -= width + GAP_CM;
             chosen.push((kind, width));
         }
@@ -107,7 +108,7 @@ impl Furnisher<'_> {
         let mut at = from + gap;
         for (kind, width) in chosen {
             let room = band.top - band.base;
-            let height = measure(kind).1.min(room);
+            let height = hanging_size(kind).1.min(room);
             // Coats and cloths hang down from the top; pictures have their middle at the height of the eyes.
             let spare = room - height;
             let base =
@@ -120,31 +121,31 @@ impl Furnisher<'_> {
     }
 
     /// Hangs a thing in a colour that the last things of its kind do not have, so that no two like pictures hang side by side.
-    pub(super) fn hang_apart(&mut self, kind: K, area: RectCm, base: i32, height: i32, wall: Wall) {
-        let before = self.last_colours(kind, APART);
-        let piece = self.put(kind, area, base, height, wall);
-        for _ in 0..TRIES {
-            if !before.contains(&self.piece(piece).colour) {
+    pub(super) fn hang_apart(&mut self, kind: K, area: RectCm, base: i32, height: i32, wall: WallSide) {
+        let before = self.last_colours(kind, LIKE_COLOURS_APART_PIECES);
+        let piece = self.add_piece(kind, area, base, height, wall);
+        for _ in 0..MAX_COLOUR_DRAWS {
+            if !before.contains(&self.piece_at(piece).colour) {
                 return;
             }
-            let colour = kind.colour(&mut self.dice);
-            self.paint(piece, colour);
+            let colour = kind.draw_colour(&mut self.dice);
+            self.set_colour(piece, colour);
         }
     }
 
     /// Chooses a thing that fits into a width and differs from its neighbour, and the thing's own width.
-    fn choose(&mut self, left: i32, neighbour: Option<K>) -> (K, i32) {
-        let fits = |kind: K| measure(kind).0[0] <= left && Some(kind) != neighbour;
-        let fitting: Vec<_> = usual(self.room.kind).iter().filter(|(kind, _)| fits(*kind)).collect();
-        let mut drawn = self.dice.between(1, fitting.iter().map(|(_, share)| share).sum());
+    fn choose_hanging(&mut self, left: i32, neighbour: Option<K>) -> (K, i32) {
+        let fits = |kind: K| hanging_size(kind).0[0] <= left && Some(kind) != neighbour;
+        let fitting: Vec<_> = usual_hangings(self.room.kind).iter().filter(|(kind, _)| fits(*kind)).collect();
+        let mut drawn = self.dice.draw_between(1, fitting.iter().map(|(_, share)| share).sum());
         let mut is_drawn = |share: i32| {
             drawn -= share;
             drawn <= 0
         };
         // A picture can be as narrow as the rest of the stretch.
         let kind = fitting.iter().find(|(_, share)| is_drawn(*share)).map_or(K::Painting, |(kind, _)| *kind);
-        let [least, most] = measure(kind).0;
-        let width = self.dice.stepped(least.min(left), most.min(left), 2);
+        let [least, most] = hanging_size(kind).0;
+        let width = self.dice.draw_stepped(least.min(left), most.min(left), 2);
         // If the rest would be too narrow for another thing, this one takes it too.
         let rest = left - width - GAP_CM;
         (kind, if rest < NARROWEST_CM && left <= most { left } else { width })

@@ -1,11 +1,11 @@
 //! Chooses the finish of wooden furniture: one for the house, another in some of its rooms, and a different one for a few
 //! pieces.
 
-use super::super::{catalogue::FurnitureKind as K, colour::Colour, dice::Dice, model::RoomKind};
-use super::placing::{Furnisher, Piece};
+use super::super::{catalogue::FurnitureKind as K, colour::Colour, dice::HouseDice, model::RoomKind};
+use super::placing::{PieceIndex, RoomFurnisher};
 
 /// Finishes of wood, as people name them.
-const WOOD: [Colour; 10] = [
+const WOOD_FINISHES: [Colour; 10] = [
     Colour::White,
     Colour::Wooden,
     Colour::Brown,
@@ -18,7 +18,7 @@ const WOOD: [Colour; 10] = [
     Colour::Cream,
 ];
 /// Finishes of kitchen fronts.
-const FRONTS: [Colour; 8] = [
+const KITCHEN_FRONT_FINISHES: [Colour; 8] = [
     Colour::White,
     Colour::Grey,
     Colour::Blue,
@@ -31,41 +31,41 @@ const FRONTS: [Colour; 8] = [
 
 /// The finishes of the furniture in one room.
 #[derive(Debug)]
-pub(super) struct Finishes {
+pub(super) struct RoomFinishes {
     /// The finish of most pieces.
     pub(super) main: Colour,
     /// The finish of the few pieces that differ.
     accent: Colour,
-    dice: Dice,
+    dice: HouseDice,
 }
 
 /// The finish that most rooms of a house share.
-pub(super) fn of_house(dice: &mut Dice) -> Colour {
-    dice.pick(WOOD)
+pub(super) fn of_house(dice: &mut HouseDice) -> Colour {
+    dice.pick(WOOD_FINISHES)
 }
 
 /// The finish of a house's kitchen fronts.
-pub(super) fn of_kitchen(dice: &mut Dice) -> Colour {
-    dice.pick(FRONTS)
+pub(super) fn of_kitchen(dice: &mut HouseDice) -> Colour {
+    dice.pick(KITCHEN_FRONT_FINISHES)
 }
 
-impl Finishes {
+impl RoomFinishes {
     /// The finishes of a room. They have their own random numbers, so that they change no other choice.
     pub(super) fn of_room(seed: u64, index: usize, kind: RoomKind, house: Colour) -> Self {
-        let mut dice = Dice::new(seed, &["finish", &index.to_string()]);
+        let mut dice = HouseDice::new(seed, &["finish", &index.to_string()]);
         // The rooms where guests are match; bedrooms and offices are furnished one by one.
         let own = if matches!(kind, RoomKind::Bedroom | RoomKind::Office | RoomKind::Entryway) { 60 } else { 30 };
-        let main = if dice.chance(own) { dice.pick(WOOD) } else { house };
-        let accent = dice.pick(WOOD);
+        let main = if dice.chance(own) { dice.pick(WOOD_FINISHES) } else { house };
+        let accent = dice.pick(WOOD_FINISHES);
         Self { main, accent, dice }
     }
 }
 
-impl Furnisher<'_> {
+impl RoomFurnisher<'_> {
     /// Gives a wooden piece the finish of its room, or now and then another one.
-    pub(super) fn finish(&mut self, piece: Piece) {
+    pub(super) fn apply_finish(&mut self, piece: PieceIndex) {
         let can_be_glass =
-            matches!(self.piece(piece).kind, K::CoffeeTable | K::SideTable | K::ConsoleTable | K::DiningTable);
+            matches!(self.piece_at(piece).kind, K::CoffeeTable | K::SideTable | K::ConsoleTable | K::DiningTable);
         let finishes = &mut self.finishes;
         let colour = if can_be_glass && finishes.dice.chance(45) {
             Colour::Glass
@@ -74,6 +74,6 @@ impl Furnisher<'_> {
         } else {
             finishes.main
         };
-        self.paint(piece, colour);
+        self.set_colour(piece, colour);
     }
 }

@@ -21,15 +21,15 @@ mod walls;
 use super::{
     catalogue::FurnitureKind,
     colour::Colour,
-    dice::Dice,
-    layout::Layout,
-    model::{Furniture, RoomKind},
+    dice::HouseDice,
+    layout::HouseLayout,
+    model::{FurniturePiece, RoomKind},
 };
-use placing::Furnisher;
+use placing::RoomFurnisher;
 
 /// Colours that all rooms of a house share.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Taste {
+pub(super) struct HousePalette {
     pub(super) wood: Colour,
     pub(super) kitchen: Colour,
     pub(super) curtain: Colour,
@@ -37,20 +37,20 @@ pub(super) struct Taste {
 
 /// All furniture of a house. Each room has its own random numbers, so that the choices in one room do not change the
 /// next.
-pub(super) fn furnish(seed: u64, layout: &Layout) -> Vec<Furniture> {
-    let mut dice = Dice::new(seed, &["taste"]);
-    let taste = Taste {
+pub(super) fn furnish_house(seed: u64, layout: &HouseLayout) -> Vec<FurniturePiece> {
+    let mut dice = HouseDice::new(seed, &["taste"]);
+    let taste = HousePalette {
         wood: finish::of_house(&mut dice),
         kitchen: finish::of_kitchen(&mut dice),
         curtain: dice.pick([Colour::Beige, Colour::Grey, Colour::Blue, Colour::White]),
     };
     let mut pieces = Vec::new();
     for index in 0..layout.rooms.len() {
-        let mut room = Furnisher::new(seed, layout, index, taste);
+        let mut room = RoomFurnisher::new(seed, layout, index, taste);
         furnish_room(&mut room, layout.rooms[index].kind);
-        built_in::furnish(&mut room, layout.rooms[index].kind);
+        built_in::add_built_ins(&mut room, layout.rooms[index].kind);
         match layout.stairs.as_ref().filter(|stairs| stairs.room == index) {
-            Some(stairs) => stairwell::furnish(&mut room, stairs),
+            Some(stairs) => stairwell::furnish_stairwell(&mut room, stairs),
             None => room.dress_walls(),
         }
         pieces.extend(room.into_pieces());
@@ -61,19 +61,19 @@ pub(super) fn furnish(seed: u64, layout: &Layout) -> Vec<Furniture> {
     pieces
 }
 
-fn furnish_room(room: &mut Furnisher<'_>, kind: RoomKind) {
+fn furnish_room(room: &mut RoomFurnisher<'_>, kind: RoomKind) {
     match kind {
-        RoomKind::LivingRoom => living::furnish(room),
-        RoomKind::Kitchen => kitchen::furnish(room),
-        RoomKind::DiningRoom => dining::furnish(room),
-        RoomKind::Bedroom => bedroom::furnish(room),
-        RoomKind::Bathroom => bathroom::furnish(room),
-        RoomKind::Office => office::furnish(room),
-        RoomKind::Hallway => service::hallway(room),
-        RoomKind::LaundryRoom => service::laundry(room),
-        RoomKind::Entryway => service::entryway(room),
-        RoomKind::Closet => service::closet(room),
-        RoomKind::Garage => service::garage(room),
+        RoomKind::LivingRoom => living::furnish_living_room(room),
+        RoomKind::Kitchen => kitchen::furnish_kitchen(room),
+        RoomKind::DiningRoom => dining::furnish_dining_room(room),
+        RoomKind::Bedroom => bedroom::furnish_bedroom(room),
+        RoomKind::Bathroom => bathroom::furnish_bathroom(room),
+        RoomKind::Office => office::furnish_office(room),
+        RoomKind::Hallway => service::furnish_hallway(room),
+        RoomKind::LaundryRoom => service::furnish_laundry(room),
+        RoomKind::Entryway => service::furnish_entryway(room),
+        RoomKind::Closet => service::furnish_closet(room),
+        RoomKind::Garage => service::furnish_garage(room),
         RoomKind::Staircase => {}
     }
     if !matches!(kind, RoomKind::DiningRoom | RoomKind::Staircase) {

@@ -4,19 +4,19 @@
 use super::super::{
     catalogue::FurnitureKind,
     colour::Colour,
-    dice::Dice,
-    layout::{Layout, swing},
-    model::{CEILING_CM, Furniture, Leaf, Opening, Room},
-    rect::{RectCm, SpanCm, Wall},
+    dice::HouseDice,
+    layout::{HouseLayout, floor_before_opening},
+    model::{CEILING_CM, DoorLeaf, FurniturePiece, HouseRoom, WallOpening},
+    rect::{RectCm, SpanCm, WallSide},
 };
-use super::{Taste, finish::Finishes, reach};
+use super::{HousePalette, finish::RoomFinishes, reach};
 
 /// A room while it is being furnished.
-pub(super) struct Furnisher<'a> {
-    pub(super) dice: Dice,
-    pub(super) taste: Taste,
-    pub(super) finishes: Finishes,
-    pub(super) room: &'a Room,
+pub(super) struct RoomFurnisher<'a> {
+    pub(super) dice: HouseDice,
+    pub(super) taste: HousePalette,
+    pub(super) finishes: RoomFinishes,
+    pub(super) room: &'a HouseRoom,
     index: usize,
     /// The area between the walls.
     pub(super) inner: RectCm,
@@ -32,12 +32,12 @@ pub(super) struct Furnisher<'a> {
     pub(super) windows: Vec<(SpanCm, i32)>,
     /// Floor that must stay free so that a piece can be used.
     reserved: Vec<RectCm>,
-    pieces: Vec<Furniture>,
+    pieces: Vec<FurniturePiece>,
 }
 
 /// Which places along a wall are tried first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Along {
+pub(super) enum WallPreference {
     Middle,
     Ends,
     Anywhere,
@@ -52,121 +52,132 @@ const FRAME_CM: i32 = 10;
 const BEHIND_LEAF_CM: i32 = 12;
 
 /// A piece in the room: its index in the list.
-pub(super) type Piece = usize;
+pub(super) type PieceIndex = usize;
 
 /// The main material of a piece. The colour can override the catalogue: a glass table is not made of wood.
-fn material(kind: FurnitureKind, colour: Colour) -> &'static str {
+fn material_name(kind: FurnitureKind, colour: Colour) -> &'static str {
     if colour == Colour::Glass { "glass" } else { kind.entry().material }
 }
 
-impl<'a> Furnisher<'a> {
-    pub(super) fn new(seed: u64, layout: &'a Layout, index: usize, taste: Taste) -> Self {
+impl<'a> RoomFurnisher<'a> {
+    pub(super) fn new(seed: u64, layout: &'a HouseLayout, index: usize, taste: HousePalette) -> Self {
         let room = &layout.rooms[index];
-        let of_room = |opening: &&Opening| opening.room == index || opening.beyond == Some(index);
+        let of_room = |opening: &&WallOpening| opening.room == index || opening.beyond == Some(index);
         let openings = || layout.openings.iter().filter(of_room);
         let windows = layout.windows.iter().filter(|window| window.room == index);
         Self {
-            dice: Dice::new(seed, &["furniture", &index.to_string()]),
+            dice: HouseDice::new(seed, &["furniture", &index.to_string()]),
             taste,
-            finishes: Finishes::of_room(seed, index, room.kind, taste.wood),
+            finishes: RoomFinishes::of_room(seed, index, room.kind, taste.wood),
             room,
             index,
-            inner: room.inner(),
+            inner: room.inner_area(),
             doorsteps: openings()
-                .filter(|opening| opening.leaf != Leaf::Garage)
-                .filter_map(|opening| swing(&room.outline, &opening.span))
+                .filter(|opening| opening.leaf != DoorLeaf::Garage)
+                .filter_map(|opening| floor_before_opening(&room.outline, &opening.span))
                 .collect(),
             holes: openings().map(|opening| opening.span).collect(),
             leaves: openings()
-                .filter(|opening| matches!(opening.leaf, Leaf::Open { into, .. } if into == index))
+                .filter(|opening| matches!(opening.leaf, DoorLeaf::Open { into, .. } if into == index))
                 .flat_map(|opening| opening.open_leaf(&layout.rooms))
                 .collect(),
-            front_door: openings().find(|opening| opening.leaf == Leaf::Closed).map(|opening| opening.span),
+            front_door: openings().find(|opening| opening.leaf == DoorLeaf::Closed).map(|opening| opening.span),
             windows: windows.map(|window| (window.span, window.sill_cm - room.base_cm())).collect(),
             // Only a car may stand in front of a garage door.
             reserved: openings()
-                .filter(|opening| opening.leaf == Leaf::Garage)
-                .filter_map(|opening| swing(&room.outline, &opening.span))
+                .filter(|opening| opening.leaf == DoorLeaf::Garage)
+                .filter_map(|opening| floor_before_opening(&room.outline, &opening.span))
                 .collect(),
             pieces: Vec::new(),
         }
     }
 
-    pub(super) fn into_pieces(self) -> Vec<Furniture> {
+    pub(super) fn into_pieces(self) -> Vec<FurniturePiece> {
         self.pieces
     }
 
-    pub(super) fn piece(&self, piece: Piece) -> &Furniture {
+    pub(super) fn piece_at(&self, piece: PieceIndex) -> &FurniturePiece {
         &self.pieces[piece]
     }
 
     /// The wall behind a piece.
-    pub(super) fn wall_behind(&self, piece: Piece) -> Wall {
-        Wall::ALL[usize::from(self.pieces[piece].quarter_turns) % 4]
+    pub(super) fn wall_behind(&self, piece: PieceIndex) -> WallSide {
+        WallSide::ALL[usize::from(self.pieces[piece].quarter_turns) % 4]
     }
 
     /// Sets the colour of a piece, so that it matches the pieces around it.
-    pub(super) fn paint(&mut self, piece: Piece, colour: Colour) {
+    pub(super) fn set_colour(&mut self, piece: PieceIndex, colour: Colour) {
         let piece = &mut self.pieces[piece];
         piece.colour = colour;
-        piece.material = material(piece.kind, colour).to_owned();
+        piece.material = material_name(piece.kind, colour).to_owned();
     }
 
     /// Adds a piece without checking whether it fits.
-    pub(super) fn put(
+    pub(super) fn add_piece(
         &mut self,
         kind: FurnitureKind,
         footprint: RectCm,
         base_cm: i32,
         height_cm: i32,
-        wall: Wall,
-    ) -> Piece {
+        wall: WallSide,
+    ) -> PieceIndex {
         let entry = kind.entry();
-        let colour = kind.colour(&mut self.dice);
-        self.pieces.push(Furniture {
+        let colour = kind.draw_colour(&mut self.dice);
+        self.pieces.push(FurniturePiece {
             id: 0,
             kind,
             name: entry.name.to_owned(),
             colour,
-            material: material(kind, colour).to_owned(),
+            material: material_name(kind, colour).to_owned(),
             room: self.index,
             footprint,
             base_cm: self.room.base_cm() + base_cm,
             height_cm,
             quarter_turns: wall.quarter_turns(),
-            variant: self.dice.between(0, 9999).unsigned_abs(),
+            variant: self.dice.draw_between(0, 9999).unsigned_abs(),
         });
         self.pieces.len() - 1
     }
 
     /// Places a piece with its back to the first of `walls` where it fits, with `clearance` centimetres of free floor in
     /// front. Returns `None` if it fits nowhere, as all functions here do.
-    pub(super) fn stand(&mut self, kind: FurnitureKind, walls: &[Wall], along: Along, clearance: i32) -> Option<Piece> {
+    pub(super) fn stand_at_walls(
+        &mut self,
+        kind: FurnitureKind,
+        walls: &[WallSide],
+        along: WallPreference,
+        clearance: i32,
+    ) -> Option<PieceIndex> {
         let size = kind.size_cm(&mut self.dice);
         self.stand_sized(kind, size, walls, along, clearance)
     }
 
-    /// As [`Self::stand`], on any wall, in random order.
-    pub(super) fn stand_anywhere(&mut self, kind: FurnitureKind, along: Along, clearance: i32) -> Option<Piece> {
+    /// As [`Self::stand_at_walls`], on any wall, in random order.
+    pub(super) fn stand_anywhere(
+        &mut self,
+        kind: FurnitureKind,
+        along: WallPreference,
+        clearance: i32,
+    ) -> Option<PieceIndex> {
         let walls = self.shuffled_walls();
-        self.stand(kind, &walls, along, clearance)
+        self.stand_at_walls(kind, &walls, along, clearance)
     }
 
     pub(super) fn stand_sized(
         &mut self,
         kind: FurnitureKind,
         size: [i32; 3],
-        walls: &[Wall],
-        along: Along,
+        walls: &[WallSide],
+        along: WallPreference,
         clearance: i32,
-    ) -> Option<Piece> {
+    ) -> Option<PieceIndex> {
         for wall in walls {
-            for from in self.offsets(*wall, size[0], along) {
+            for from in self.wall_offsets(*wall, size[0], along) {
                 let footprint = self.at_wall(*wall, from, size);
                 let before = self.in_front(footprint, *wall, clearance);
                 if !self.blinds_window(*wall, &footprint, size[2]) && self.is_free(&footprint, &before) {
                     self.reserved.push(before);
-                    return Some(self.put(kind, footprint, 0, size[2], *wall));
+                    return Some(self.add_piece(kind, footprint, 0, size[2], *wall));
                 }
             }
         }
@@ -174,13 +185,19 @@ impl<'a> Furnisher<'a> {
     }
 
     /// Places a piece at exactly this footprint if it fits there; reserved floor does not count where `close` is set.
-    pub(super) fn try_at(&mut self, kind: FurnitureKind, footprint: RectCm, wall: Wall, close: bool) -> Option<Piece> {
+    pub(super) fn try_at(
+        &mut self,
+        kind: FurnitureKind,
+        footprint: RectCm,
+        wall: WallSide,
+        close: bool,
+    ) -> Option<PieceIndex> {
         let fits = self.inner.contains(&footprint)
             && !self.touches_fixed(&footprint)
             && (close || !self.reserved.iter().any(|area| area.overlaps(&footprint)))
             && self.keeps_ways_open(&footprint);
         let height = kind.entry().size_cm[2];
-        fits.then(|| self.put(kind, footprint, 0, height, wall))
+        fits.then(|| self.add_piece(kind, footprint, 0, height, wall))
     }
 
     /// As [`Self::try_at`], pushed in under `table`.
@@ -188,20 +205,20 @@ impl<'a> Furnisher<'a> {
         &mut self,
         kind: FurnitureKind,
         footprint: RectCm,
-        wall: Wall,
+        wall: WallSide,
         table: &RectCm,
-    ) -> Option<Piece> {
+    ) -> Option<PieceIndex> {
         let others = |area: &RectCm| area != table && area.overlaps(&footprint);
         let fits = self.inner.contains(&footprint)
             && !self.doorsteps.iter().any(|area| area.overlaps(&footprint))
-            && !self.standing().any(|area| others(&area))
+            && !self.standing_footprints().any(|area| others(&area))
             && self.keeps_ways_open(&footprint);
         let height = kind.entry().size_cm[2];
-        fits.then(|| self.put(kind, footprint, 0, height, wall))
+        fits.then(|| self.add_piece(kind, footprint, 0, height, wall))
     }
 
     /// Places a piece next to another at the same wall, `gap` centimetres further along it, or before it if `gap` is negative.
-    pub(super) fn beside(&mut self, anchor: Piece, kind: FurnitureKind, gap: i32) -> Option<Piece> {
+    pub(super) fn place_beside(&mut self, anchor: PieceIndex, kind: FurnitureKind, gap: i32) -> Option<PieceIndex> {
         let wall = self.wall_behind(anchor);
         let size = kind.size_cm(&mut self.dice);
         let anchor = self.pieces[anchor].footprint;
@@ -212,7 +229,7 @@ impl<'a> Furnisher<'a> {
             && !self.touches_fixed(&footprint)
             && !self.blinds_window(wall, &footprint, size[2])
             && self.keeps_ways_open(&footprint);
-        fits.then(|| self.put(kind, footprint, 0, size[2], wall))
+        fits.then(|| self.add_piece(kind, footprint, 0, size[2], wall))
     }
 
     /// The colours of the last `count` pieces of a kind.
@@ -233,50 +250,50 @@ impl<'a> Furnisher<'a> {
     }
 
     /// The wall with the front door, and the point 50 cm in front of the door.
-    pub(super) fn front_doorstep(&self) -> Option<(Wall, (i32, i32))> {
+    pub(super) fn front_doorstep(&self) -> Option<(WallSide, (i32, i32))> {
         let span = self.front_door?;
         let wall = self.room.outline.wall_of(&span)?;
         let ((x, y), (dx, dy)) = (span.middle(), wall.inward());
         Some((wall, (x + dx * 50, y + dy * 50)))
     }
 
-    pub(super) fn shuffled_walls(&mut self) -> [Wall; 4] {
-        let mut walls = Wall::ALL;
+    pub(super) fn shuffled_walls(&mut self) -> [WallSide; 4] {
+        let mut walls = WallSide::ALL;
         self.dice.shuffle(&mut walls);
         walls
     }
 
     /// Walls in random order, those without openings first.
-    pub(super) fn quiet_walls(&mut self) -> Vec<Wall> {
+    pub(super) fn quiet_walls(&mut self) -> Vec<WallSide> {
         let mut walls = self.shuffled_walls().to_vec();
         walls.sort_by_key(|wall| self.holes.iter().filter(|span| self.is_on(*wall, span)).count());
         walls
     }
 
-    fn is_on(&self, wall: Wall, span: &SpanCm) -> bool {
+    fn is_on(&self, wall: WallSide, span: &SpanCm) -> bool {
         self.room.outline.wall_of(span) == Some(wall)
     }
 
     /// The places along a wall at which a piece of this width fits, in the order in which they are tried.
-    fn offsets(&mut self, wall: Wall, width: i32, along: Along) -> Vec<i32> {
-        let edge = self.inner.edge(wall);
+    fn wall_offsets(&mut self, wall: WallSide, width: i32, along: WallPreference) -> Vec<i32> {
+        let edge = self.inner.edge_at(wall);
         let spare = edge.length() - width;
         if spare < 0 {
             return Vec::new();
         }
         let mut offsets: Vec<i32> = (0..=spare / 5).map(|step| step * 5).chain([spare]).collect();
         match along {
-            Along::Middle => offsets.sort_by_key(|offset| ((2 * offset - spare).abs(), *offset)),
-            Along::Ends => offsets.sort_by_key(|offset| ((*offset).min(spare - offset), *offset)),
-            Along::Anywhere => self.dice.shuffle(&mut offsets),
+            WallPreference::Middle => offsets.sort_by_key(|offset| ((2 * offset - spare).abs(), *offset)),
+            WallPreference::Ends => offsets.sort_by_key(|offset| ((*offset).min(spare - offset), *offset)),
+            WallPreference::Anywhere => self.dice.shuffle(&mut offsets),
         }
         offsets.into_iter().map(|offset| edge.from + offset).collect()
     }
 
     /// The footprint of a piece that has its back to a wall, from `from` along it.
-    pub(super) fn at_wall(&self, wall: Wall, from: i32, [width, depth, _]: [i32; 3]) -> RectCm {
-        let edge = self.inner.edge(wall);
-        let area = SpanCm { from, to: from + width, ..edge }.thickened(0);
+    pub(super) fn at_wall(&self, wall: WallSide, from: i32, [width, depth, _]: [i32; 3]) -> RectCm {
+        let edge = self.inner.edge_at(wall);
+        let area = SpanCm { from, to: from + width, ..edge }.thickened_by(0);
         let (dx, dy) = wall.inward();
         RectCm::new(
             area.x0 + depth * dx.min(0),
@@ -287,17 +304,17 @@ impl<'a> Furnisher<'a> {
     }
 
     /// The floor in front of a piece, `depth` centimetres deep.
-    pub(super) fn in_front(&self, footprint: RectCm, wall: Wall, depth: i32) -> RectCm {
+    pub(super) fn in_front(&self, footprint: RectCm, wall: WallSide, depth: i32) -> RectCm {
         match wall {
-            Wall::North => RectCm::new(footprint.x0, footprint.y0 - depth, footprint.x1, footprint.y0),
-            Wall::South => RectCm::new(footprint.x0, footprint.y1, footprint.x1, footprint.y1 + depth),
-            Wall::West => RectCm::new(footprint.x1, footprint.y0, footprint.x1 + depth, footprint.y1),
-            Wall::East => RectCm::new(footprint.x0 - depth, footprint.y0, footprint.x0, footprint.y1),
+            WallSide::North => RectCm::new(footprint.x0, footprint.y0 - depth, footprint.x1, footprint.y0),
+            WallSide::South => RectCm::new(footprint.x0, footprint.y1, footprint.x1, footprint.y1 + depth),
+            WallSide::West => RectCm::new(footprint.x1, footprint.y0, footprint.x1 + depth, footprint.y1),
+            WallSide::East => RectCm::new(footprint.x0 - depth, footprint.y0, footprint.x0, footprint.y1),
         }
     }
 
-    fn blinds_window(&self, wall: Wall, footprint: &RectCm, height: i32) -> bool {
-        let covers = |span: &SpanCm| self.is_on(wall, span) && span.thickened(20).overlaps(footprint);
+    fn blinds_window(&self, wall: WallSide, footprint: &RectCm, height: i32) -> bool {
+        let covers = |span: &SpanCm| self.is_on(wall, span) && span.thickened_by(20).overlaps(footprint);
         self.windows.iter().any(|(span, sill)| *sill < height - 25 && covers(span))
     }
 
@@ -306,31 +323,33 @@ impl<'a> Furnisher<'a> {
             && self.inner.contains(before)
             && !self.touches_fixed(footprint)
             && !self.reserved.iter().any(|area| area.overlaps(footprint))
-            && !self.standing().any(|area| area.overlaps(before))
+            && !self.standing_footprints().any(|area| area.overlaps(before))
             && self.keeps_ways_open(footprint)
     }
 
     fn touches_fixed(&self, footprint: &RectCm) -> bool {
         self.doorsteps.iter().chain(&self.leaves).any(|area| area.overlaps(footprint))
-            || self.standing().any(|area| area.overlaps(footprint))
+            || self.standing_footprints().any(|area| area.overlaps(footprint))
     }
 
     /// Footprints of the pieces that take floor.
-    fn standing(&self) -> impl Iterator<Item = RectCm> + '_ {
+    fn standing_footprints(&self) -> impl Iterator<Item = RectCm> + '_ {
         let low = self.room.base_cm() + 150;
-        let takes_floor =
-            move |piece: &&Furniture| !piece.kind.is_flat() && !piece.kind.is_slim_on_wall() && piece.base_cm < low;
+        let takes_floor = move |piece: &&FurniturePiece| {
+            !piece.kind.is_flat() && !piece.kind.is_slim_on_wall() && piece.base_cm < low
+        };
         self.pieces.iter().filter(takes_floor).map(|piece| piece.footprint)
     }
 
     fn keeps_ways_open(&self, footprint: &RectCm) -> bool {
-        let obstacles: Vec<_> = self.standing().chain(self.leaves.iter().copied()).chain([*footprint]).collect();
+        let obstacles: Vec<_> =
+            self.standing_footprints().chain(self.leaves.iter().copied()).chain([*footprint]).collect();
         reach::ways_stay_open(&self.inner, &obstacles, &self.doorsteps)
     }
 
     /// Puts a small thing on top of a piece, `shift` centimetres along it from its middle and `forward` from its middle
     /// towards its front.
-    pub(super) fn on_top(&mut self, below: Piece, kind: FurnitureKind, shift: i32, forward: i32) -> Piece {
+    pub(super) fn on_top(&mut self, below: PieceIndex, kind: FurnitureKind, shift: i32, forward: i32) -> PieceIndex {
         let [width, depth, height] = kind.size_cm(&mut self.dice);
         let (wall, base) = (self.wall_behind(below), self.pieces[below].base_cm + self.pieces[below].height_cm);
         let (cx, cy) = self.pieces[below].footprint.centre();
@@ -340,17 +359,17 @@ impl<'a> Furnisher<'a> {
         let (x, y) = (cx + ax * shift + fx * forward, cy + ay * shift + fy * forward);
         let (w, d) = if wall.along_x() { (width, depth) } else { (depth, width) };
         let footprint = RectCm::new(x - w / 2, y - d / 2, x - w / 2 + w, y - d / 2 + d);
-        self.put(kind, footprint, base - self.room.base_cm(), height, wall)
+        self.add_piece(kind, footprint, base - self.room.base_cm(), height, wall)
     }
 
     /// Lays a flat piece on the floor, centred on a point, and cuts it at the walls.
-    pub(super) fn lay(
+    pub(super) fn lay_flat(
         &mut self,
         kind: FurnitureKind,
         (x, y): (i32, i32),
         [width, depth, height]: [i32; 3],
-        wall: Wall,
-    ) -> Option<Piece> {
+        wall: WallSide,
+    ) -> Option<PieceIndex> {
         let (w, d) = if wall.along_x() { (width, depth) } else { (depth, width) };
         let wanted = RectCm::new(x - w / 2, y - d / 2, x - w / 2 + w, y - d / 2 + d);
         let inner = self.inner.inset(8);
@@ -360,25 +379,25 @@ impl<'a> Furnisher<'a> {
             wanted.x1.min(inner.x1),
             wanted.y1.min(inner.y1),
         );
-        (cut.width() > 40 && cut.depth() > 40).then(|| self.put(kind, cut, 0, height, wall))
+        (cut.width() > 40 && cut.depth() > 40).then(|| self.add_piece(kind, cut, 0, height, wall))
     }
 
     /// Hangs a lamp from the middle of the ceiling.
-    pub(super) fn on_ceiling(&mut self, kind: FurnitureKind) -> Piece {
+    pub(super) fn on_ceiling(&mut self, kind: FurnitureKind) -> PieceIndex {
         let [width, depth, height] = kind.size_cm(&mut self.dice);
         let (x, y) = self.inner.centre();
         let footprint = RectCm::new(x - width / 2, y - depth / 2, x - width / 2 + width, y - depth / 2 + depth);
-        self.put(kind, footprint, CEILING_CM - height, height, Wall::North)
+        self.add_piece(kind, footprint, CEILING_CM - height, height, WallSide::North)
     }
 
     /// Whether a stretch of wall between two heights is free: no opening, no window and no piece is there. A `slim` thing may
     /// also hang where people walk past it, next to a door.
-    pub(super) fn wall_is_bare(&self, wall: Wall, area: &RectCm, base: i32, top: i32, slim: bool) -> bool {
-        let hole = self.holes.iter().any(|span| self.is_on(wall, span) && span.thickened(FRAME_CM).overlaps(area));
+    pub(super) fn wall_is_bare(&self, wall: WallSide, area: &RectCm, base: i32, top: i32, slim: bool) -> bool {
+        let hole = self.holes.iter().any(|span| self.is_on(wall, span) && span.thickened_by(FRAME_CM).overlaps(area));
         let window = self
             .windows
             .iter()
-            .any(|(span, sill)| self.is_on(wall, span) && span.thickened(FRAME_CM).overlaps(area) && *sill < top);
+            .any(|(span, sill)| self.is_on(wall, span) && span.thickened_by(FRAME_CM).overlaps(area) && *sill < top);
         let floor = self.room.base_cm();
         let piece = self.pieces.iter().any(|piece| {
             let (low, high) = (piece.base_cm - floor, piece.base_cm - floor + piece.height_cm);

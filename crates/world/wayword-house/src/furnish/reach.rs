@@ -21,7 +21,7 @@ pub(super) fn ways_stay_open(inner: &RectCm, obstacles: &[RectCm], doorsteps: &[
         open && !swollen.iter().any(|area| area.overlaps(&at))
     };
     let free: Vec<bool> = (0..rows).flat_map(|row| (0..columns).map(move |column| is_free(column, row))).collect();
-    let parts = flood(&free, columns, rows);
+    let parts = flood_parts(&free, columns, rows);
     let largest = parts.sizes.iter().copied().max().unwrap_or(0);
     let total: usize = parts.sizes.iter().sum();
     let part_of = |step: &RectCm| {
@@ -40,13 +40,13 @@ pub(super) fn ways_stay_open(inner: &RectCm, obstacles: &[RectCm], doorsteps: &[
 }
 
 /// The connected parts of the free floor: the part of each cell, and the number of cells in each part.
-struct Parts {
+struct FloorParts {
     part: Vec<Option<usize>>,
     sizes: Vec<usize>,
 }
 
-fn flood(free: &[bool], columns: i32, rows: i32) -> Parts {
-    let mut parts = Parts { part: vec![None; free.len()], sizes: Vec::new() };
+fn flood_parts(free: &[bool], columns: i32, rows: i32) -> FloorParts {
+    let mut parts = FloorParts { part: vec![None; free.len()], sizes: Vec::new() };
     for start in 0..free.len() {
         if !free[start] || parts.part[start].is_some() {
             continue;

@@ -2,10 +2,10 @@
 
 use super::super::{
     catalogue::FurnitureKind as K,
-    model::{STOREY_CM, Stairs},
-    rect::Wall,
+    model::{HouseStairs, STOREY_CM},
+    rect::WallSide,
 };
-use super::placing::Furnisher;
+use super::placing::RoomFurnisher;
 
 /// Least width of a column of pictures, and the distance to the next, centimetres.
 const COLUMN_CM: i32 = 50;
@@ -22,16 +22,16 @@ const FILLED_PERCENT: i32 = 86;
 const OVER_OPENING_CM: i32 = 236;
 
 /// Hangs columns of pictures on every wall.
-pub(super) fn furnish(room: &mut Furnisher<'_>, stairs: &Stairs) {
-    for wall in Wall::ALL {
-        let edge = room.inner.edge(wall);
+pub(super) fn furnish_stairwell(room: &mut RoomFurnisher<'_>, stairs: &HouseStairs) {
+    for wall in WallSide::ALL {
+        let edge = room.inner.edge_at(wall);
         let count = (edge.length() - GAP_CM) / (COLUMN_CM + GAP_CM);
         let width = (edge.length() - GAP_CM) / count.max(1) - GAP_CM;
         for column in 0..count {
             let from = edge.from + GAP_CM + column * (width + GAP_CM);
             // Not every column: a stairwell is no gallery.
             if room.dice.chance(FILLED_PERCENT)
-                && let Some(base) = lowest(room, stairs, wall, [from, width])
+                && let Some(base) = lowest_picture_height(room, stairs, wall, [from, width])
             {
                 hang_column(room, wall, [from, width], base);
             }
@@ -40,7 +40,12 @@ pub(super) fn furnish(room: &mut Furnisher<'_>, stairs: &Stairs) {
 }
 
 /// The height over the floor from which a column may hang.
-fn lowest(room: &Furnisher<'_>, stairs: &Stairs, wall: Wall, [from, width]: [i32; 2]) -> Option<i32> {
+fn lowest_picture_height(
+    room: &RoomFurnisher<'_>,
+    stairs: &HouseStairs,
+    wall: WallSide,
+    [from, width]: [i32; 2],
+) -> Option<i32> {
     let area = room.at_wall(wall, from, [width, 4, 0]);
     let (x, y) = area.centre();
     let ends = if wall.along_x() { [(area.x0, y), (x, y), (area.x1, y)] } else { [(x, area.y0), (x, y), (x, area.y1)] };
@@ -51,11 +56,11 @@ fn lowest(room: &Furnisher<'_>, stairs: &Stairs, wall: Wall, [from, width]: [i32
     }
     // Over the opening above there is no room; the opening below ends at the lower flight's width.
     let (low, high) = stairs.flight_across(true);
-    let lower = stairs.across(low, high, [0, 10]);
+    let lower = stairs.rect_across(low, high, [0, 10]);
     lower.contains(&area).then_some(OVER_OPENING_CM)
 }
 
-fn hang_column(room: &mut Furnisher<'_>, wall: Wall, [from, width]: [i32; 2], lowest: i32) {
+fn hang_column(room: &mut RoomFurnisher<'_>, wall: WallSide, [from, width]: [i32; 2], lowest: i32) {
     let mut base = lowest;
     while base + HEIGHT_CM / 2 <= TOP_CM {
         let height = HEIGHT_CM.min(TOP_CM - base);

@@ -1,14 +1,14 @@
 use super::super::{
-    generate,
-    model::{House, Leaf},
+    generate_house,
+    model::{DoorLeaf, House},
     rect::RectCm,
 };
 use super::*;
 use proptest::prelude::*;
 
 /// Pieces that take floor.
-fn standing(house: &House) -> Vec<&Furniture> {
-    let low = |piece: &&Furniture| {
+fn standing(house: &House) -> Vec<&FurniturePiece> {
+    let low = |piece: &&FurniturePiece| {
         let above = piece.base_cm - house.rooms[piece.room].base_cm();
         above == 0 && !piece.kind.is_flat() && !piece.kind.is_slim_on_wall()
     };
@@ -24,15 +24,15 @@ proptest! {
 
     #[test]
     fn furniture_keeps_to_its_room_and_out_of_doors(seed: u64) {
-        let house = generate(seed);
+        let house = generate_house(seed);
         for piece in &house.furniture {
-            prop_assert!(house.rooms[piece.room].inner().contains(&piece.footprint), "{piece:?}");
+            prop_assert!(house.rooms[piece.room].inner_area().contains(&piece.footprint), "{piece:?}");
         }
         for piece in standing(&house) {
             let base_cm = house.rooms[piece.room].base_cm();
-            let doors = house.openings.iter().filter(|opening| opening.leaf != Leaf::Garage);
+            let doors = house.openings.iter().filter(|opening| opening.leaf != DoorLeaf::Garage);
             for opening in doors.filter(|opening| opening.base_cm == base_cm) {
-                let passage = opening.span.thickened(40);
+                let passage = opening.span.thickened_by(40);
                 prop_assert!(!passage.overlaps(&piece.footprint), "{piece:?} in {opening:?}");
             }
         }
@@ -40,7 +40,7 @@ proptest! {
 
     #[test]
     fn pieces_overlap_only_where_chairs_go_under_tables(seed: u64) {
-        let house = generate(seed);
+        let house = generate_house(seed);
         let pieces = standing(&house);
         for (index, a) in pieces.iter().enumerate() {
             for b in &pieces[index + 1..] {
@@ -53,7 +53,7 @@ proptest! {
 
     #[test]
     fn object_numbers_are_unique(seed: u64) {
-        let house = generate(seed);
+        let house = generate_house(seed);
         let mut ids: Vec<u32> = house.furniture.iter().map(|piece| piece.id).collect();
         ids.extend(house.openings.iter().map(|opening| opening.id));
         ids.extend(house.windows.iter().map(|window| window.id));
@@ -67,7 +67,7 @@ proptest! {
 
 #[test]
 fn rooms_have_the_usual_furniture_of_their_kind() {
-    let houses: Vec<House> = (0..60).map(generate).collect();
+    let houses: Vec<House> = (0..60).map(generate_house).collect();
     let share = |room, kind| {
         let with = houses.iter().filter(|house| count(house, room, kind) > 0).count();
         let having = houses.iter().filter(|house| house.rooms.iter().any(|each| each.kind == room)).count();
@@ -92,12 +92,12 @@ fn rooms_have_the_usual_furniture_of_their_kind() {
 
 #[test]
 fn sofas_look_at_open_floor() {
-    for house in (0..20).map(generate) {
+    for house in (0..20).map(generate_house) {
         for sofa in house.furniture.iter().filter(|piece| piece.kind == FurnitureKind::Sofa) {
-            let (dx, dy) = super::super::rect::Wall::ALL[usize::from(sofa.quarter_turns)].inward();
+            let (dx, dy) = super::super::rect::WallSide::ALL[usize::from(sofa.quarter_turns)].inward();
             let (x, y) = sofa.footprint.centre();
             let ahead = RectCm::new(x + dx * 120 - 5, y + dy * 120 - 5, x + dx * 120 + 5, y + dy * 120 + 5);
-            assert!(house.rooms[sofa.room].inner().contains(&ahead), "{sofa:?}");
+            assert!(house.rooms[sofa.room].inner_area().contains(&ahead), "{sofa:?}");
         }
     }
 }
@@ -105,7 +105,7 @@ fn sofas_look_at_open_floor() {
 #[test]
 fn furniture_has_ten_finishes_and_few_pieces_are_brown() {
     let mut seen: std::collections::BTreeMap<&str, usize> = std::collections::BTreeMap::new();
-    for house in (0..40).map(generate) {
+    for house in (0..40).map(generate_house) {
         for piece in house.furniture.iter().filter(|piece| piece.material == "wood" || piece.colour == Colour::Glass) {
             *seen.entry(piece.colour.word()).or_default() += 1;
         }
@@ -119,21 +119,22 @@ fn furniture_has_ten_finishes_and_few_pieces_are_brown() {
 
 #[test]
 fn hangings_keep_clear_of_doors_windows_and_each_other() {
-    for house in (0..20).map(generate) {
-        let on_wall: Vec<&Furniture> = house.furniture.iter().filter(|piece| piece.kind.is_slim_on_wall()).collect();
+    for house in (0..20).map(generate_house) {
+        let on_wall: Vec<&FurniturePiece> =
+            house.furniture.iter().filter(|piece| piece.kind.is_slim_on_wall()).collect();
         let covers =
-            |piece: &Furniture, low: i32, high: i32| piece.base_cm < high && low < piece.base_cm + piece.height_cm;
+            |piece: &FurniturePiece, low: i32, high: i32| piece.base_cm < high && low < piece.base_cm + piece.height_cm;
         for (index, piece) in on_wall.iter().enumerate() {
             // Curtains hang before the frames of windows.
             if piece.kind == FurnitureKind::Curtain {
                 continue;
             }
             for opening in &house.openings {
-                let hole = opening.span.thickened(10).overlaps(&piece.footprint);
+                let hole = opening.span.thickened_by(10).overlaps(&piece.footprint);
                 assert!(!hole || !covers(piece, opening.base_cm, opening.base_cm + opening.height_cm), "{piece:?}");
             }
             for window in house.windows.iter().filter(|window| window.room == piece.room) {
-                let hole = window.span.thickened(10).overlaps(&piece.footprint);
+                let hole = window.span.thickened_by(10).overlaps(&piece.footprint);
                 assert!(!hole || !covers(piece, window.sill_cm, window.head_cm), "{piece:?} {window:?}");
             }
             for other in on_wall[index + 1..].iter().filter(|other| other.room == piece.room) {
@@ -148,7 +149,7 @@ fn hangings_keep_clear_of_doors_windows_and_each_other() {
 #[test]
 fn stairwells_have_pictures_that_clear_the_steps() {
     let mut hung = 0;
-    for house in (0..20).map(generate) {
+    for house in (0..20).map(generate_house) {
         let Some(stairs) = &house.stairs else { continue };
         for piece in house.furniture.iter().filter(|piece| piece.room == stairs.room) {
             let (x, y) = piece.footprint.centre();

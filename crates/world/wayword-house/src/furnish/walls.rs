@@ -1,14 +1,14 @@
 //! Hangs things on walls, and curtains at windows.
 
-use super::super::{catalogue::FurnitureKind, rect::Wall};
-use super::placing::{Furnisher, Piece};
+use super::super::{catalogue::FurnitureKind, rect::WallSide};
+use super::placing::{PieceIndex, RoomFurnisher};
 
-impl Furnisher<'_> {
+impl RoomFurnisher<'_> {
     /// Hangs a thing above a piece, centred on it, its lower edge `gap` centimetres over the piece's top.
-    pub(super) fn hang_over(&mut self, below: Piece, kind: FurnitureKind, gap: i32) -> Option<Piece> {
+    pub(super) fn hang_over(&mut self, below: PieceIndex, kind: FurnitureKind, gap: i32) -> Option<PieceIndex> {
         let size = kind.size_cm(&mut self.dice);
         let wall = self.wall_behind(below);
-        let piece = self.piece(below);
+        let piece = self.piece_at(below);
         let base = piece.base_cm + piece.height_cm - self.room.base_cm() + gap;
         let (x, y) = piece.footprint.centre();
         let from = if wall.along_x() { x } else { y } - size[0] / 2;
@@ -16,15 +16,15 @@ impl Furnisher<'_> {
     }
 
     /// Hangs a thing at a height of `base` centimetres, on the first wall with room for it.
-    pub(super) fn hang(&mut self, kind: FurnitureKind, base: i32) -> Option<Piece> {
+    pub(super) fn hang_anywhere(&mut self, kind: FurnitureKind, base: i32) -> Option<PieceIndex> {
         let size = kind.size_cm(&mut self.dice);
         self.hang_sized(kind, size, base)
     }
 
-    /// As [`Self::hang`], with a given size.
-    pub(super) fn hang_sized(&mut self, kind: FurnitureKind, size: [i32; 3], base: i32) -> Option<Piece> {
+    /// As [`Self::hang_anywhere`], with a given size.
+    pub(super) fn hang_sized(&mut self, kind: FurnitureKind, size: [i32; 3], base: i32) -> Option<PieceIndex> {
         for wall in self.shuffled_walls() {
-            let edge = self.inner.edge(wall);
+            let edge = self.inner.edge_at(wall);
             let spare = edge.length() - size[0];
             let mut offsets: Vec<i32> = (0..=spare.max(0) / 10).map(|step| step * 10).collect();
             offsets.sort_by_key(|offset| (2 * offset - spare).abs());
@@ -41,19 +41,19 @@ impl Furnisher<'_> {
     pub(super) fn hang_at(
         &mut self,
         kind: FurnitureKind,
-        wall: Wall,
+        wall: WallSide,
         from: i32,
         base: i32,
         size: [i32; 3],
-    ) -> Option<Piece> {
+    ) -> Option<PieceIndex> {
         let area = self.at_wall(wall, from, size);
         let fits =
             self.inner.contains(&area) && self.wall_is_bare(wall, &area, base, base + size[2], kind.is_slim_on_wall());
-        fits.then(|| self.put(kind, area, base, size[2], wall))
+        fits.then(|| self.add_piece(kind, area, base, size[2], wall))
     }
 
     /// Hangs curtains on both sides of every window, where the wall is free.
-    pub(super) fn curtains(&mut self) {
+    pub(super) fn hang_curtains(&mut self) {
         for (span, _) in self.windows.clone() {
             let Some(wall) = self.room.outline.wall_of(&span) else {
                 continue;
@@ -62,17 +62,17 @@ impl Furnisher<'_> {
                 let size = [50, 8, 240];
                 let area = self.at_wall(wall, from, size);
                 if self.inner.contains(&area) && !self.overlaps_any(&area) {
-                    let curtain = self.put(FurnitureKind::Curtain, area, 2, size[2], wall);
-                    self.paint(curtain, self.taste.curtain);
+                    let curtain = self.add_piece(FurnitureKind::Curtain, area, 2, size[2], wall);
+                    self.set_colour(curtain, self.taste.curtain);
                 }
             }
         }
     }
 
     /// Walls without a window in them, in the order given.
-    pub(super) fn windowless(&self, walls: &[Wall]) -> Vec<Wall> {
+    pub(super) fn walls_without_windows(&self, walls: &[WallSide]) -> Vec<WallSide> {
         let has_window =
-            |wall: &Wall| self.windows.iter().any(|(span, _)| self.room.outline.wall_of(span) == Some(*wall));
+            |wall: &WallSide| self.windows.iter().any(|(span, _)| self.room.outline.wall_of(span) == Some(*wall));
         walls.iter().copied().filter(|wall| !has_window(wall)).collect()
     }
 }

@@ -8,20 +8,20 @@ use std::collections::VecDeque;
 
 /// A cell of a layer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(in super::super) struct Cell {
+pub(in super::super) struct GroundCell {
     pub(in super::super) layer: usize,
     pub(in super::super) index: usize,
 }
 
 /// The areas that make a layer: a cell is free if an `open` area covers it and no `blocked` area does.
-pub(super) struct Layer {
+pub(super) struct GroundLayer {
     pub(super) open: Vec<RectCm>,
     pub(super) blocked: Vec<RectCm>,
 }
 
 /// All layers over one raster.
 #[derive(Debug, Clone)]
-pub(super) struct Grid {
+pub(super) struct GroundGrid {
     x0_cm: i32,
     y0_cm: i32,
     columns: i32,
@@ -33,8 +33,8 @@ pub(super) struct Grid {
     linked: Vec<u8>,
 }
 
-impl Grid {
-    pub(super) fn new(house: &House, layers: &[Layer]) -> Self {
+impl GroundGrid {
+    pub(super) fn new(house: &House, layers: &[GroundLayer]) -> Self {
         let outlines = || house.rooms.iter().map(|room| room.outline);
         let low = |side: fn(&RectCm) -> i32| outlines().map(|outline| side(&outline)).min().unwrap_or(0);
         let high = |side: fn(&RectCm) -> i32| outlines().map(|outline| side(&outline)).max().unwrap_or(0);
@@ -74,7 +74,7 @@ impl Grid {
         self.free.len()
     }
 
-    pub(super) fn columns(&self) -> usize {
+    pub(super) fn column_count(&self) -> usize {
         self.columns.max(0) as usize
     }
 
@@ -83,15 +83,15 @@ impl Grid {
         (f64::from(self.x0_cm) / 100.0, f64::from(self.y0_cm) / 100.0)
     }
 
-    pub(super) fn layers(&self) -> usize {
+    pub(super) fn layer_count(&self) -> usize {
         self.layers
     }
 
-    pub(super) fn is_free(&self, cell: Cell) -> bool {
+    pub(super) fn is_free(&self, cell: GroundCell) -> bool {
         self.free[cell.index] >> cell.layer & 1 == 1
     }
 
-    pub(super) fn block(&mut self, cell: Cell) {
+    pub(super) fn block_cell(&mut self, cell: GroundCell) {
         self.free[cell.index] &= !(1 << cell.layer);
     }
 
@@ -123,24 +123,25 @@ impl Grid {
     }
 
     /// The cell that lies `dx` columns and `dy` rows away.
-    pub(super) fn offset(&self, index: usize, (dx, dy): (i32, i32)) -> Option<usize> {
+    pub(super) fn offset_index(&self, index: usize, (dx, dy): (i32, i32)) -> Option<usize> {
         let (column, row) = (index as i32 % self.columns + dx, index as i32 / self.columns + dy);
         let inside = (0..self.columns).contains(&column) && (0..self.rows).contains(&row);
         inside.then_some((row * self.columns + column) as usize)
     }
 
     /// For each cell of a layer, the steps to the nearest cell that is not free; 0 for a cell that is not free itself.
-    pub(super) fn clearance(&self, layer: usize) -> Vec<u32> {
+    pub(super) fn layer_clearances(&self, layer: usize) -> Vec<u32> {
         let mut steps = vec![u32::MAX; self.len()];
         let mut open = VecDeque::new();
         for (index, step) in steps.iter_mut().enumerate() {
-            if !self.is_free(Cell { layer, index }) {
+            if !self.is_free(GroundCell { layer, index }) {
                 *step = 0;
                 open.push_back(index);
             }
         }
         while let Some(index) = open.pop_front() {
-            for next in [(1, 0), (-1, 0), (0, 1), (0, -1)].into_iter().filter_map(|step| self.offset(index, step)) {
+            for next in [(1, 0), (-1, 0), (0, 1), (0, -1)].into_iter().filter_map(|step| self.offset_index(index, step))
+            {
                 if steps[next] == u32::MAX {
                     steps[next] = steps[index] + 1;
                     open.push_back(next);

@@ -12,20 +12,20 @@ mod strip;
 mod windows;
 
 use super::{
-    dice::Dice,
-    model::{CEILING_CM, Room, RoomKind, STOREY_CM, Stairs, Window},
-    rect::{RectCm, Wall},
+    dice::HouseDice,
+    model::{CEILING_CM, HouseRoom, HouseStairs, HouseWindow, RoomKind, STOREY_CM},
+    rect::{RectCm, WallSide},
 };
-use program::{Program, Upstairs};
+use program::{StairsAbove, StoreyProgram};
 
-pub(super) use openings::swing;
+pub(super) use openings::floor_before_opening;
 
 /// The rooms and the links between them, before walls and openings are made.
 #[derive(Debug, Default)]
-struct Plan {
+struct FloorPlan {
     rooms: Vec<PlannedRoom>,
-    links: Vec<Link>,
-    well: Option<Well>,
+    links: Vec<RoomLink>,
+    well: Option<PlannedStairwell>,
 }
 
 /// A room of the plan, before it has colours and finishes.
@@ -38,15 +38,15 @@ struct PlannedRoom {
 
 /// Two joined rooms; `beyond` is `None` where the link leads outside.
 #[derive(Debug, Clone, Copy)]
-struct Link {
+struct RoomLink {
     room: usize,
     beyond: Option<usize>,
-    how: Passage,
+    how: RoomPassage,
 }
 
 /// The kind of opening that joins two rooms.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Passage {
+enum RoomPassage {
     Door,
     Doorway {
         width_cm: i32,
@@ -61,15 +61,15 @@ enum Passage {
 
 /// Where the stairs are, and which way they run.
 #[derive(Debug, Clone, Copy)]
-struct Well {
+struct PlannedStairwell {
     room: usize,
-    entry: Wall,
+    entry: WallSide,
     lower_flight_low: bool,
 }
 
 /// The outer dimensions that both storeys share, centimetres.
 #[derive(Debug, Clone, Copy)]
-struct Shell {
+struct OuterDimensions {
     width: i32,
     block: i32,
     south: i32,
@@ -80,98 +80,115 @@ struct Shell {
 }
 
 /// Everything of a house but its furniture.
-pub(super) struct Layout {
+pub(super) struct HouseLayout {
     pub(super) storeys: u32,
-    pub(super) rooms: Vec<Room>,
-    pub(super) openings: Vec<super::model::Opening>,
-    pub(super) windows: Vec<Window>,
-    pub(super) stairs: Option<Stairs>,
+    pub(super) rooms: Vec<HouseRoom>,
+    pub(super) openings: Vec<super::model::WallOpening>,
+    pub(super) windows: Vec<HouseWindow>,
+    pub(super) stairs: Option<HouseStairs>,
     /// The first number that no object has yet.
     pub(super) next_id: u32,
 }
 
 /// Makes the plan of a house.
-pub(super) fn lay_out(seed: u64) -> Layout {
-    let mut dice = Dice::new(seed, &["layout"]);
+pub(super) fn lay_out(seed: u64) -> HouseLayout {
+    let mut dice = HouseDice::new(seed, &["layout"]);
     let storeys = if dice.chance(50) { 2 } else { 1 };
-    let shell = shell(&mut dice, storeys);
-    let mut plan = Plan::default();
-    plan.add_storey(&mut dice, &shell, 0, &Program::ground(storeys));
+    let shell = draw_dimensions(&mut dice, storeys);
+    let mut plan = FloorPlan::default();
+    plan.add_storey(&mut dice, &shell, 0, &StoreyProgram::ground_storey(storeys));
     if storeys == 2 {
-        plan.add_storey(&mut dice, &shell, 1, &Program::upper());
+        plan.add_storey(&mut dice, &shell, 1, &StoreyProgram::upper_storey());
     }
-    plan.orient(&mut dice);
-    let rooms = finish(&mut dice, &plan);
-    let mut ids = Ids(1);
-    let mut openings = openings::cut(&mut dice, &plan, &rooms, &mut ids);
-    ajar::turn(seed, &rooms, &mut openings);
-    let windows = windows::cut(&plan, &rooms, &openings, &mut ids);
-    let stairs = plan.stairs(&rooms, &mut ids);
-    Layout { storeys, rooms, openings, windows, stairs, next_id: ids.next() }
+    plan.orient_randomly(&mut dice);
+    let rooms = finish_rooms(&mut dice, &plan);
+    let mut ids = ObjectIdCounter(1);
+    let mut openings = openings::cut_openings(&mut dice, &plan, &rooms, &mut ids);
+    ajar::set_door_angles(seed, &rooms, &mut openings);
+    let windows = windows::cut_windows(&plan, &rooms, &openings, &mut ids);
+    let stairs = plan.place_stairs(&rooms, &mut ids);
+    HouseLayout { storeys, rooms, openings, windows, stairs, next_id: ids.next_id() }
 }
 
 /// Gives each object the next free number.
-struct Ids(u32);
+struct ObjectIdCounter(u32);
 
-impl Ids {
-    fn next(&mut self) -> u32 {
+impl ObjectIdCounter {
+    fn next_id(&mut self) -> u32 {
         self.0 += 1;
         self.0 - 1
     }
 }
 
 /// Draws the outer dimensions of a house.
-fn shell(dice: &mut Dice, storeys: u32) -> Shell {
-    let block = dice.stepped(430, 540, 10);
-    let (south, hall, north) = (dice.stepped(370, 430, 10), dice.stepped(160, 200, 10), dice.stepped(350, 410, 10));
-    let width = if storeys == 2 { block + dice.stepped(800, 920, 10) } else { dice.stepped(1240, 1520, 10) };
+fn draw_dimensions(dice: &mut HouseDice, storeys: u32) -> OuterDimensions {
+    let block = dice.draw_stepped(430, 540, 10);
+    let (south, hall, north) =
+        (dice.draw_stepped(370, 430, 10), dice.draw_stepped(160, 200, 10), dice.draw_stepped(350, 410, 10));
+    let width = if storeys == 2 { block + dice.draw_stepped(800, 920, 10) } else { dice.draw_stepped(1240, 1520, 10) };
     let well = (storeys == 2).then(|| {
-        let from = if dice.chance(50) { block } else { block + dice.stepped(300, 360, 10) };
+        let from = if dice.chance(50) { block } else { block + dice.draw_stepped(300, 360, 10) };
         (from, from + 232)
     });
-    Shell { width, block, south, hall, north, well }
+    OuterDimensions { width, block, south, hall, north, well }
 }
 
-impl Plan {
-    fn add(&mut self, kind: RoomKind, floor: u32, outline: RectCm) -> usize {
+impl FloorPlan {
+    fn add_room(&mut self, kind: RoomKind, floor: u32, outline: RectCm) -> usize {
         self.rooms.push(PlannedRoom { kind, floor, outline });
         self.rooms.len() - 1
     }
 
-    fn link(&mut self, room: usize, beyond: usize, how: Passage) {
-        self.links.push(Link { room, beyond: Some(beyond), how });
+    fn link_rooms(&mut self, room: usize, beyond: usize, how: RoomPassage) {
+        self.links.push(RoomLink { room, beyond: Some(beyond), how });
     }
 
-    fn add_storey(&mut self, dice: &mut Dice, shell: &Shell, floor: u32, program: &Program) {
+    fn add_storey(&mut self, dice: &mut HouseDice, shell: &OuterDimensions, floor: u32, program: &StoreyProgram) {
         let (south, hall_top) = (shell.south, shell.south + shell.hall);
         let top = hall_top + shell.north;
-        let hall = self.add(RoomKind::Hallway, floor, RectCm::new(shell.block, south, shell.width, hall_top));
-        let main = self.add(program.block_main, floor, RectCm::new(0, 0, shell.block, hall_top));
-        let side = self.add(program.block_side, floor, RectCm::new(0, hall_top, shell.block, top));
-        self.link(hall, main, program.into_main);
-        self.link(main, side, program.into_side);
+        let hall = self.add_room(RoomKind::Hallway, floor, RectCm::new(shell.block, south, shell.width, hall_top));
+        let main = self.add_room(program.block_main, floor, RectCm::new(0, 0, shell.block, hall_top));
+        let side = self.add_room(program.block_side, floor, RectCm::new(0, hall_top, shell.block, top));
+        self.link_rooms(hall, main, program.into_main);
+        self.link_rooms(main, side, program.into_side);
         self.add_south(dice, shell, floor, program, hall, main);
         self.add_north(dice, shell, floor, program, hall, side);
         if program.garage_chance > 0 && dice.chance(program.garage_chance) {
-            let outline = RectCm::new(shell.width, 0, shell.width + dice.stepped(360, 420, 10), hall_top);
-            let garage = self.add(RoomKind::Garage, floor, outline);
-            self.link(hall, garage, Passage::Door);
-            self.links.push(Link { room: garage, beyond: None, how: Passage::GarageDoor });
+            let outline = RectCm::new(shell.width, 0, shell.width + dice.draw_stepped(360, 420, 10), hall_top);
+            let garage = self.add_room(RoomKind::Garage, floor, outline);
+            self.link_rooms(hall, garage, RoomPassage::Door);
+            self.links.push(RoomLink { room: garage, beyond: None, how: RoomPassage::GarageDoor });
         }
     }
 
-    fn add_south(&mut self, dice: &mut Dice, shell: &Shell, floor: u32, program: &Program, hall: usize, main: usize) {
-        let strip = strip::fill(dice, (shell.block, shell.width), program.south_first, program.south_more);
+    fn add_south(
+        &mut self,
+        dice: &mut HouseDice,
+        shell: &OuterDimensions,
+        floor: u32,
+        program: &StoreyProgram,
+        hall: usize,
+        main: usize,
+    ) {
+        let strip = strip::fill_strip(dice, (shell.block, shell.width), program.south_first, program.south_more);
         let cell = |(kind, from, to)| (kind, RectCm::new(from, 0, to, shell.south));
         let cells = strip.into_iter().map(cell).collect::<Vec<_>>();
         self.add_cells(dice, floor, &cells, hall, Some(main));
     }
 
-    fn add_north(&mut self, dice: &mut Dice, shell: &Shell, floor: u32, program: &Program, hall: usize, side: usize) {
+    fn add_north(
+        &mut self,
+        dice: &mut HouseDice,
+        shell: &OuterDimensions,
+        floor: u32,
+        program: &StoreyProgram,
+        hall: usize,
+        side: usize,
+    ) {
         let (bottom, top) = (shell.south + shell.hall, shell.south + shell.hall + shell.north);
         let cell = |(kind, from, to)| (kind, RectCm::new(from, bottom, to, top));
         let Some((well_from, well_to)) = shell.well else {
-            let cells = strip::fill(dice, (shell.block, shell.width), program.north_first, program.north_more);
+            let cells = strip::fill_strip(dice, (shell.block, shell.width), program.north_first, program.north_more);
             let cells = cells.into_iter().map(cell).collect::<Vec<_>>();
             return self.add_cells(dice, floor, &cells, hall, Some(side));
         };
@@ -183,28 +200,28 @@ impl Plan {
             after = rest;
         }
         self.add_well(dice, floor, cell((RoomKind::Staircase, well_from, well_to)).1, hall, program.upstairs);
-        let cells = strip::fill(dice, (well_to, shell.width), after, program.north_more);
+        let cells = strip::fill_strip(dice, (well_to, shell.width), after, program.north_more);
         let cells = cells.into_iter().map(cell).collect::<Vec<_>>();
         self.add_cells(dice, floor, &cells, hall, None);
     }
 
-    fn add_well(&mut self, dice: &mut Dice, floor: u32, outline: RectCm, hall: usize, upstairs: Upstairs) {
-        let how = Passage::Flight { floor };
+    fn add_well(&mut self, dice: &mut HouseDice, floor: u32, outline: RectCm, hall: usize, upstairs: StairsAbove) {
+        let how = RoomPassage::Flight { floor };
         match (upstairs, self.well) {
-            (Upstairs::Above, None) => {
-                let room = self.add(RoomKind::Staircase, floor, outline);
-                self.well = Some(Well { room, entry: Wall::South, lower_flight_low: dice.chance(50) });
-                self.link(hall, room, how);
+            (StairsAbove::Above, None) => {
+                let room = self.add_room(RoomKind::Staircase, floor, outline);
+                self.well = Some(PlannedStairwell { room, entry: WallSide::South, lower_flight_low: dice.chance(50) });
+                self.link_rooms(hall, room, how);
             }
-            (_, Some(well)) => self.link(hall, well.room, how),
-            (Upstairs::None, None) => {}
+            (_, Some(well)) => self.link_rooms(hall, well.room, how),
+            (StairsAbove::None, None) => {}
         }
     }
 
     /// Adds the rooms of a strip, from the block outwards, and joins them to the hallway and to one another.
     fn add_cells(
         &mut self,
-        dice: &mut Dice,
+        dice: &mut HouseDice,
         floor: u32,
         cells: &[(RoomKind, RectCm)],
         hall: usize,
@@ -212,31 +229,33 @@ impl Plan {
     ) {
         let mut before = block;
         for (kind, outline) in cells {
-            let room = self.add(*kind, floor, *outline);
+            let room = self.add_room(*kind, floor, *outline);
             let neighbour = before.map(|index| (index, self.rooms[index].kind));
-            match program::join(dice, *kind, neighbour.map(|(_, kind)| kind)) {
-                program::Join::Hall(how) => self.link(hall, room, how),
-                program::Join::Neighbour(how) => self.link(neighbour.map_or(hall, |(index, _)| index), room, how),
-                program::Join::Both(hall_how, how) => {
-                    self.link(hall, room, hall_how);
+            match program::join_room(dice, *kind, neighbour.map(|(_, kind)| kind)) {
+                program::RoomJoin::Hall(how) => self.link_rooms(hall, room, how),
+                program::RoomJoin::Neighbour(how) => {
+                    self.link_rooms(neighbour.map_or(hall, |(index, _)| index), room, how)
+                }
+                program::RoomJoin::Both(hall_how, how) => {
+                    self.link_rooms(hall, room, hall_how);
                     if let Some((index, _)) = neighbour {
-                        self.link(index, room, how);
+                        self.link_rooms(index, room, how);
                     }
                 }
             }
             if *kind == RoomKind::Entryway {
-                self.links.push(Link { room, beyond: None, how: Passage::FrontDoor });
+                self.links.push(RoomLink { room, beyond: None, how: RoomPassage::FrontDoor });
             }
             before = Some(room);
         }
     }
 
-    fn stairs(&self, rooms: &[Room], ids: &mut Ids) -> Option<Stairs> {
+    fn place_stairs(&self, rooms: &[HouseRoom], ids: &mut ObjectIdCounter) -> Option<HouseStairs> {
         let well = self.well?;
-        let inner = rooms[well.room].inner();
-        let (id, railing_id) = (ids.next(), ids.next());
+        let inner = rooms[well.room].inner_area();
+        let (id, railing_id) = (ids.next_id(), ids.next_id());
         let lower_flight_low = well.lower_flight_low;
-        Some(Stairs {
+        Some(HouseStairs {
             id,
             railing_id,
             room: well.room,
@@ -249,15 +268,15 @@ impl Plan {
 }
 
 /// Gives the rooms of a plan their colours, floors and heights.
-fn finish(dice: &mut Dice, plan: &Plan) -> Vec<Room> {
-    let scheme = program::Scheme::draw(dice);
+fn finish_rooms(dice: &mut HouseDice, plan: &FloorPlan) -> Vec<HouseRoom> {
+    let scheme = program::FinishScheme::draw_scheme(dice);
     plan.rooms
         .iter()
         .map(|planned| {
-            let (wall_colour, floor_finish, floor_colour) = scheme.of(dice, planned.kind);
+            let (wall_colour, floor_finish, floor_colour) = scheme.for_room(dice, planned.kind);
             let height_cm = CEILING_CM + if planned.kind == RoomKind::Staircase { STOREY_CM } else { 0 };
             let PlannedRoom { kind, floor, outline } = *planned;
-            Room { kind, floor, outline, height_cm, wall_colour, floor_finish, floor_colour }
+            HouseRoom { kind, floor, outline, height_cm, wall_colour, floor_finish, floor_colour }
         })
         .collect()
 }

@@ -2,31 +2,37 @@
 
 use super::{
     super::{
-        dice::Dice,
-        rect::{RectCm, Wall},
+        dice::HouseDice,
+        rect::{RectCm, WallSide},
     },
-    Plan,
+    FloorPlan,
 };
 
-impl Plan {
+impl FloorPlan {
     /// Mirrors the plan along x, mirrors it along y, and swaps the axes, each in half of the houses.
-    pub(super) fn orient(&mut self, dice: &mut Dice) {
+    pub(super) fn orient_randomly(&mut self, dice: &mut HouseDice) {
         let (mirror_x, mirror_y, swap) = (dice.chance(50), dice.chance(50), dice.chance(50));
         let x_end = self.rooms.iter().map(|room| room.outline.x1).max().unwrap_or(0);
         let y_end = self.rooms.iter().map(|room| room.outline.y1).max().unwrap_or(0);
         if mirror_x {
-            self.map(|r| RectCm::new(x_end - r.x1, r.y0, x_end - r.x0, r.y1), |wall| mirrored(wall, false));
+            self.transform_plan(
+                |r| RectCm::new(x_end - r.x1, r.y0, x_end - r.x0, r.y1),
+                |wall| mirror_wall(wall, false),
+            );
             self.swap_flights();
         }
         if mirror_y {
-            self.map(|r| RectCm::new(r.x0, y_end - r.y1, r.x1, y_end - r.y0), |wall| mirrored(wall, true));
+            self.transform_plan(
+                |r| RectCm::new(r.x0, y_end - r.y1, r.x1, y_end - r.y0),
+                |wall| mirror_wall(wall, true),
+            );
         }
         if swap {
-            self.map(|r| RectCm::new(r.y0, r.x0, r.y1, r.x1), transposed);
+            self.transform_plan(|r| RectCm::new(r.y0, r.x0, r.y1, r.x1), transpose_wall);
         }
     }
 
-    fn map(&mut self, rect: impl Fn(RectCm) -> RectCm, wall: impl Fn(Wall) -> Wall) {
+    fn transform_plan(&mut self, rect: impl Fn(RectCm) -> RectCm, wall: impl Fn(WallSide) -> WallSide) {
         for room in &mut self.rooms {
             room.outline = rect(room.outline);
         }
@@ -42,15 +48,15 @@ impl Plan {
     }
 }
 
-fn mirrored(wall: Wall, north_to_south: bool) -> Wall {
+fn mirror_wall(wall: WallSide, north_to_south: bool) -> WallSide {
     if wall.along_x() == north_to_south { wall.opposite() } else { wall }
 }
 
-fn transposed(wall: Wall) -> Wall {
+fn transpose_wall(wall: WallSide) -> WallSide {
     match wall {
-        Wall::North => Wall::East,
-        Wall::East => Wall::North,
-        Wall::South => Wall::West,
-        Wall::West => Wall::South,
+        WallSide::North => WallSide::East,
+        WallSide::East => WallSide::North,
+        WallSide::South => WallSide::West,
+        WallSide::West => WallSide::South,
     }
 }

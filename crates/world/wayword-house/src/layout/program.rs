@@ -3,23 +3,23 @@
 use super::{
     super::{
         colour::Colour,
-        dice::Dice,
+        dice::HouseDice,
         model::{FloorFinish, RoomKind},
     },
-    Passage,
+    RoomPassage,
 };
 use RoomKind as R;
 
 /// The rooms of a storey.
-pub(super) struct Program {
+pub(super) struct StoreyProgram {
     /// The larger room of the block at the hallway's end.
     pub(super) block_main: RoomKind,
     /// The smaller room next to it.
     pub(super) block_side: RoomKind,
     /// The passage between hallway and block.
-    pub(super) into_main: Passage,
+    pub(super) into_main: RoomPassage,
     /// The passage between the block's two rooms.
-    pub(super) into_side: Passage,
+    pub(super) into_side: RoomPassage,
     /// Rooms of the strips, from the block outwards: first these in order, then some of the `more` ones that fit.
     pub(super) south_first: &'static [RoomKind],
     pub(super) south_more: &'static [RoomKind],
@@ -28,24 +28,24 @@ pub(super) struct Program {
     /// In how many houses of a hundred there is a garage.
     pub(super) garage_chance: i32,
     /// Whether stairs begin here.
-    pub(super) upstairs: Upstairs,
+    pub(super) upstairs: StairsAbove,
 }
 
 /// Whether stairs lead up from a storey.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Upstairs {
+pub(super) enum StairsAbove {
     Above,
     None,
 }
 
-impl Program {
-    pub(super) fn ground(storeys: u32) -> Self {
+impl StoreyProgram {
+    pub(super) fn ground_storey(storeys: u32) -> Self {
         let two = storeys == 2;
         Self {
             block_main: R::LivingRoom,
             block_side: R::Kitchen,
-            into_main: Passage::Doorway { width_cm: 100 },
-            into_side: Passage::Doorway { width_cm: 180 },
+            into_main: RoomPassage::Doorway { width_cm: 100 },
+            into_side: RoomPassage::Doorway { width_cm: 180 },
             south_first: if two { &[R::Entryway] } else { &[R::Entryway, R::Bedroom] },
             south_more: if two {
                 &[R::Office, R::Closet, R::LaundryRoom, R::Bedroom]
@@ -55,28 +55,28 @@ impl Program {
             north_first: if two { &[R::DiningRoom, R::Bathroom] } else { &[R::DiningRoom, R::Bathroom, R::Bedroom] },
             north_more: if two { &[R::LaundryRoom, R::Office] } else { &[R::LaundryRoom, R::Bathroom, R::Office] },
             garage_chance: 30,
-            upstairs: if two { Upstairs::Above } else { Upstairs::None },
+            upstairs: if two { StairsAbove::Above } else { StairsAbove::None },
         }
     }
 
-    pub(super) fn upper() -> Self {
+    pub(super) fn upper_storey() -> Self {
         Self {
             block_main: R::Bedroom,
             block_side: R::Bathroom,
-            into_main: Passage::Door,
-            into_side: Passage::Door,
+            into_main: RoomPassage::Door,
+            into_side: RoomPassage::Door,
             south_first: &[R::Bedroom],
             south_more: &[R::Bedroom, R::Closet, R::Office],
             north_first: &[R::Office, R::Bathroom],
             north_more: &[R::Bedroom, R::LaundryRoom, R::Closet],
             garage_chance: 0,
-            upstairs: Upstairs::None,
+            upstairs: StairsAbove::None,
         }
     }
 }
 
 /// Smallest and largest usual width of a room in a strip, centimetres.
-pub(super) fn widths(kind: RoomKind) -> (i32, i32) {
+pub(super) fn usual_widths(kind: RoomKind) -> (i32, i32) {
     match kind {
         R::Bathroom => (190, 270),
         R::LaundryRoom => (180, 230),
@@ -90,30 +90,30 @@ pub(super) fn widths(kind: RoomKind) -> (i32, i32) {
 }
 
 /// What a room of a strip is joined to.
-pub(super) enum Join {
-    Hall(Passage),
-    Neighbour(Passage),
-    Both(Passage, Passage),
+pub(super) enum RoomJoin {
+    Hall(RoomPassage),
+    Neighbour(RoomPassage),
+    Both(RoomPassage, RoomPassage),
 }
 
 /// How a room of a strip is joined, given what lies between it and the block.
-pub(super) fn join(dice: &mut Dice, kind: RoomKind, neighbour: Option<RoomKind>) -> Join {
+pub(super) fn join_room(dice: &mut HouseDice, kind: RoomKind, neighbour: Option<RoomKind>) -> RoomJoin {
     match (kind, neighbour) {
         (R::DiningRoom, Some(R::Kitchen)) => {
-            Join::Both(Passage::Doorway { width_cm: 110 }, Passage::Doorway { width_cm: 140 })
+            RoomJoin::Both(RoomPassage::Doorway { width_cm: 110 }, RoomPassage::Doorway { width_cm: 140 })
         }
         (R::Entryway, Some(R::LivingRoom)) => {
-            Join::Both(Passage::Doorway { width_cm: 110 }, Passage::Doorway { width_cm: 130 })
+            RoomJoin::Both(RoomPassage::Doorway { width_cm: 110 }, RoomPassage::Doorway { width_cm: 130 })
         }
-        (R::Entryway | R::DiningRoom, _) => Join::Hall(Passage::Doorway { width_cm: 110 }),
-        (R::Closet, Some(R::Bedroom)) if dice.chance(60) => Join::Neighbour(Passage::Door),
-        (R::Bathroom, Some(R::Bedroom)) if dice.chance(30) => Join::Both(Passage::Door, Passage::Door),
-        _ => Join::Hall(Passage::Door),
+        (R::Entryway | R::DiningRoom, _) => RoomJoin::Hall(RoomPassage::Doorway { width_cm: 110 }),
+        (R::Closet, Some(R::Bedroom)) if dice.chance(60) => RoomJoin::Neighbour(RoomPassage::Door),
+        (R::Bathroom, Some(R::Bedroom)) if dice.chance(30) => RoomJoin::Both(RoomPassage::Door, RoomPassage::Door),
+        _ => RoomJoin::Hall(RoomPassage::Door),
     }
 }
 
 /// The colours and finishes of one house.
-pub(super) struct Scheme {
+pub(super) struct FinishScheme {
     walls: Colour,
     hall: Colour,
     kitchen: Colour,
@@ -123,8 +123,8 @@ pub(super) struct Scheme {
     carpeted_bedrooms: bool,
 }
 
-impl Scheme {
-    pub(super) fn draw(dice: &mut Dice) -> Self {
+impl FinishScheme {
+    pub(super) fn draw_scheme(dice: &mut HouseDice) -> Self {
         Self {
             walls: dice.pick([Colour::White, Colour::Cream, Colour::Beige, Colour::LightGreen]),
             hall: dice.pick([Colour::White, Colour::Cream, Colour::Beige]),
@@ -137,7 +137,7 @@ impl Scheme {
     }
 
     /// The wall colour, the floor finish and the floor colour of a room.
-    pub(super) fn of(&self, dice: &mut Dice, kind: RoomKind) -> (Colour, FloorFinish, Colour) {
+    pub(super) fn for_room(&self, dice: &mut HouseDice, kind: RoomKind) -> (Colour, FloorFinish, Colour) {
         let planks = (FloorFinish::Planks, self.planks);
         let ((finish, colour), walls) = match kind {
             R::Bathroom | R::LaundryRoom => {

@@ -1,8 +1,8 @@
-use super::{super::model::Leaf, *};
+use super::{super::model::DoorLeaf, *};
 use proptest::prelude::*;
 
 /// Rooms that can be reached from the first one.
-fn reached(layout: &Layout) -> Vec<bool> {
+fn reached(layout: &HouseLayout) -> Vec<bool> {
     let mut seen = vec![false; layout.rooms.len()];
     let mut open = vec![0];
     while let Some(room) = open.pop() {
@@ -43,7 +43,7 @@ proptest! {
                 prop_assert!(layout.rooms[beyond].outline.wall_of(&opening.span).is_some());
             }
             for other in &layout.openings[index + 1..] {
-                let meet = other.base_cm == opening.base_cm && other.span.thickened(5).overlaps(&opening.span.thickened(5));
+                let meet = other.base_cm == opening.base_cm && other.span.thickened_by(5).overlaps(&opening.span.thickened_by(5));
                 prop_assert!(!meet, "{opening:?} {other:?}");
             }
         }
@@ -58,7 +58,7 @@ proptest! {
         }
         prop_assert!(count(RoomKind::Bedroom) >= 1 && count(RoomKind::Bathroom) >= 1);
         prop_assert_eq!(count(RoomKind::Staircase), usize::from(layout.storeys == 2));
-        prop_assert_eq!(layout.openings.iter().filter(|opening| opening.leaf == Leaf::Closed).count(), 1);
+        prop_assert_eq!(layout.openings.iter().filter(|opening| opening.leaf == DoorLeaf::Closed).count(), 1);
         let areas = layout.rooms.iter().map(|room| room.outline.area_m2());
         prop_assert!(areas.clone().all(|area| (2.0..40.0).contains(&area)), "{:?}", areas.collect::<Vec<_>>());
     }

@@ -1,13 +1,13 @@
 //! Puts windows into outer walls, at equal distances.
 
 use super::super::{
-    model::{Opening, Room, RoomKind, STOREY_CM, Window},
-    rect::{SpanCm, Wall},
+    model::{HouseRoom, HouseWindow, RoomKind, STOREY_CM, WallOpening},
+    rect::{SpanCm, WallSide},
 };
-use super::{Ids, Plan};
+use super::{FloorPlan, ObjectIdCounter};
 
 /// Width, sill and head of a room's windows, centimetres.
-fn size(kind: RoomKind) -> Option<(i32, i32, i32)> {
+fn window_size(kind: RoomKind) -> Option<(i32, i32, i32)> {
     match kind {
         RoomKind::Closet | RoomKind::Garage => None,
         RoomKind::Bathroom | RoomKind::LaundryRoom => Some((70, 135, 215)),
@@ -19,19 +19,23 @@ fn size(kind: RoomKind) -> Option<(i32, i32, i32)> {
     }
 }
 
-pub(super) fn cut(plan: &Plan, rooms: &[Room], openings: &[Opening], ids: &mut Ids) -> Vec<Window> {
+pub(super) fn cut_windows(
+    plan: &FloorPlan,
+    rooms: &[HouseRoom],
+    openings: &[WallOpening],
+    ids: &mut ObjectIdCounter,
+) -> Vec<HouseWindow> {
     let mut windows = Vec::new();
     for (index, room) in rooms.iter().enumerate() {
-        let Some((width, sill, head)) = size(room.kind) else {
+        let Some((width, sill, head)) = window_size(room.kind) else {
             continue;
         };
-        for span in Wall::ALL.into_iter().flat_map(|wall| spans(plan, rooms, index, wall, width)) {
-            if openings
-                .iter()
-                .all(|opening| !opening.span.thickened(1).overlaps(&span.thickened(1)) || apart(opening, room))
-            {
+        for span in WallSide::ALL.into_iter().flat_map(|wall| window_spans(plan, rooms, index, wall, width)) {
+            if openings.iter().all(|opening| {
+                !opening.span.thickened_by(1).overlaps(&span.thickened_by(1)) || is_on_other_storey(opening, room)
+            }) {
                 let (sill_cm, head_cm) = (room.base_cm() + sill, room.base_cm() + head);
-                windows.push(Window { id: ids.next(), room: index, span, sill_cm, head_cm });
+                windows.push(HouseWindow { id: ids.next_id(), room: index, span, sill_cm, head_cm });
             }
         }
     }
@@ -39,13 +43,13 @@ pub(super) fn cut(plan: &Plan, rooms: &[Room], openings: &[Opening], ids: &mut I
 }
 
 /// Whether an opening lies on another storey than a room.
-fn apart(opening: &Opening, room: &Room) -> bool {
+fn is_on_other_storey(opening: &WallOpening, room: &HouseRoom) -> bool {
     opening.base_cm / STOREY_CM != room.floor as i32
 }
 
 /// Evenly spaced windows in the stretches of a wall that have no room behind them.
-fn spans(plan: &Plan, rooms: &[Room], index: usize, wall: Wall, width: i32) -> Vec<SpanCm> {
-    let edge = rooms[index].outline.edge(wall);
+fn window_spans(plan: &FloorPlan, rooms: &[HouseRoom], index: usize, wall: WallSide, width: i32) -> Vec<SpanCm> {
+    let edge = rooms[index].outline.edge_at(wall);
     let behind = |other: &usize| {
         let shares = rooms[index].outline.shared_edge(&rooms[*other].outline);
         shares.filter(|(shared, _)| *shared == wall).map(|(_, span)| (span.from, span.to))

@@ -4,27 +4,27 @@
 //! The decision depends on the two ends alone. So two triangles with a common edge agree, and no crack opens between
 //! them.
 
-use super::super::shapes::Part;
+use super::super::shapes::MeshPart;
 use glam::Vec3;
 use std::collections::{BTreeMap, HashMap};
 
 /// Light at a place with a normal, as factors.
-pub(in super::super) type Factors = [f32; 3];
+pub(in super::super) type LightFactors = [f32; 3];
 
 /// The light on an edge may differ by this much from the value interpolated between its ends.
-const TOLERANCE: f32 = 0.045;
+const LIGHT_TOLERANCE: f32 = 0.045;
 /// Texture coordinates nearer to each other than this count as equal.
 const SAME_TEXEL: f32 = 1e-4;
 /// Where the light differs by this much, as at the edge of a patch of sunlight, pieces are cut to half the finest length.
-const SHARP: f32 = 0.12;
+const SHARP_LIGHT_STEP: f32 = 0.12;
 /// Edges longer than this are tried at three places instead of one, metres.
 const LONG_M: f32 = 0.45;
 /// Most times that a triangle and its pieces are cut; this only bounds the work.
-const DEEPEST: u32 = 12;
+const MAX_CUT_DEPTH: u32 = 12;
 
 /// How finely surfaces are cut, metres.
 #[derive(Debug, Clone, Copy)]
-pub(in super::super) struct Grain {
+pub(in super::super) struct SurfaceGrain {
     /// Where the light changes, down to about this length.
     pub(in super::super) finest_m: f32,
     /// Every longer edge is cut. A shadow in the middle of a wider piece would be missed.
@@ -32,14 +32,18 @@ pub(in super::super) struct Grain {
 }
 
 /// Cuts the triangles of a part where the light changes, and gives the light of each corner.
-pub(in super::super) fn cut(part: &mut Part, grain: Grain, light: impl Fn(Vec3, Vec3) -> Factors) -> Vec<Factors> {
-    weld(part);
+pub(in super::super) fn cut_part(
+    part: &mut MeshPart,
+    grain: SurfaceGrain,
+    light: impl Fn(Vec3, Vec3) -> LightFactors,
+) -> Vec<LightFactors> {
+    weld_corners(part);
     let colours = part.positions.iter().zip(&part.normals).map(|(at, normal)| light(*at, *normal)).collect();
-    let mut cutter = Cutter { part, colours, grain, light, middles: BTreeMap::new() };
+    let mut cutter = SurfaceCutter { part, colours, grain, light, middles: BTreeMap::new() };
     let mut waiting: Vec<_> = std::mem::take(&mut cutter.part.triangles).into_iter().map(|each| (each, 0)).collect();
     waiting.reverse();
     while let Some((triangle, depth)) = waiting.pop() {
-        let pieces = if depth < DEEPEST { cutter.pieces(triangle) } else { vec![triangle] };
+        let pieces = if depth < MAX_CUT_DEPTH { cutter.cut_triangle(triangle) } else { vec![triangle] };
         match pieces.as_slice() {
             [whole] => cutter.part.triangles.push(*whole),
             several => waiting.extend(several.iter().map(|piece| (*piece, depth + 1))),
@@ -49,8 +53,8 @@ pub(in super::super) fn cut(part: &mut Part, grain: Grain, light: impl Fn(Vec3, 
 }
 
 /// Merges corners that have the same place, normal and texture coordinates, so that their light is computed only once.
-fn weld(part: &mut Part) {
-    let Part { positions, normals, uvs, triangles, .. } = part;
+fn weld_corners(part: &mut MeshPart) {
+    let MeshPart { positions, normals, uvs, triangles, .. } = part;
     let mut first: HashMap<[u32; 6], usize> = HashMap::with_capacity(positions.len());
     let mut kept = 0;
     let mut moved = Vec::with_capacity(positions.len());
@@ -72,19 +76,19 @@ fn weld(part: &mut Part) {
 }
 
 /// A part while it is being cut.
-struct Cutter<'a, L> {
-    part: &'a mut Part,
-    colours: Vec<Factors>,
-    grain: Grain,
+struct SurfaceCutter<'a, L> {
+    part: &'a mut MeshPart,
+    colours: Vec<LightFactors>,
+    grain: SurfaceGrain,
     light: L,
     /// The new corner in the middle of an edge; `None` where the edge stays whole.
     middles: BTreeMap<(u32, u32), Option<u32>>,
 }
 
-impl<L: Fn(Vec3, Vec3) -> Factors> Cutter<'_, L> {
+impl<L: Fn(Vec3, Vec3) -> LightFactors> SurfaceCutter<'_, L> {
     /// Cuts a triangle at the middles of those edges that need it: into one to four pieces.
-    fn pieces(&mut self, [a, b, c]: [u32; 3]) -> Vec<[u32; 3]> {
-        match [self.middle(a, b), self.middle(b, c), self.middle(c, a)] {
+    fn cut_triangle(&mut self, [a, b, c]: [u32; 3]) -> Vec<[u32; 3]> {
+        match [self.edge_middle(a, b), self.edge_middle(b, c), self.edge_middle(c, a)] {
             [None, None, None] => vec![[a, b, c]],
             [Some(ab), Some(bc), Some(ca)] => vec![[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]],
             [Some(ab), None, None] => vec![[a, ab, c], [ab, b, c]],
@@ -97,7 +101,7 @@ impl<L: Fn(Vec3, Vec3) -> Factors> Cutter<'_, L> {
     }
 
     /// The corner in the middle of an edge, made when it is first needed; `None` if the edge stays whole.
-    fn middle(&mut self, a: u32, b: u32) -> Option<u32> {
+    fn edge_middle(&mut self, a: u32, b: u32) -> Option<u32> {
         let edge = (a.min(b), a.max(b));
         if let Some(known) = self.middles.get(&edge) {
             return *known;
@@ -112,17 +116,17 @@ impl<L: Fn(Vec3, Vec3) -> Factors> Cutter<'_, L> {
     fn cut_edge(&mut self, a: usize, b: usize) -> Option<u32> {
         let length = (self.part.positions[a] - self.part.positions[b]).length();
         let (finest, widest) = (self.grain.finest_m, self.grain.widest_m);
-        if length < 0.75 * finest || (length < 1.5 * finest && self.apart(a, b) < SHARP) {
+        if length < 0.75 * finest || (length < 1.5 * finest && self.light_difference(a, b) < SHARP_LIGHT_STEP) {
             return None;
         }
-        let (at, normal, colour) = self.between(a, b, 0.5);
-        let strays = self.strays(a, b, 0.5, colour);
-        let uneven = length > widest || strays > if length < 1.5 * finest { SHARP } else { TOLERANCE };
+        let (at, normal, colour) = self.point_between(a, b, 0.5);
+        let strays = self.interpolation_error(a, b, 0.5, colour);
+        let uneven = length > widest || strays > if length < 1.5 * finest { SHARP_LIGHT_STEP } else { LIGHT_TOLERANCE };
         let uneven = uneven
             || length > LONG_M
                 && [0.25, 0.75].into_iter().any(|share| {
-                    let (_, _, colour) = self.between(a, b, share);
-                    self.strays(a, b, share, colour) > TOLERANCE
+                    let (_, _, colour) = self.point_between(a, b, share);
+                    self.interpolation_error(a, b, share, colour) > LIGHT_TOLERANCE
                 });
         uneven.then(|| {
             let uv = (self.part.uvs[a] + self.part.uvs[b]) * 0.5;
@@ -135,19 +139,19 @@ impl<L: Fn(Vec3, Vec3) -> Factors> Cutter<'_, L> {
     }
 
     /// How much the light at two corners differs.
-    fn apart(&self, a: usize, b: usize) -> f32 {
+    fn light_difference(&self, a: usize, b: usize) -> f32 {
         (0..3).map(|channel| (self.colours[a][channel] - self.colours[b][channel]).abs()).fold(0.0, f32::max)
     }
 
     /// Place, normal and light of a point on an edge; `share` is 0 at `a` and 1 at `b`.
-    fn between(&self, a: usize, b: usize, share: f32) -> (Vec3, Vec3, Factors) {
+    fn point_between(&self, a: usize, b: usize, share: f32) -> (Vec3, Vec3, LightFactors) {
         let at = self.part.positions[a] * (1.0 - share) + self.part.positions[b] * share;
         let normal = (self.part.normals[a] * (1.0 - share) + self.part.normals[b] * share).normalize_or_zero();
         (at, normal, (self.light)(at, normal))
     }
 
     /// How much the light at a point of an edge differs from the value interpolated between its ends.
-    fn strays(&self, a: usize, b: usize, share: f32, colour: Factors) -> f32 {
+    fn interpolation_error(&self, a: usize, b: usize, share: f32, colour: LightFactors) -> f32 {
         let told = |channel: usize| self.colours[a][channel] * (1.0 - share) + self.colours[b][channel] * share;
         (0..3).map(|channel| (colour[channel] - told(channel)).abs()).fold(0.0, f32::max)
     }
@@ -155,20 +159,27 @@ impl<L: Fn(Vec3, Vec3) -> Factors> Cutter<'_, L> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::{shapes::Shape, surface::Surface};
+    use super::super::super::{shapes::HouseShape, surface::HouseSurface};
     use super::*;
     use glam::Vec2;
 
     /// A square of 2 m in four pieces, with light on one side of a slanting line.
-    fn half_lit() -> (Part, Vec<Factors>) {
-        let mut shape = Shape::default();
+    fn half_lit() -> (MeshPart, Vec<LightFactors>) {
+        let mut shape = HouseShape::default();
         for (x, y) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)] {
             let uv = Vec2::new(x, -y);
-            shape.quad(Surface::plain([255; 3]), Vec3::new(x, y, 0.0), Vec3::X, Vec3::Y, uv - Vec2::Y, uv + Vec2::X);
+            shape.add_quad(
+                HouseSurface::from_rgb([255; 3]),
+                Vec3::new(x, y, 0.0),
+                Vec3::X,
+                Vec3::Y,
+                uv - Vec2::Y,
+                uv + Vec2::X,
+            );
         }
         let mut part = shape.parts.remove(0);
         let light = |at: Vec3, _: Vec3| if at.x + 0.6 * at.y < 1.3 { [1.0; 3] } else { [0.2; 3] };
-        let colours = cut(&mut part, Grain { finest_m: 0.1, widest_m: 0.5 }, light);
+        let colours = cut_part(&mut part, SurfaceGrain { finest_m: 0.1, widest_m: 0.5 }, light);
         (part, colours)
     }
 

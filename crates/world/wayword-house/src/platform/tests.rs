@@ -1,7 +1,7 @@
 use super::super::model::House;
 use super::*;
-use crate::{generate, graph::EYE_M};
-use wayword_core::{DVec3, Failure, Heading, Pose};
+use crate::{generate_house, graph::EYE_M};
+use wayword_core::{DVec3, FailureKind, Heading, Pose};
 
 fn small() -> HousePlatform {
     HousePlatform::new(HouseOptions { width_px: 160, height_px: 120, ..HouseOptions::default() })
@@ -10,14 +10,14 @@ fn small() -> HousePlatform {
 #[test]
 fn scenes_have_only_the_name_of_their_seed() {
     let platform = small();
-    let scenes = platform.scenes().unwrap();
+    let scenes = platform.list_scenes().unwrap();
     assert_eq!(scenes.len(), 20);
     assert!(scenes.is_sorted() && scenes.iter().any(|scene| scene.as_str() == "house2-7"));
     for bad in ["house2-", "house2-07", "house2-x", "house2--1", "attic-7", "house2-99999999999999999999"] {
-        let error = platform.graph(&SceneId::new(bad).unwrap()).unwrap_err().to_string();
+        let error = platform.graph_for_scene(&SceneId::new(bad).unwrap()).unwrap_err().to_string();
         assert!(error.contains("house2-7") && error.contains("--platform matterport"), "{error}");
     }
-    let error = platform.graph(&SceneId::new("house-3").unwrap()).unwrap_err().to_string();
+    let error = platform.graph_for_scene(&SceneId::new("house-3").unwrap()).unwrap_err().to_string();
     assert!(error.contains("an earlier version") && error.contains("house2-3"), "{error}");
 }
 
@@ -33,7 +33,7 @@ fn paths_keep_to_their_length_end_at_their_target_and_repeat() {
             assert!(path.moves().iter().all(|step| step.distance_m < 1.1), "frames lie too far apart");
             let target = path.target.clone().unwrap();
             let last = path.frames.last().unwrap();
-            let home = platform.home(&scene).unwrap();
+            let home = platform.ready_house(&scene).unwrap();
             assert!(home.labels_around(last.pose).unwrap().iter().any(|label| label.object == target.object));
             assert_eq!(platform.object_name(&scene, last, &target.object).unwrap(), Some(target.name));
             assert_eq!(platform.sample_path(&scene, &request, seed).unwrap(), path);
@@ -45,14 +45,14 @@ fn paths_keep_to_their_length_end_at_their_target_and_repeat() {
 fn a_view_has_picture_labels_and_room() {
     let platform = small();
     let scene = HousePlatform::scene_of(1).unwrap();
-    let graph = platform.graph(&scene).unwrap();
+    let graph = platform.graph_for_scene(&scene).unwrap();
     let mut rooms = std::collections::BTreeSet::new();
     let mut labels = 0;
     for id in graph.viewpoints().step_by(5) {
-        let frame = graph.walk(std::slice::from_ref(id), None).unwrap().remove(0);
-        let view = platform.look(&scene, &frame, Gaze::quarter(Heading::NORTH)).unwrap();
+        let frame = graph.path_frames(std::slice::from_ref(id), None).unwrap().remove(0);
+        let view = platform.look_from(&scene, &frame, ViewGaze::quarter_view(Heading::NORTH)).unwrap();
         let truth = view.ground_truth().unwrap();
-        assert_eq!(view.image.as_ref().unwrap().rgb().len(), 160 * 120 * 3);
+        assert_eq!(view.image.as_ref().unwrap().rgb_bytes().len(), 160 * 120 * 3);
         rooms.insert(truth.room.clone().unwrap());
         labels += truth.labels.len();
         for label in &truth.labels {
@@ -67,19 +67,19 @@ fn a_view_has_picture_labels_and_room() {
 fn a_picture_that_cannot_be_drawn_is_not_called_a_missing_scene() {
     let platform = HousePlatform::new(HouseOptions { width_px: 0, ..HouseOptions::default() });
     let scene = HousePlatform::scene_of(1).unwrap();
-    let graph = platform.graph(&scene).unwrap();
+    let graph = platform.graph_for_scene(&scene).unwrap();
     let first = graph.viewpoints().next().unwrap().clone();
-    let frame = graph.walk(&[first], None).unwrap().remove(0);
-    let error = platform.look(&scene, &frame, Gaze::quarter(Heading::NORTH)).unwrap_err();
+    let frame = graph.path_frames(&[first], None).unwrap().remove(0);
+    let error = platform.look_from(&scene, &frame, ViewGaze::quarter_view(Heading::NORTH)).unwrap_err();
     assert!(error.to_string().starts_with("scene house2-1 cannot be drawn: "), "{error}");
-    assert_eq!(error.failure(), Failure::Broken);
+    assert_eq!(error.failure_kind(), FailureKind::Broken);
 }
 
 #[test]
 fn an_eye_in_a_doorway_is_in_the_room_ahead() {
     let platform = small();
     let scene = HousePlatform::scene_of(1).unwrap();
-    let home = platform.home(&scene).unwrap();
+    let home = platform.ready_house(&scene).unwrap();
     let house = &home.scene.house;
     let opening = house.openings.iter().find(|opening| opening.is_passable() && !opening.span.along_x).unwrap();
     let (x, y) = opening.span.middle();
@@ -97,8 +97,8 @@ fn places_outside_the_house_are_refused() {
     let platform = small();
     let scene = HousePlatform::scene_of(1).unwrap();
     for place in [DVec3::new(-50.0, 0.0, 1.5), DVec3::new(1.0, 1.0, 900.0), DVec3::NAN] {
-        let frame = Frame { pose: Pose::level(place, Heading::NORTH), viewpoint: None, level: None };
-        let error = platform.look(&scene, &frame, Gaze::quarter(Heading::NORTH)).unwrap_err().to_string();
+        let frame = Frame { pose: Pose::looking_level(place, Heading::NORTH), viewpoint: None, level: None };
+        let error = platform.look_from(&scene, &frame, ViewGaze::quarter_view(Heading::NORTH)).unwrap_err().to_string();
         assert!(error.contains("house2-1"), "{error}");
     }
 }
@@ -112,15 +112,15 @@ fn hash(bytes: &[u8]) -> u64 {
 /// places in these houses.
 #[test]
 fn a_house_and_its_picture_are_the_same_on_every_machine() {
-    let house = generate(7);
+    let house = generate_house(7);
     let json = serde_json::to_vec(&house).unwrap();
     assert_eq!(serde_json::from_slice::<House>(&json).unwrap(), house);
     let scene = HousePlatform::scene_of(7).unwrap();
     let platform = small();
-    let graph = platform.graph(&scene).unwrap();
+    let graph = platform.graph_for_scene(&scene).unwrap();
     let first = graph.viewpoints().next().unwrap().clone();
-    let frame = graph.walk(&[first], None).unwrap().remove(0);
-    let view = platform.look(&scene, &frame, Gaze::quarter(Heading::new(1.0).unwrap())).unwrap();
-    let picture = hash(view.image.unwrap().rgb());
+    let frame = graph.path_frames(&[first], None).unwrap().remove(0);
+    let view = platform.look_from(&scene, &frame, ViewGaze::quarter_view(Heading::new(1.0).unwrap())).unwrap();
+    let picture = hash(view.image.unwrap().rgb_bytes());
     assert_eq!((hash(&json), picture), (2_381_916_630_381_341_470, 1_053_162_345_426_867_414));
 }

@@ -4,13 +4,13 @@ use glam::Vec3;
 use serde_json::{Value, json};
 
 /// Component type "float".
-const FLOAT: u32 = 5126;
+const COMPONENT_FLOAT: u32 = 5126;
 /// Component type "unsigned int".
 const UNSIGNED_INT: u32 = 5125;
 /// Buffer target for vertices.
-const ARRAY: u32 = 34962;
+const ARRAY_BUFFER: u32 = 34962;
 /// Buffer target for indices.
-const ELEMENTS: u32 = 34963;
+const ELEMENT_ARRAY_BUFFER: u32 = 34963;
 
 /// From the world frame (z up, y north) to glTF's (y up, -z north).
 #[must_use]
@@ -20,15 +20,15 @@ pub fn gltf_from_wayword(position: Vec3) -> Vec3 {
 
 /// Bytes with their views and accessors.
 #[derive(Default)]
-pub(super) struct Buffer {
+pub(super) struct GlbBuffer {
     pub(super) bytes: Vec<u8>,
     pub(super) views: Vec<Value>,
     pub(super) accessors: Vec<Value>,
 }
 
-impl Buffer {
+impl GlbBuffer {
     /// Adds bytes; gives the index of their view.
-    pub(super) fn view(&mut self, bytes: &[u8], target: Option<u32>) -> usize {
+    pub(super) fn add_view(&mut self, bytes: &[u8], target: Option<u32>) -> usize {
         self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
         let mut view = json!({ "buffer": 0, "byteOffset": self.bytes.len(), "byteLength": bytes.len() });
         if let Some(target) = target {
@@ -39,33 +39,33 @@ impl Buffer {
         self.views.len() - 1
     }
 
-    fn accessor(&mut self, view: usize, component: u32, count: usize, kind: &str) -> usize {
+    fn add_accessor(&mut self, view: usize, component: u32, count: usize, kind: &str) -> usize {
         self.accessors.push(json!({ "bufferView": view, "componentType": component, "count": count, "type": kind }));
         self.accessors.len() - 1
     }
 
     /// Positions in the world frame, written in glTF's, with their bounds.
-    pub(super) fn positions(&mut self, positions: &[Vec3]) -> usize {
+    pub(super) fn add_positions(&mut self, positions: &[Vec3]) -> usize {
         let turned: Vec<Vec3> = positions.iter().map(|position| gltf_from_wayword(*position)).collect();
         let low = turned.iter().copied().fold(Vec3::INFINITY, Vec3::min);
         let high = turned.iter().copied().fold(Vec3::NEG_INFINITY, Vec3::max);
-        let accessor = self.floats(turned.iter().flat_map(|v| v.to_array()), 3);
+        let accessor = self.add_floats(turned.iter().flat_map(|v| v.to_array()), 3);
         self.accessors[accessor]["min"] = json!(low.to_array());
         self.accessors[accessor]["max"] = json!(high.to_array());
         accessor
     }
 
     /// Vectors of `width` floats.
-    pub(super) fn floats(&mut self, values: impl Iterator<Item = f32>, width: usize) -> usize {
+    pub(super) fn add_floats(&mut self, values: impl Iterator<Item = f32>, width: usize) -> usize {
         let bytes: Vec<u8> = values.flat_map(f32::to_le_bytes).collect();
-        let view = self.view(&bytes, Some(ARRAY));
-        self.accessor(view, FLOAT, bytes.len() / 4 / width, &format!("VEC{width}"))
+        let view = self.add_view(&bytes, Some(ARRAY_BUFFER));
+        self.add_accessor(view, COMPONENT_FLOAT, bytes.len() / 4 / width, &format!("VEC{width}"))
     }
 
     /// Corners of triangles.
-    pub(super) fn indices(&mut self, triangles: &[[u32; 3]]) -> usize {
+    pub(super) fn add_indices(&mut self, triangles: &[[u32; 3]]) -> usize {
         let bytes: Vec<u8> = triangles.iter().flatten().flat_map(|index| index.to_le_bytes()).collect();
-        let view = self.view(&bytes, Some(ELEMENTS));
-        self.accessor(view, UNSIGNED_INT, bytes.len() / 4, "SCALAR")
+        let view = self.add_view(&bytes, Some(ELEMENT_ARRAY_BUFFER));
+        self.add_accessor(view, UNSIGNED_INT, bytes.len() / 4, "SCALAR")
     }
 }

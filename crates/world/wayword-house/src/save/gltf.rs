@@ -3,15 +3,15 @@
 use super::{
     super::{drawing, model::House, names::scene_name, objects},
     SaveError,
-    buffer::Buffer,
+    buffer::GlbBuffer,
 };
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
-use wayword_render::{Material, Mesh, Texture};
+use wayword_render::{Mesh, MeshMaterial, Texture};
 
 /// Converts a factor for gamma-encoded colours, which this program multiplies, into one for linear light, which glTF
 /// multiplies.
-fn linear(stored: f32) -> f32 {
+fn linear_from_stored(stored: f32) -> f32 {
     libm::powf(stored, 2.2)
 }
 
@@ -22,20 +22,20 @@ fn linear(stored: f32) -> f32 {
 ///
 /// # Errors
 /// When a texture cannot be encoded, or the file would be larger than a GLB may be.
-pub fn glb(house: &House) -> Result<Vec<u8>, SaveError> {
-    let drawing = drawing::draw(house);
-    let mut buffer = Buffer::default();
-    let (nodes, meshes) = nodes(house, &drawing.meshes, &mut buffer);
-    let used: Vec<usize> = used(&drawing.materials);
+pub fn encode_glb(house: &House) -> Result<Vec<u8>, SaveError> {
+    let drawing = drawing::draw_house(house);
+    let mut buffer = GlbBuffer::default();
+    let (nodes, meshes) = nodes_and_meshes(house, &drawing.meshes, &mut buffer);
+    let used: Vec<usize> = used_textures(&drawing.materials);
     let images = used
         .iter()
         .map(|texture| {
-            let png = png(*texture, &drawing.textures[*texture])?;
-            Ok(json!({ "mimeType": "image/png", "bufferView": buffer.view(&png, None) }))
+            let png = encode_png(*texture, &drawing.textures[*texture])?;
+            Ok(json!({ "mimeType": "image/png", "bufferView": buffer.add_view(&png, None) }))
         })
         .collect::<Result<Vec<_>, SaveError>>()?;
     let textures: Vec<_> = (0..images.len()).map(|image| json!({ "source": image, "sampler": 0 })).collect();
-    let materials: Vec<_> = drawing.materials.iter().map(|each| material(each, &used)).collect();
+    let materials: Vec<_> = drawing.materials.iter().map(|each| material_json(each, &used)).collect();
     buffer.bytes.resize(buffer.bytes.len().next_multiple_of(4), 0);
     let document = json!({
         "asset": { "version": "2.0", "generator": "wayword" },
@@ -52,20 +52,20 @@ pub fn glb(house: &House) -> Result<Vec<u8>, SaveError> {
         "bufferViews": buffer.views,
         "buffers": [{ "byteLength": buffer.bytes.len() }],
     });
-    container(&document, &buffer.bytes)
+    glb_container(&document, &buffer.bytes)
 }
 
 /// One node and one mesh for each object, with a primitive for each of its materials.
-fn nodes(house: &House, meshes: &[Mesh], buffer: &mut Buffer) -> (Vec<Value>, Vec<Value>) {
-    let names = objects::objects(house);
+fn nodes_and_meshes(house: &House, meshes: &[Mesh], buffer: &mut GlbBuffer) -> (Vec<Value>, Vec<Value>) {
+    let names = objects::objects_by_id(house);
     let mut by_object: BTreeMap<u32, Vec<Value>> = BTreeMap::new();
     for mesh in meshes.iter().filter(|mesh| !mesh.triangles.is_empty()) {
-        let position = buffer.positions(&mesh.positions);
-        let uv = buffer.floats(mesh.uvs.iter().flat_map(|uv| uv.to_array()), 2);
-        let light = buffer.floats(mesh.colours.iter().flatten().map(|factor| linear(*factor)), 3);
+        let position = buffer.add_positions(&mesh.positions);
+        let uv = buffer.add_floats(mesh.uvs.iter().flat_map(|uv| uv.to_array()), 2);
+        let light = buffer.add_floats(mesh.colours.iter().flatten().map(|factor| linear_from_stored(*factor)), 3);
         by_object.entry(mesh.id).or_default().push(json!({
             "attributes": { "POSITION": position, "TEXCOORD_0": uv, "COLOR_0": light },
-            "indices": buffer.indices(&mesh.triangles),
+            "indices": buffer.add_indices(&mesh.triangles),
             "material": mesh.material,
         }));
     }
@@ -79,16 +79,16 @@ fn nodes(house: &House, meshes: &[Mesh], buffer: &mut Buffer) -> (Vec<Value>, Ve
 }
 
 /// Textures that some material uses, sorted.
-fn used(materials: &[Material]) -> Vec<usize> {
+fn used_textures(materials: &[MeshMaterial]) -> Vec<usize> {
     let mut used: Vec<usize> = materials.iter().filter_map(|material| material.texture).collect();
     used.sort_unstable();
     used.dedup();
     used
 }
 
-fn material(material: &Material, used: &[usize]) -> Value {
+fn material_json(material: &MeshMaterial, used: &[usize]) -> Value {
     let [r, g, b, a] = material.base_colour;
-    let mut surface = json!({ "baseColorFactor": [linear(r), linear(g), linear(b), a], "metallicFactor": 0.0 });
+    let mut surface = json!({ "baseColorFactor": [linear_from_stored(r), linear_from_stored(g), linear_from_stored(b), a], "metallicFactor": 0.0 });
     if let Some(at) = material.texture.and_then(|texture| used.binary_search(&texture).ok()) {
         surface["baseColorTexture"] = json!({ "index": at });
     }
@@ -99,7 +99,7 @@ fn material(material: &Material, used: &[usize]) -> Value {
     })
 }
 
-fn png(index: usize, texture: &Texture) -> Result<Vec<u8>, SaveError> {
+fn encode_png(index: usize, texture: &Texture) -> Result<Vec<u8>, SaveError> {
     let mut bytes = Vec::new();
     let rgb: Vec<u8> = texture.texels.iter().flat_map(|[r, g, b, _]| [*r, *g, *b]).collect();
     let encoder = image::codecs::png::PngEncoder::new(&mut bytes);
@@ -109,7 +109,7 @@ fn png(index: usize, texture: &Texture) -> Result<Vec<u8>, SaveError> {
 }
 
 /// Header, JSON chunk padded with spaces, binary chunk (glTF 2.0, section 4).
-pub(super) fn container(document: &Value, binary: &[u8]) -> Result<Vec<u8>, SaveError> {
+pub(super) fn glb_container(document: &Value, binary: &[u8]) -> Result<Vec<u8>, SaveError> {
     let mut text = serde_json::to_vec(document)?;
     text.resize(text.len().next_multiple_of(4), b' ');
     let bytes = 12 + 8 + text.len() + 8 + binary.len();

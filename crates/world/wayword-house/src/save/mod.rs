@@ -6,10 +6,10 @@ mod gltf;
 mod navigation;
 mod semantic;
 
-use super::{graph::viewpoint_graph, ground::Ground, model::House, names::scene_name};
+use super::{graph::viewpoint_graph, ground::HouseGround, model::House, names::scene_name};
 pub use buffer::gltf_from_wayword;
-pub use gltf::glb;
-pub use navigation::navigation;
+pub use gltf::encode_glb;
+pub use navigation::navigation_json;
 pub use semantic::{semantic_glb, semantic_txt};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -50,7 +50,7 @@ pub enum SaveError {
 
 /// The files of a saved house.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct Saved {
+pub struct HouseFiles {
     /// `house2-SEED.glb`: its looks.
     pub model: PathBuf,
     /// `house2-SEED.navigation.json`: rooms, objects, ground, viewpoint graph.
@@ -67,8 +67,8 @@ pub struct Saved {
 ///
 /// # Errors
 /// When a file cannot be written or the house cannot be encoded.
-pub fn save(house: &House, folder: &Path, navmesh: Option<&[u8]>) -> Result<Saved, SaveError> {
-    let ground = Ground::of(house);
+pub fn save_house(house: &House, folder: &Path, navmesh: Option<&[u8]>) -> Result<HouseFiles, SaveError> {
+    let ground = HouseGround::for_house(house);
     let graph = viewpoint_graph(house, &ground)?;
     let name = scene_name(house.seed);
     let write = |ending: &str, bytes: &[u8]| {
@@ -78,9 +78,9 @@ pub fn save(house: &House, folder: &Path, navmesh: Option<&[u8]>) -> Result<Save
             Err(source) => Err(SaveError::File { file, source }),
         }
     };
-    Ok(Saved {
-        model: write("glb", &glb(house)?)?,
-        navigation: write("navigation.json", &serde_json::to_vec(&navigation(house, &ground, &graph)?)?)?,
+    Ok(HouseFiles {
+        model: write("glb", &encode_glb(house)?)?,
+        navigation: write("navigation.json", &serde_json::to_vec(&navigation_json(house, &ground, &graph)?)?)?,
         stage: write(
             "stage_config.json",
             &serde_json::to_vec_pretty(&semantic::stage_config(&name, navmesh.is_some()))?,

@@ -3,9 +3,9 @@
 use super::{
     super::{
         graph::EYE_M,
-        ground::{Ground, RADIUS_CM},
+        ground::{HouseGround, RADIUS_CM},
         model::House,
-        objects::{self, Role},
+        objects::{self, ObjectRole},
     },
     SaveError,
 };
@@ -20,20 +20,20 @@ use wayword_core::ViewpointGraph;
 ///
 /// # Errors
 /// When the model cannot be written as JSON.
-pub fn navigation(house: &House, ground: &Ground, graph: &ViewpointGraph) -> Result<Value, SaveError> {
+pub fn navigation_json(house: &House, ground: &HouseGround, graph: &ViewpointGraph) -> Result<Value, SaveError> {
     let rooms = house.rooms.iter().map(|room| {
-        let area = room.inner();
+        let area = room.inner_area();
         let metres = [area.x0, area.y0, area.x1, area.y1].map(|edge| f64::from(edge) / 100.0);
         json!({ "name": room.kind.word(), "level": room.floor + 1, "floor_m": f64::from(room.base_cm()) / 100.0, "area_m": metres })
     });
-    let things = objects::objects(house).into_iter().filter(|(_, object)| object.role != Role::Shell);
+    let things = objects::objects_by_id(house).into_iter().filter(|(_, object)| object.role != ObjectRole::Shell);
     let things = things.map(|(id, object)| {
         let (low, high) = object.bounds_m;
         json!({ "id": id, "name": object.name, "colour": object.colour, "room": object.room, "low_m": low.to_array(), "high_m": high.to_array() })
     });
     let viewpoints = graph.viewpoints().map(|id| {
-        let eye = graph.position(id).unwrap_or_default();
-        json!({ "id": id, "eye_m": eye.to_array(), "level": graph.level(id) })
+        let eye = graph.position_of(id).unwrap_or_default();
+        json!({ "id": id, "eye_m": eye.to_array(), "level": graph.level_of(id) })
     });
     let edges = graph.edges().map(|(a, b, length_m)| json!([a, b, length_m]));
     Ok(json!({

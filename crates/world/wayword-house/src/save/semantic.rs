@@ -5,8 +5,8 @@
 use super::{
     super::{drawing, model::House, objects},
     SaveError,
-    buffer::Buffer,
-    gltf::container,
+    buffer::GlbBuffer,
+    gltf::glb_container,
 };
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -16,14 +16,14 @@ use std::fmt::Write;
 /// # Errors
 /// When the file would be larger than a GLB may be.
 pub fn semantic_glb(house: &House) -> Result<Vec<u8>, SaveError> {
-    let mut buffer = Buffer::default();
-    let drawn = drawing::draw(house).meshes;
+    let mut buffer = GlbBuffer::default();
+    let drawn = drawing::draw_house(house).meshes;
     let primitives = drawn.iter().filter(|mesh| !mesh.triangles.is_empty()).map(|mesh| {
-        let paint = colour(mesh.id).map(|channel| f32::from(channel) / 255.0);
-        let painted = buffer.floats(mesh.positions.iter().flat_map(|_| paint), 3);
+        let paint = colour_for_id(mesh.id).map(|channel| f32::from(channel) / 255.0);
+        let painted = buffer.add_floats(mesh.positions.iter().flat_map(|_| paint), 3);
         json!({
-            "attributes": { "POSITION": buffer.positions(&mesh.positions), "COLOR_0": painted },
-            "indices": buffer.indices(&mesh.triangles),
+            "attributes": { "POSITION": buffer.add_positions(&mesh.positions), "COLOR_0": painted },
+            "indices": buffer.add_indices(&mesh.triangles),
             "material": 0,
         })
     });
@@ -41,15 +41,15 @@ pub fn semantic_glb(house: &House) -> Result<Vec<u8>, SaveError> {
         "bufferViews": buffer.views,
         "buffers": [{ "byteLength": buffer.bytes.len() }],
     });
-    container(&document, &buffer.bytes)
+    glb_container(&document, &buffer.bytes)
 }
 
 /// The text of a `.semantic.txt`: number, colour, name and room of each object.
 #[must_use]
 pub fn semantic_txt(house: &House) -> String {
     let mut text = String::from("HM3D Semantic Annotations\n");
-    for (id, object) in objects::objects(house) {
-        let [red, green, blue] = colour(id);
+    for (id, object) in objects::objects_by_id(house) {
+        let [red, green, blue] = colour_for_id(id);
         let _ = writeln!(text, "{id},{red:02X}{green:02X}{blue:02X},\"{}\",{}", object.name, object.room);
     }
     text
@@ -74,7 +74,7 @@ pub(super) fn stage_config(name: &str, has_navmesh: bool) -> Value {
 }
 
 /// The colour of an object's number. Multiplying by an odd factor gives each of the 2^24 numbers its own colour.
-fn colour(id: u32) -> [u8; 3] {
+fn colour_for_id(id: u32) -> [u8; 3] {
     let [_, red, green, blue] = id.wrapping_mul(0x9E_3779).to_be_bytes();
     [red, green, blue]
 }

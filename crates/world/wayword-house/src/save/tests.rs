@@ -1,4 +1,4 @@
-use super::super::{drawing, generate};
+use super::super::{drawing, generate_house};
 use super::*;
 use glam::Vec3;
 use gltf_reader::{Gltf, mesh::util::ReadColors};
@@ -22,9 +22,9 @@ fn vertices(file: &Gltf) -> Vec<([f32; 3], [f32; 3])> {
 
 #[test]
 fn a_saved_house_can_be_read_by_gltf_libraries() {
-    let house = generate(4);
-    let file = Gltf::from_slice(&glb(&house).unwrap()).unwrap();
-    let drawing = drawing::draw(&house);
+    let house = generate_house(4);
+    let file = Gltf::from_slice(&encode_glb(&house).unwrap()).unwrap();
+    let drawing = drawing::draw_house(&house);
     let drawn: usize = drawing.meshes.iter().map(|mesh| mesh.positions.len()).sum();
     let read = vertices(&file);
     assert_eq!(read.len(), drawn);
@@ -56,13 +56,13 @@ fn north_is_minus_z_and_up_is_y_in_gltf() {
 #[test]
 fn navigation_data_names_rooms_objects_and_ways() {
     let folder = tempfile::tempdir().unwrap();
-    let house = generate(4);
-    let Saved { model: looks, navigation: ways, .. } = save(&house, folder.path(), None).unwrap();
+    let house = generate_house(4);
+    let HouseFiles { model: looks, navigation: ways, .. } = save_house(&house, folder.path(), None).unwrap();
     assert!(looks.ends_with("house2-4.glb") && looks.metadata().unwrap().len() > 100_000);
     let read: serde_json::Value = serde_json::from_slice(&std::fs::read(ways).unwrap()).unwrap();
     assert_eq!(read["rooms"].as_array().unwrap().len(), house.rooms.len());
     assert_eq!(serde_json::from_value::<House>(read["house"].clone()).unwrap(), house);
-    let ground = Ground::of(&house);
+    let ground = HouseGround::for_house(&house);
     let (cell_m, origin) = (read["walkable"]["cell_m"].as_f64().unwrap(), &read["walkable"]["origin_m"]);
     for run in read["walkable"]["layers"][0]["runs"].as_array().unwrap() {
         let middle =
@@ -73,7 +73,7 @@ fn navigation_data_names_rooms_objects_and_ways() {
 
 #[test]
 fn semantic_glb_gives_every_object_its_own_colour() {
-    let house = generate(4);
+    let house = generate_house(4);
     let text = semantic_txt(&house);
     let mut colours = std::collections::BTreeSet::new();
     for line in text.lines().skip(1) {
@@ -95,6 +95,6 @@ fn semantic_glb_gives_every_object_its_own_colour() {
 
 #[test]
 fn save_house_names_a_missing_folder() {
-    let error = save(&generate(4), std::path::Path::new("/nowhere/at all"), None).unwrap_err().to_string();
+    let error = save_house(&generate_house(4), std::path::Path::new("/nowhere/at all"), None).unwrap_err().to_string();
     assert!(error.contains("/nowhere/at all/house2-4.glb"), "{error}");
 }

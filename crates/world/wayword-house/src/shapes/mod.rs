@@ -18,12 +18,12 @@ mod storage;
 mod tables;
 mod vehicles;
 
-use super::{catalogue::FurnitureKind, colour::Colour, model::Furniture, rect::Wall};
-pub(crate) use builder::{Part, Shape};
+use super::{catalogue::FurnitureKind, colour::Colour, model::FurniturePiece, rect::WallSide};
+pub(crate) use builder::{HouseShape, MeshPart};
 
 /// The properties of a piece that its shape depends on.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Look {
+pub(crate) struct FurnitureLook {
     /// Width, metres.
     w: f32,
     /// Depth, metres.
@@ -34,96 +34,96 @@ pub(crate) struct Look {
     variant: u32,
 }
 
-impl Look {
-    pub(crate) fn of(piece: &Furniture) -> Self {
-        let along_x = Wall::ALL[usize::from(piece.quarter_turns) % 4].along_x();
+impl FurnitureLook {
+    pub(crate) fn for_piece(piece: &FurniturePiece) -> Self {
+        let along_x = WallSide::ALL[usize::from(piece.quarter_turns) % 4].along_x();
         let (x, y) = (piece.footprint.width() as f32 / 100.0, piece.footprint.depth() as f32 / 100.0);
         let (w, d) = if along_x { (x, y) } else { (y, x) };
         Self { w, d, h: piece.height_cm as f32 / 100.0, colour: piece.colour, variant: piece.variant }
     }
 
     /// Half the width and half the depth.
-    fn half(&self) -> (f32, f32) {
+    fn half_size(&self) -> (f32, f32) {
         (self.w / 2.0, self.d / 2.0)
     }
 }
 
 /// The shape of a piece, in its own frame.
-pub(crate) fn shape(kind: FurnitureKind, look: &Look) -> Shape {
+pub(crate) fn build_shape(kind: FurnitureKind, look: &FurnitureLook) -> HouseShape {
     use FurnitureKind as K;
     match kind {
-        K::Sofa | K::Armchair => seating::sofa(look),
-        K::Chair => seating::chair(look),
-        K::BarStool => seating::stool(look),
-        K::Bench => seating::bench(look),
+        K::Sofa | K::Armchair => seating::build_sofa(look),
+        K::Chair => seating::build_chair(look),
+        K::BarStool => seating::build_stool(look),
+        K::Bench => seating::build_bench(look),
         K::OfficeChair => seating::office_chair(look),
         K::CoffeeTable | K::DiningTable | K::ConsoleTable => tables::laid_table(look),
-        K::SideTable => tables::table(look),
-        K::Desk => tables::desk(look),
-        K::Workbench => garage::workbench(look),
+        K::SideTable => tables::build_table(look),
+        K::Desk => tables::build_desk(look),
+        K::Workbench => garage::build_workbench(look),
         K::TvStand => storage::tv_stand(look),
         K::Sideboard => storage::low_cabinet(look),
-        K::Dresser => storage::drawers(look, 2, 3),
-        K::Nightstand => storage::drawers(look, 1, 2),
+        K::Dresser => storage::build_drawers(look, 2, 3),
+        K::Nightstand => storage::build_drawers(look, 1, 2),
         K::FilingCabinet => storage::filing_cabinet(look),
-        K::Bookshelf => storage::bookshelf(look),
-        K::Wardrobe => storage::wardrobe(look),
+        K::Bookshelf => storage::build_bookshelf(look),
+        K::Wardrobe => storage::build_wardrobe(look),
         K::ShoeRack => storage::shoe_rack(look),
         K::Shelf => storage::wall_shelf(look),
         K::ClothesRack => storage::clothes_rack(look),
         K::CoatRack => storage::coat_rack(look),
-        K::Boxes => garage::boxes(look),
+        K::Boxes => garage::build_boxes(look),
         K::MetalShelf => garage::metal_shelf(look),
-        K::Bed => beds::bed(look),
-        K::Counter => kitchen::counter(look),
-        K::KitchenSink => kitchen::sink(look),
-        K::Stove => kitchen::stove(look),
-        K::Refrigerator => kitchen::refrigerator(look),
+        K::Bed => beds::build_bed(look),
+        K::Counter => kitchen::build_counter(look),
+        K::KitchenSink => kitchen::build_sink(look),
+        K::Stove => kitchen::build_stove(look),
+        K::Refrigerator => kitchen::build_refrigerator(look),
         K::WallCabinet => kitchen::wall_cabinet(look),
         K::RangeHood => kitchen::range_hood(look),
-        K::Island => kitchen::island(look),
-        K::Microwave => kitchen::microwave(look),
-        K::Toaster => kitchen::toaster(look),
-        K::Kettle => kitchen::kettle(look),
+        K::Island => kitchen::build_island(look),
+        K::Microwave => kitchen::build_microwave(look),
+        K::Toaster => kitchen::build_toaster(look),
+        K::Kettle => kitchen::build_kettle(look),
         K::FruitBowl => kitchen::fruit_bowl(look),
-        K::Toilet => bathroom::toilet(look),
-        K::Vanity => bathroom::vanity(look),
-        K::Bathtub => bathroom::bathtub(look),
-        K::Shower => bathroom::shower(look),
-        K::Towel => bathroom::towel(look),
-        K::Mirror => decoration::mirror(look),
-        K::Painting => decoration::painting(look),
-        K::Radiator => decoration::radiator(look),
+        K::Toilet => bathroom::build_toilet(look),
+        K::Vanity => bathroom::build_vanity(look),
+        K::Bathtub => bathroom::build_bathtub(look),
+        K::Shower => bathroom::build_shower(look),
+        K::Towel => bathroom::build_towel(look),
+        K::Mirror => decoration::build_mirror(look),
+        K::Painting => decoration::build_painting(look),
+        K::Radiator => decoration::build_radiator(look),
         K::ClosetDoor => storage::closet_door(look),
-        K::WallBookshelf => storage::bookshelf(look),
-        K::Clock => decoration::clock(look),
-        K::Whiteboard => decoration::whiteboard(look),
-        K::Photos => hangings::photos(look),
-        K::Tapestry => hangings::tapestry(look),
+        K::WallBookshelf => storage::build_bookshelf(look),
+        K::Clock => decoration::build_clock(look),
+        K::Whiteboard => decoration::build_whiteboard(look),
+        K::Photos => hangings::build_photos(look),
+        K::Tapestry => hangings::build_tapestry(look),
         K::CoatHooks => hangings::coat_hooks(look),
         K::BulletinBoard => hangings::bulletin_board(look),
         K::ToolBoard => hangings::tool_board(look),
         K::GrandfatherClock => showpieces::grandfather_clock(look),
-        K::Rug => decoration::rug(look),
-        K::BathMat | K::DoorMat => decoration::mat(look),
-        K::Curtain => decoration::curtain(look),
-        K::Fireplace => showpieces::fireplace(look),
-        K::Piano => showpieces::piano(look),
-        K::Vase => plants::vase(look),
-        K::Plant => plants::plant(look),
-        K::Television => devices::television(look),
-        K::Computer => devices::computer(look),
-        K::Globe => devices::globe(look),
+        K::Rug => decoration::build_rug(look),
+        K::BathMat | K::DoorMat => decoration::build_mat(look),
+        K::Curtain => decoration::build_curtain(look),
+        K::Fireplace => showpieces::build_fireplace(look),
+        K::Piano => showpieces::build_piano(look),
+        K::Vase => plants::build_vase(look),
+        K::Plant => plants::build_plant(look),
+        K::Television => devices::build_television(look),
+        K::Computer => devices::build_computer(look),
+        K::Globe => devices::build_globe(look),
         K::FloorLamp => lamps::floor_lamp(look),
         K::TableLamp => lamps::table_lamp(look),
         K::CeilingLight => lamps::ceiling_light(look),
-        K::Chandelier => lamps::chandelier(look),
-        K::Washer => laundry::washer(look),
-        K::Dryer => laundry::dryer(look),
-        K::LaundryBasket => laundry::basket(look),
+        K::Chandelier => lamps::build_chandelier(look),
+        K::Washer => laundry::build_washer(look),
+        K::Dryer => laundry::build_dryer(look),
+        K::LaundryBasket => laundry::build_basket(look),
         K::IroningBoard => laundry::ironing_board(look),
-        K::Car => vehicles::car(look),
-        K::Bicycle => vehicles::bicycle(look),
+        K::Car => vehicles::build_car(look),
+        K::Bicycle => vehicles::build_bicycle(look),
     }
 }
 

@@ -1,17 +1,18 @@
-use super::{super::dice::Dice, *};
+use super::{super::dice::HouseDice, *};
 use glam::Vec3;
 
-fn look(kind: FurnitureKind) -> Look {
-    let mut dice = Dice::new(3, &["shapes"]);
+fn look(kind: FurnitureKind) -> FurnitureLook {
+    let mut dice = HouseDice::new(3, &["shapes"]);
     let [w, d, h] = kind.size_cm(&mut dice).map(|side| side as f32 / 100.0);
-    Look { w, d, h, colour: kind.colour(&mut dice), variant: 5 }
+    FurnitureLook { w, d, h, colour: kind.draw_colour(&mut dice), variant: 5 }
 }
 
 #[test]
 fn shapes_fill_their_size_and_do_not_leave_it() {
     for kind in FurnitureKind::ALL {
         let look = look(*kind);
-        let points: Vec<Vec3> = shape(*kind, &look).parts.iter().flat_map(|part| part.positions.clone()).collect();
+        let points: Vec<Vec3> =
+            build_shape(*kind, &look).parts.iter().flat_map(|part| part.positions.clone()).collect();
         let low = points.iter().copied().fold(Vec3::INFINITY, Vec3::min);
         let high = points.iter().copied().fold(Vec3::NEG_INFINITY, Vec3::max);
         let bound = Vec3::new(look.w / 2.0, look.d / 2.0, look.h);
@@ -29,7 +30,7 @@ fn shapes_fill_their_size_and_do_not_leave_it() {
 #[test]
 fn shapes_are_whole_and_modest() {
     for kind in FurnitureKind::ALL {
-        let shape = shape(*kind, &look(*kind));
+        let shape = build_shape(*kind, &look(*kind));
         let triangles: usize = shape.parts.iter().map(|part| part.triangles.len()).sum();
         assert!((2..4000).contains(&triangles), "{kind:?} has {triangles} triangles");
         for part in &shape.parts {

@@ -3,50 +3,50 @@
 use super::super::{
     colour::Colour,
     leaf::OpenLeaf,
-    model::{HALF_WALL_CM, House, LEAF_CM, Leaf, Opening},
-    rect::{SpanCm, Wall},
-    shapes::Shape,
-    surface::Surface,
+    model::{DoorLeaf, HALF_WALL_CM, House, LEAF_CM, WallOpening},
+    rect::{SpanCm, WallSide},
+    shapes::HouseShape,
+    surface::HouseSurface,
 };
 use super::wall_box;
 use glam::Vec3;
 
-fn add(shape: &mut Shape, surface: Surface, [x, y, z]: [[f32; 2]; 3]) {
-    shape.block(surface, x, y, z);
+fn add_box(shape: &mut HouseShape, surface: HouseSurface, [x, y, z]: [[f32; 2]; 3]) {
+    shape.add_block(surface, x, y, z);
 }
 
 /// A frame around an opening, and its leaf.
-pub(in super::super) fn opening(house: &House, opening: &Opening) -> Shape {
-    let mut shape = Shape::default();
-    frame(&mut shape, opening);
-    let wall = house.rooms[opening.room].outline.wall_of(&opening.span).unwrap_or(Wall::North);
+pub(in super::super) fn build_opening(house: &House, opening: &WallOpening) -> HouseShape {
+    let mut shape = HouseShape::default();
+    add_frame(&mut shape, opening);
+    let wall = house.rooms[opening.room].outline.wall_of(&opening.span).unwrap_or(WallSide::North);
     match opening.leaf {
-        Leaf::None => {}
-        Leaf::Open { .. } => open_leaf(&mut shape, house, opening),
-        Leaf::Closed => front_door(&mut shape, opening, wall),
-        Leaf::Garage => garage_door(&mut shape, opening, wall),
+        DoorLeaf::None => {}
+        DoorLeaf::Open { .. } => open_leaf(&mut shape, house, opening),
+        DoorLeaf::Closed => front_door(&mut shape, opening, wall),
+        DoorLeaf::Garage => garage_door(&mut shape, opening, wall),
     }
     shape
 }
 
-fn frame(shape: &mut Shape, opening: &Opening) {
-    let white = Surface::plain([242, 241, 238]);
+fn add_frame(shape: &mut HouseShape, opening: &WallOpening) {
+    let white = HouseSurface::from_rgb([242, 241, 238]);
     let SpanCm { from, to, .. } = opening.span;
     let (base, top) = (opening.base_cm, opening.base_cm + opening.height_cm);
     let deep = [-HALF_WALL_CM - 2, HALF_WALL_CM + 2];
-    let wall = if opening.span.along_x { Wall::North } else { Wall::West };
-    let mut bar = |along, z| add(shape, white, wall_box(&opening.span, wall, along, deep, z));
+    let wall = if opening.span.along_x { WallSide::North } else { WallSide::West };
+    let mut bar = |along, z| add_box(shape, white, wall_box(&opening.span, wall, along, deep, z));
     bar([from - 6, from + 1], [base, top + 6]);
     bar([to - 1, to + 6], [base, top + 6]);
     bar([from, to], [top - 1, top + 6]);
 }
 
 /// An open leaf with two panels and a knob on each side.
-fn open_leaf(shape: &mut Shape, house: &House, opening: &Opening) {
-    let Some(leaf) = OpenLeaf::of(opening, &house.rooms) else {
+fn open_leaf(shape: &mut HouseShape, house: &House, opening: &WallOpening) {
+    let Some(leaf) = OpenLeaf::for_opening(opening, &house.rooms) else {
         return;
     };
-    let mut standing = own_leaf(opening, super::metres(leaf.length_cm));
+    let mut standing = own_leaf(opening, super::to_metres(leaf.length_cm));
     let turned = |x: f32, y: f32| {
         let on = |along: f64, through: f64| along as f32 * x + through as f32 * y;
         (on(leaf.along.0, leaf.through.0), on(leaf.along.1, leaf.through.1))
@@ -69,47 +69,55 @@ fn open_leaf(shape: &mut Shape, house: &House, opening: &Opening) {
 }
 
 /// A leaf in its own frame: x from the hinge along it, y through it, metres.
-fn own_leaf(opening: &Opening, length: f32) -> Shape {
-    let mut shape = Shape::default();
-    let paint = Surface::wood(opening.colour);
-    let (thick, top) = (super::metres(LEAF_CM), super::metres(opening.height_cm - 1));
-    shape.block(paint, [0.0, length], [0.0, thick], [0.008, top]);
+fn own_leaf(opening: &WallOpening, length: f32) -> HouseShape {
+    let mut shape = HouseShape::default();
+    let paint = HouseSurface::for_wood(opening.colour);
+    let (thick, top) = (super::to_metres(LEAF_CM), super::to_metres(opening.height_cm - 1));
+    shape.add_block(paint, [0.0, length], [0.0, thick], [0.008, top]);
     for z in [[0.18, 0.9], [1.02, 1.86]] {
-        shape.block(paint.shade(0.92), [0.14, length - 0.14], [-0.006, thick + 0.006], z);
+        shape.add_block(paint.shaded_by(0.92), [0.14, length - 0.14], [-0.006, thick + 0.006], z);
     }
     for side in [-0.04, thick + 0.04] {
-        shape.ball(Surface::metal(Colour::Gold), Vec3::new(length - 0.07, side, 1.0), 0.032);
+        shape.add_ball(HouseSurface::for_metal(Colour::Gold), Vec3::new(length - 0.07, side, 1.0), 0.032);
     }
     shape
 }
 
-fn front_door(shape: &mut Shape, opening: &Opening, wall: Wall) {
-    let paint = Surface::wood(opening.colour);
+fn front_door(shape: &mut HouseShape, opening: &WallOpening, wall: WallSide) {
+    let paint = HouseSurface::for_wood(opening.colour);
     let SpanCm { from, to, .. } = opening.span;
     let base = opening.base_cm;
     let top = base + opening.height_cm;
     let boxed = |along, deep, z| wall_box(&opening.span, wall, along, deep, z);
-    add(shape, paint, boxed([from, to], [-3, 2], [base, top]));
+    add_box(shape, paint, boxed([from, to], [-3, 2], [base, top]));
     let middle = (from + to) / 2;
     for along in [[from + 12, middle - 5], [middle + 5, to - 12]] {
-        add(shape, paint.shade(0.8), boxed(along, [2, 3], [base + 18, base + 85]));
-        add(shape, paint.shade(0.8), boxed(along, [2, 3], [base + 97, base + 145]));
-        add(shape, Surface::plain([190, 216, 232]).glowing(), boxed(along, [2, 3], [base + 157, base + 188]));
+        add_box(shape, paint.shaded_by(0.8), boxed(along, [2, 3], [base + 18, base + 85]));
+        add_box(shape, paint.shaded_by(0.8), boxed(along, [2, 3], [base + 97, base + 145]));
+        add_box(
+            shape,
+            HouseSurface::from_rgb([190, 216, 232]).glowing(),
+            boxed(along, [2, 3], [base + 157, base + 188]),
+        );
     }
     let knob = super::on_wall(&opening.span, wall, to - 9, 7, base + 100);
-    shape.ball(Surface::metal(Colour::Gold), knob, 0.04);
-    add(shape, Surface::metal(Colour::Gold), boxed([middle - 12, middle + 12], [2, 4], [base + 89, base + 93]));
+    shape.add_ball(HouseSurface::for_metal(Colour::Gold), knob, 0.04);
+    add_box(
+        shape,
+        HouseSurface::for_metal(Colour::Gold),
+        boxed([middle - 12, middle + 12], [2, 4], [base + 89, base + 93]),
+    );
 }
 
-fn garage_door(shape: &mut Shape, opening: &Opening, wall: Wall) {
+fn garage_door(shape: &mut HouseShape, opening: &WallOpening, wall: WallSide) {
     let SpanCm { from, to, .. } = opening.span;
-    let white = Surface::metal(Colour::White);
+    let white = HouseSurface::for_metal(Colour::White);
     let rows = 5;
     for row in 0..rows {
         let low = opening.base_cm + opening.height_cm * row / rows;
         let high = opening.base_cm + opening.height_cm * (row + 1) / rows;
         let boxed = |along, deep, z| wall_box(&opening.span, wall, along, deep, z);
-        add(shape, white.shade(0.8), boxed([from, to], [-3, 1], [low, high]));
-        add(shape, white, boxed([from + 2, to - 2], [1, 3], [low + 2, high - 1]));
+        add_box(shape, white.shaded_by(0.8), boxed([from, to], [-3, 1], [low, high]));
+        add_box(shape, white, boxed([from + 2, to - 2], [1, 3], [low + 2, high - 1]));
     }
 }

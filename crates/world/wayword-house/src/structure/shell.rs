@@ -2,11 +2,11 @@
 
 use super::super::{
     model::{CEILING_CM, FloorFinish, HALF_WALL_CM, House, RoomKind},
-    rect::{RectCm, SpanCm, Wall},
-    shapes::Shape,
-    surface::{Pattern, Surface},
+    rect::{RectCm, SpanCm, WallSide},
+    shapes::HouseShape,
+    surface::{HouseSurface, SurfacePattern},
 };
-use super::{metres, on_wall};
+use super::{on_wall, to_metres};
 use glam::{Vec2, Vec3};
 
 /// Height of the skirting board, centimetres.
@@ -18,10 +18,10 @@ fn tiled_cm(kind: RoomKind) -> i32 {
 }
 
 /// A hole in a wall: from, to, lower and upper edge, centimetres.
-type Hole = [i32; 4];
+type WallHole = [i32; 4];
 
 /// The lines at which a stretch is cut, so that no piece is longer than `step` and every hole's edge is a line.
-fn cuts(from: i32, to: i32, edges: impl Iterator<Item = i32>, step: i32) -> Vec<i32> {
+fn cut_lines(from: i32, to: i32, edges: impl Iterator<Item = i32>, step: i32) -> Vec<i32> {
     let mut lines: Vec<i32> = edges.filter(|edge| (from..to).contains(edge)).chain([from, to]).collect();
     lines.sort_unstable();
     lines.dedup();
@@ -34,30 +34,35 @@ fn cuts(from: i32, to: i32, edges: impl Iterator<Item = i32>, step: i32) -> Vec<
 }
 
 /// The four walls of a room.
-pub(in super::super) fn walls(house: &House, index: usize) -> Shape {
-    let mut shape = Shape::default();
-    for wall in Wall::ALL {
+pub(in super::super) fn build_walls(house: &House, index: usize) -> HouseShape {
+    let mut shape = HouseShape::default();
+    for wall in WallSide::ALL {
         one_wall(&mut shape, house, index, wall);
     }
     shape
 }
 
-fn one_wall(shape: &mut Shape, house: &House, index: usize, wall: Wall) {
+fn one_wall(shape: &mut HouseShape, house: &House, index: usize, wall: WallSide) {
     let room = &house.rooms[index];
-    let edge = room.inner().edge(wall);
-    let line = room.outline.edge(wall);
+    let edge = room.inner_area().edge_at(wall);
+    let line = room.outline.edge_at(wall);
     let (base, top) = (room.base_cm(), room.base_cm() + room.height_cm);
-    let holes = holes(house, index, wall);
-    let paint = Surface::new(Pattern::Plaster, room.wall_colour.rgb());
-    let trim = Surface::plain([238, 237, 233]);
-    let (tiles, tiled_to) = (Surface::new(Pattern::Tiles, [246, 247, 248]), base + tiled_cm(room.kind));
-    let columns = cuts(edge.from, edge.to, holes.iter().flat_map(|hole| [hole[0], hole[1]]), 40);
-    let rows =
-        cuts(base, top, holes.iter().flat_map(|hole| [hole[2], hole[3]]).chain([base + SKIRTING_CM, tiled_to]), 45);
+    let holes = wall_holes(house, index, wall);
+    let paint = HouseSurface::new(SurfacePattern::Plaster, room.wall_colour.rgb());
+    let trim = HouseSurface::from_rgb([238, 237, 233]);
+    let (tiles, tiled_to) = (HouseSurface::new(SurfacePattern::Tiles, [246, 247, 248]), base + tiled_cm(room.kind));
+    let columns = cut_lines(edge.from, edge.to, holes.iter().flat_map(|hole| [hole[0], hole[1]]), 40);
+    let rows = cut_lines(
+        base,
+        top,
+        holes.iter().flat_map(|hole| [hole[2], hole[3]]).chain([base + SKIRTING_CM, tiled_to]),
+        45,
+    );
     for column in columns.windows(2) {
         for row in rows.windows(2) {
-            let inside =
-                |hole: &Hole| hole[0] <= column[0] && column[1] <= hole[1] && hole[2] <= row[0] && row[1] <= hole[3];
+            let inside = |hole: &WallHole| {
+                hole[0] <= column[0] && column[1] <= hole[1] && hole[2] <= row[0] && row[1] <= hole[3]
+            };
             if !holes.iter().any(inside) {
                 let surface = if row[1] <= tiled_to {
                     tiles
@@ -72,18 +77,24 @@ fn one_wall(shape: &mut Shape, house: &House, index: usize, wall: Wall) {
     }
 }
 
-fn wall_piece(shape: &mut Shape, surface: Surface, line: &SpanCm, wall: Wall, [from, to, low, high]: Hole) {
+fn wall_piece(
+    shape: &mut HouseShape,
+    surface: HouseSurface,
+    line: &SpanCm,
+    wall: WallSide,
+    [from, to, low, high]: WallHole,
+) {
     // Seen from inside, a north wall runs west to east and an east wall north to south.
-    let (left, right) = if matches!(wall, Wall::North | Wall::West) { (from, to) } else { (to, from) };
+    let (left, right) = if matches!(wall, WallSide::North | WallSide::West) { (from, to) } else { (to, from) };
     let corner = on_wall(line, wall, left, HALF_WALL_CM, low);
     let u = on_wall(line, wall, right, HALF_WALL_CM, low) - corner;
     let scale = surface.pattern.repeat_m();
-    let uv0 = Vec2::new(metres(from) / scale, -metres(high) / scale);
-    let uv1 = uv0 + Vec2::new(metres(to - from), metres(high - low)) / scale;
-    shape.quad(surface, corner, u, Vec3::Z * metres(high - low), uv0, uv1);
+    let uv0 = Vec2::new(to_metres(from) / scale, -to_metres(high) / scale);
+    let uv1 = uv0 + Vec2::new(to_metres(to - from), to_metres(high - low)) / scale;
+    shape.add_quad(surface, corner, u, Vec3::Z * to_metres(high - low), uv0, uv1);
 }
 
-fn holes(house: &House, index: usize, wall: Wall) -> Vec<Hole> {
+fn wall_holes(house: &House, index: usize, wall: WallSide) -> Vec<WallHole> {
     let outline = house.rooms[index].outline;
     let on_this = |span: &SpanCm| outline.wall_of(span) == Some(wall);
     let openings = house.openings.iter().filter(|opening| opening.room == index || opening.beyond == Some(index));
@@ -95,48 +106,49 @@ fn holes(house: &House, index: usize, wall: Wall) -> Vec<Hole> {
 }
 
 /// A level rectangle in pieces, so that light and shadow can vary over it.
-fn level(shape: &mut Shape, surface: Surface, area: &RectCm, z: i32, up: bool, step: i32) {
+fn add_level(shape: &mut HouseShape, surface: HouseSurface, area: &RectCm, z: i32, up: bool, step: i32) {
     let scale = surface.pattern.repeat_m();
-    let (columns, rows) = (cuts(area.x0, area.x1, [].into_iter(), step), cuts(area.y0, area.y1, [].into_iter(), step));
+    let (columns, rows) =
+        (cut_lines(area.x0, area.x1, [].into_iter(), step), cut_lines(area.y0, area.y1, [].into_iter(), step));
     for x in columns.windows(2) {
         for y in rows.windows(2) {
-            let (dx, dy) = (Vec3::X * metres(x[1] - x[0]), Vec3::Y * metres(y[1] - y[0]));
-            let corner = Vec3::new(metres(x[0]), metres(y[0]), metres(z));
-            let uv0 = Vec2::new(metres(x[0]), -metres(y[1])) / scale;
-            let uv1 = Vec2::new(metres(x[1]), -metres(y[0])) / scale;
+            let (dx, dy) = (Vec3::X * to_metres(x[1] - x[0]), Vec3::Y * to_metres(y[1] - y[0]));
+            let corner = Vec3::new(to_metres(x[0]), to_metres(y[0]), to_metres(z));
+            let uv0 = Vec2::new(to_metres(x[0]), -to_metres(y[1])) / scale;
+            let uv1 = Vec2::new(to_metres(x[1]), -to_metres(y[0])) / scale;
             if up {
-                shape.quad(surface, corner, dx, dy, uv0, uv1);
+                shape.add_quad(surface, corner, dx, dy, uv0, uv1);
             } else {
-                shape.quad(surface, corner + dy, dx, -dy, uv0, uv1);
+                shape.add_quad(surface, corner + dy, dx, -dy, uv0, uv1);
             }
         }
     }
 }
 
 /// A room's floor, with the sills of its own openings.
-pub(in super::super) fn floor(house: &House, index: usize) -> Shape {
+pub(in super::super) fn build_floor(house: &House, index: usize) -> HouseShape {
     let room = &house.rooms[index];
-    let mut shape = Shape::default();
+    let mut shape = HouseShape::default();
     let pattern = match room.floor_finish {
-        FloorFinish::Planks => Pattern::Planks,
-        FloorFinish::Tiles => Pattern::Tiles,
-        FloorFinish::Carpet => Pattern::Carpet,
-        FloorFinish::Concrete => Pattern::Concrete,
+        FloorFinish::Planks => SurfacePattern::Planks,
+        FloorFinish::Tiles => SurfacePattern::Tiles,
+        FloorFinish::Carpet => SurfacePattern::Carpet,
+        FloorFinish::Concrete => SurfacePattern::Concrete,
     };
-    let surface = Surface::new(pattern, room.floor_colour.rgb());
-    level(&mut shape, surface, &room.inner(), room.base_cm(), true, 22);
+    let surface = HouseSurface::new(pattern, room.floor_colour.rgb());
+    add_level(&mut shape, surface, &room.inner_area(), room.base_cm(), true, 22);
     for opening in house.openings.iter().filter(|opening| opening.room == index) {
-        level(&mut shape, surface, &opening.span.thickened(HALF_WALL_CM), opening.base_cm, true, 60);
+        add_level(&mut shape, surface, &opening.span.thickened_by(HALF_WALL_CM), opening.base_cm, true, 60);
     }
     shape
 }
 
 /// A room's ceiling.
-pub(in super::super) fn ceiling(house: &House, index: usize) -> Shape {
+pub(in super::super) fn build_ceiling(house: &House, index: usize) -> HouseShape {
     let room = &house.rooms[index];
-    let mut shape = Shape::default();
-    let surface = Surface::new(Pattern::Plaster, [250, 249, 246]);
+    let mut shape = HouseShape::default();
+    let surface = HouseSurface::new(SurfacePattern::Plaster, [250, 249, 246]);
     let z = room.base_cm() + room.height_cm.max(CEILING_CM);
-    level(&mut shape, surface, &room.inner(), z, false, 60);
+    add_level(&mut shape, surface, &room.inner_area(), z, false, 60);
     shape
 }

@@ -1,7 +1,7 @@
 //! Noise for textures. It repeats at the texture's edges, so that tiled textures show no seams.
 
 /// A number in 0..1 that depends only on its place (and on `salt`).
-pub(super) fn hash(x: i32, y: i32, salt: u32) -> f32 {
+pub(super) fn hash_noise(x: i32, y: i32, salt: u32) -> f32 {
     let mut n =
         (x as u32).wrapping_mul(0x9e37_79b1) ^ (y as u32).wrapping_mul(0x85eb_ca77) ^ salt.wrapping_mul(0xc2b2_ae3d);
     n ^= n >> 15;
@@ -13,40 +13,40 @@ pub(super) fn hash(x: i32, y: i32, salt: u32) -> f32 {
 }
 
 /// Smooth noise in 0..1, with `cells` cells across and down the texture.
-pub(super) fn smooth(u: f32, v: f32, cells: (i32, i32), salt: u32) -> f32 {
+pub(super) fn smooth_noise(u: f32, v: f32, cells: (i32, i32), salt: u32) -> f32 {
     let (x, y) = (u * cells.0 as f32, v * cells.1 as f32);
     let (x0, y0) = (x.floor(), y.floor());
-    let (fx, fy) = (ease(x - x0), ease(y - y0));
+    let (fx, fy) = (ease_in_out(x - x0), ease_in_out(y - y0));
     let corner =
-        |dx: i32, dy: i32| hash((x0 as i32 + dx).rem_euclid(cells.0), (y0 as i32 + dy).rem_euclid(cells.1), salt);
+        |dx: i32, dy: i32| hash_noise((x0 as i32 + dx).rem_euclid(cells.0), (y0 as i32 + dy).rem_euclid(cells.1), salt);
     let top = corner(0, 0) + (corner(1, 0) - corner(0, 0)) * fx;
     let bottom = corner(0, 1) + (corner(1, 1) - corner(0, 1)) * fx;
     top + (bottom - top) * fy
 }
 
 /// Three octaves of smooth noise, in 0..1.
-pub(super) fn cloudy(u: f32, v: f32, cells: i32, salt: u32) -> f32 {
-    let octave = |doubled: i32| smooth(u, v, (cells * doubled, cells * doubled), salt + doubled as u32);
+pub(super) fn cloudy_noise(u: f32, v: f32, cells: i32, salt: u32) -> f32 {
+    let octave = |doubled: i32| smooth_noise(u, v, (cells * doubled, cells * doubled), salt + doubled as u32);
     (octave(1) * 4.0 + octave(2) * 2.0 + octave(4)) / 7.0
 }
 
-fn ease(t: f32) -> f32 {
+fn ease_in_out(t: f32) -> f32 {
     t * t * (3.0 - 2.0 * t)
 }
 
 /// From `a` to `b` as `t` goes from 0 to 1.
-pub(super) fn mix(a: super::Rgb, b: super::Rgb, t: f32) -> super::Rgb {
+pub(super) fn mix_rgb(a: super::TextureRgb, b: super::TextureRgb, t: f32) -> super::TextureRgb {
     let t = t.clamp(0.0, 1.0);
     std::array::from_fn(|channel| a[channel] + (b[channel] - a[channel]) * t)
 }
 
 /// A grey.
-pub(super) fn grey(value: f32) -> super::Rgb {
+pub(super) fn grey_rgb(value: f32) -> super::TextureRgb {
     [value; 3]
 }
 
 /// Distance from a place.
-pub(super) fn away(u: f32, v: f32, from: (f32, f32)) -> f32 {
+pub(super) fn distance_from(u: f32, v: f32, from: (f32, f32)) -> f32 {
     let (du, dv) = (u - from.0, v - from.1);
     (du * du + dv * dv).sqrt()
 }

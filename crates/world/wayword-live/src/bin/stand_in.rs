@@ -6,7 +6,7 @@
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a program talks to whoever started it")]
 
 use std::{env, error::Error, fs, net::SocketAddr, path::PathBuf, process::ExitCode, thread::park};
-use wayword_live::{Houses, ShownAs, tdw, virtualhome};
+use wayword_live::{ShownAs, StandInHouses, tdw, virtualhome};
 
 const USAGE: &str = "\
 usage: stand_in tdw|virtualhome PORT|ADDRESS:PORT [--houses SEED,SEED... | --first N] [--names FILE]
@@ -19,15 +19,15 @@ usage: stand_in tdw|virtualhome PORT|ADDRESS:PORT [--houses SEED,SEED... | --fir
 Without houses, tdw shows a floor plan without furniture, and each home of virtualhome another house.";
 
 /// The arguments of the command line.
-struct Typed {
+struct StandInArguments {
     simulator: String,
     address: SocketAddr,
-    houses: Option<Houses>,
+    houses: Option<StandInHouses>,
     names: Option<PathBuf>,
 }
 
-impl Typed {
-    fn read(mut arguments: impl Iterator<Item = String>) -> Result<Self, Box<dyn Error>> {
+impl StandInArguments {
+    fn from_arguments(mut arguments: impl Iterator<Item = String>) -> Result<Self, Box<dyn Error>> {
         let (Some(simulator), Some(address)) = (arguments.next(), arguments.next()) else { return Err(USAGE.into()) };
         let address = match address.parse() {
             Ok(port) => SocketAddr::from(([127, 0, 0, 1], port)),
@@ -41,11 +41,11 @@ impl Typed {
                     let seeds = value.split(',').map(|seed| seed.trim().parse());
                     let seeds =
                         seeds.collect::<Result<_, _>>().map_err(|error| format!("--houses {value}: {error}"))?;
-                    typed.houses = Some(Houses::of(seeds)?);
+                    typed.houses = Some(StandInHouses::from_seeds(seeds)?);
                 }
                 "--first" => {
                     let count = value.parse().map_err(|error| format!("--first {value}: {error}"))?;
-                    typed.houses = Some(Houses::with_one_storey(0, count));
+                    typed.houses = Some(StandInHouses::with_one_storey(0, count));
                 }
                 "--names" => typed.names = Some(value.into()),
                 _ => return Err(USAGE.into()),
@@ -55,7 +55,7 @@ impl Typed {
     }
 
     /// Prints or writes which scene shows which house.
-    fn tell(&self, shown: &[ShownAs]) -> Result<(), Box<dyn Error>> {
+    fn write_scene_names(&self, shown: &[ShownAs]) -> Result<(), Box<dyn Error>> {
         let lines: String = shown.iter().map(|each| format!("{each}\n")).collect();
         match &self.names {
             Some(file) => fs::write(file, lines).map_err(|error| format!("{}: {error}", file.display()))?,
@@ -66,7 +66,7 @@ impl Typed {
 }
 
 fn main() -> ExitCode {
-    match run() {
+    match run_stand_in() {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("{error}");
@@ -75,26 +75,26 @@ fn main() -> ExitCode {
     }
 }
 
-fn run() -> Result<(), Box<dyn Error>> {
-    let typed = Typed::read(env::args().skip(1))?;
+fn run_stand_in() -> Result<(), Box<dyn Error>> {
+    let typed = StandInArguments::from_arguments(env::args().skip(1))?;
     match (typed.simulator.as_str(), typed.houses.clone()) {
         ("tdw", houses) => {
-            use tdw::stand_in::{Furnished, StandIn, StandInOptions};
-            let mut options = StandInOptions { furnished: Furnished::OnceAdded, ..Default::default() };
+            use tdw::stand_in::{StandInFurnishing, StandInOptions, TdwStandIn};
+            let mut options = StandInOptions { furnished: StandInFurnishing::OnceAdded, ..Default::default() };
             if let Some(houses) = houses {
-                typed.tell(&StandIn::scenes(&houses)?)?;
-                options = StandInOptions { furnished: Furnished::Always, houses, ..options };
+                typed.write_scene_names(&TdwStandIn::shown_scenes(&houses)?)?;
+                options = StandInOptions { furnished: StandInFurnishing::Always, houses, ..options };
             }
-            StandIn::start(typed.address, options).join();
+            TdwStandIn::start(typed.address, options).join();
         }
         ("virtualhome", houses) => {
-            use virtualhome::stand_in::StandIn;
+            use virtualhome::stand_in::VirtualHomeStandIn;
             let _running = match houses {
                 Some(houses) => {
-                    typed.tell(&StandIn::scenes(&houses)?)?;
-                    StandIn::showing(typed.address, houses)?
+                    typed.write_scene_names(&VirtualHomeStandIn::shown_scenes(&houses)?)?;
+                    VirtualHomeStandIn::showing_houses(typed.address, houses)?
                 }
-                None => StandIn::start(typed.address)?,
+                None => VirtualHomeStandIn::start(typed.address)?,
             };
             loop {
                 park();

@@ -8,7 +8,7 @@ mod tests;
 
 use std::collections::VecDeque;
 use wayword_core::{DVec3, ViewpointGraph, ViewpointId, graph::GraphError};
-use wayword_world::grid_search::{around, at_least, shortest, taut};
+use wayword_world::grid_search::{at_least, find_shortest_way, free_steps_around, pull_taut};
 
 /// Most cells of a floor: 500 m by 500 m at 25 cm.
 pub(crate) const MAX_CELLS: usize = 4_000_000;
@@ -16,11 +16,11 @@ pub(crate) const MAX_CELLS: usize = 4_000_000;
 const APART_M: f64 = 1.5;
 /// Longest edge of the viewpoint graph, metres.
 const REACH_M: f64 = 3.0;
-const STRAIGHT: [(i32, i32); 4] = [(1, 0), (0, 1), (-1, 0), (0, -1)];
+const STRAIGHT_STEPS: [(i32, i32); 4] = [(1, 0), (0, 1), (-1, 0), (0, -1)];
 
 /// Cells over a floor. Cell 0 is the south-western one; rows are counted from south to north.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Raster {
+pub(crate) struct FloorRaster {
     /// Middle of cell 0, metres, world frame.
     origin_m: [f64; 2],
     cell_m: f64,
@@ -28,10 +28,10 @@ pub(crate) struct Raster {
     free: Vec<bool>,
 }
 
-impl Raster {
+impl FloorRaster {
     /// A raster over a rectangle; `is_free` is called with the middle of each cell. `None` where the raster would have
     /// no cell, or more than [`MAX_CELLS`].
-    pub(crate) fn over(
+    pub(crate) fn over_rectangle(
         [x0, y0]: [f64; 2],
         [x1, y1]: [f64; 2],
         cell_m: f64,
@@ -44,7 +44,7 @@ impl Raster {
         let (columns, rows) = (count(x0, x1)?, count(y0, y1)?);
         let cells = columns.checked_mul(rows).filter(|cells| *cells <= MAX_CELLS)?;
         let mut raster = Self { origin_m: [x0, y0], cell_m, columns, free: Vec::new() };
-        raster.free = (0..cells).map(|cell| is_free(raster.middle(cell))).collect();
+        raster.free = (0..cells).map(|cell| is_free(raster.cell_middle(cell))).collect();
         Some(raster)
     }
 
@@ -56,7 +56,7 @@ impl Raster {
         };
         let low = [0, 1].map(|axis| bound(axis, f64::INFINITY, f64::min));
         let high = [0, 1].map(|axis| bound(axis, f64::NEG_INFINITY, f64::max));
-        let mut raster = Self::over(low, high, cell_m, |_| false)?;
+        let mut raster = Self::over_rectangle(low, high, cell_m, |_| false)?;
         for (middle, is_free) in finite() {
             if let Some(cell) = raster.cell_at(*middle) {
                 raster.free[cell] = *is_free;
@@ -66,7 +66,7 @@ impl Raster {
     }
 
     /// The middle of a cell, metres.
-    pub(crate) fn middle(&self, cell: usize) -> [f64; 2] {
+    pub(crate) fn cell_middle(&self, cell: usize) -> [f64; 2] {
         let (column, row) = (cell % self.columns, cell / self.columns);
         [self.origin_m[0] + column as f64 * self.cell_m, self.origin_m[1] + row as f64 * self.cell_m]
     }
@@ -86,7 +86,7 @@ impl Raster {
         self.cell_at(point).is_some_and(|cell| self.free[cell])
     }
 
-    fn neighbour(&self, cell: usize, (dx, dy): (i32, i32)) -> Option<usize> {
+    fn neighbour_cell(&self, cell: usize, (dx, dy): (i32, i32)) -> Option<usize> {
         let (column, row) =
             ((cell % self.columns) as i64 + i64::from(dx), (cell / self.columns) as i64 + i64::from(dy));
         let inside = (0..self.columns as i64).contains(&column) && row >= 0;
@@ -107,7 +107,7 @@ impl Raster {
             part[start] = name;
             while let Some(cell) = open.pop() {
                 sizes[name] += 1;
-                for next in STRAIGHT.into_iter().filter_map(|step| self.neighbour(cell, step)) {
+                for next in STRAIGHT_STEPS.into_iter().filter_map(|step| self.neighbour_cell(cell, step)) {
                     if self.free[next] && part[next] == 0 {
                         part[next] = name;
                         open.push(next);
@@ -120,18 +120,18 @@ impl Raster {
     }
 
     /// Steps from each cell to the nearest one that is not free. Everything outside the raster counts as not free.
-    fn clearances(&self) -> Vec<u32> {
+    fn cell_clearances(&self) -> Vec<u32> {
         let mut steps = vec![u32::MAX; self.free.len()];
         let mut open = VecDeque::new();
         for (cell, step) in steps.iter_mut().enumerate() {
-            let at_edge = STRAIGHT.into_iter().any(|step| self.neighbour(cell, step).is_none());
+            let at_edge = STRAIGHT_STEPS.into_iter().any(|step| self.neighbour_cell(cell, step).is_none());
             if !self.free[cell] || at_edge {
                 *step = u32::from(self.free[cell]);
                 open.push_back(cell);
             }
         }
         while let Some(cell) = open.pop_front() {
-            for next in STRAIGHT.into_iter().filter_map(|step| self.neighbour(cell, step)) {
+            for next in STRAIGHT_STEPS.into_iter().filter_map(|step| self.neighbour_cell(cell, step)) {
                 if steps[next] > steps[cell] + 1 {
                     steps[next] = steps[cell] + 1;
                     open.push_back(next);
@@ -142,13 +142,13 @@ impl Raster {
     }
 
     /// Places for viewpoints: those farthest from obstacles first, none too near to another.
-    pub(crate) fn places(&self) -> Vec<[f64; 2]> {
-        let clearances = self.clearances();
+    pub(crate) fn viewpoint_places(&self) -> Vec<[f64; 2]> {
+        let clearances = self.cell_clearances();
         let mut cells: Vec<usize> = (0..self.free.len()).filter(|cell| self.free[*cell]).collect();
         cells.sort_by_key(|cell| (std::cmp::Reverse(clearances[*cell]), *cell));
         let mut chosen: Vec<[f64; 2]> = Vec::new();
-        for place in cells.into_iter().map(|cell| self.middle(cell)) {
-            if chosen.iter().all(|other| distance(*other, place) >= APART_M) {
+        for place in cells.into_iter().map(|cell| self.cell_middle(cell)) {
+            if chosen.iter().all(|other| floor_distance(*other, place) >= APART_M) {
                 chosen.push(place);
             }
         }
@@ -157,7 +157,7 @@ impl Raster {
 
     /// Whether one can walk straight from one point to another.
     pub(crate) fn is_straight(&self, from: [f64; 2], to: [f64; 2]) -> bool {
-        let count = (distance(from, to) / self.cell_m * 4.0).ceil().max(1.0) as usize;
+        let count = (floor_distance(from, to) / self.cell_m * 4.0).ceil().max(1.0) as usize;
         (0..=count).all(|step| {
             let share = step as f64 / count as f64;
             self.is_free([0, 1].map(|axis| from[axis] + (to[axis] - from[axis]) * share))
@@ -166,7 +166,7 @@ impl Raster {
 
     /// The corners of a way between two points, both ends included; `None` where there is no way. It is at most a few
     /// percent longer than the shortest way, because it keeps to the middles of cells.
-    pub(crate) fn shortest(&self, from: [f64; 2], to: [f64; 2]) -> Option<Vec<[f64; 2]>> {
+    pub(crate) fn shortest_way(&self, from: [f64; 2], to: [f64; 2]) -> Option<Vec<[f64; 2]>> {
         let start = self.cell_at(from).filter(|cell| self.free[*cell])?;
         let goal = self.cell_at(to).filter(|cell| self.free[*cell])?;
         let place = |cell: usize| ((cell % self.columns) as u64, (cell / self.columns) as u64);
@@ -174,32 +174,34 @@ impl Raster {
             let ((x, y), (gx, gy)) = (place(cell), place(goal));
             at_least(x.abs_diff(gx), y.abs_diff(gy))
         };
-        let steps = |cell: usize| around(move |step| self.neighbour(cell, step).filter(|next| self.free[*next]));
-        let cells = shortest(self.free.len(), start, goal, left, steps)?;
+        let steps = |cell: usize| {
+            free_steps_around(move |step| self.neighbour_cell(cell, step).filter(|next| self.free[*next]))
+        };
+        let cells = find_shortest_way(self.free.len(), start, goal, left, steps)?;
         // The way begins and ends at the points that were asked for, and not in the middles of their cells.
-        let middles = cells.into_iter().map(|cell| self.middle(cell));
+        let middles = cells.into_iter().map(|cell| self.cell_middle(cell));
         let points: Vec<[f64; 2]> = [from].into_iter().chain(middles).chain([to]).collect();
-        Some(taut(&points, |a, b| self.is_straight(a, b)))
+        Some(pull_taut(&points, |a, b| self.is_straight(a, b)))
     }
 
     /// A viewpoint graph over eye positions above this floor. Its edges are straight, free walks. Where parts of it are
     /// not connected, the corners of a shortest way between them become viewpoints too.
-    pub(crate) fn graph(&self, eyes: &[DVec3]) -> Result<ViewpointGraph, GraphError> {
+    pub(crate) fn viewpoint_graph(&self, eyes: &[DVec3]) -> Result<ViewpointGraph, GraphError> {
         let mut graph = ViewpointGraph::default();
         let mut nodes: Vec<(ViewpointId, DVec3)> = Vec::new();
         for eye in eyes {
-            self.add(&mut graph, &mut nodes, *eye)?;
+            self.add_viewpoint(&mut graph, &mut nodes, *eye)?;
         }
         // Each round joins two parts, or stops because no way joins them.
         for _ in 0..eyes.len() {
-            if graph.components() < 2 || !self.join_parts(&mut graph, &mut nodes)? {
+            if graph.count_components() < 2 || !self.join_parts(&mut graph, &mut nodes)? {
                 break;
             }
         }
         Ok(graph)
     }
 
-    fn add(
+    fn add_viewpoint(
         &self,
         graph: &mut ViewpointGraph,
         nodes: &mut Vec<(ViewpointId, DVec3)>,
@@ -207,10 +209,10 @@ impl Raster {
     ) -> Result<(), GraphError> {
         // Names made of digits are always valid.
         let Ok(id) = ViewpointId::new(format!("v{}", nodes.len())) else { return Ok(()) };
-        graph.add(id.clone(), eye, None)?;
+        graph.add_viewpoint(id.clone(), eye, None)?;
         for (other, place) in nodes.iter() {
-            if place.distance(eye) <= REACH_M && self.is_straight(flat(eye), flat(*place)) {
-                graph.join(&id, other)?;
+            if place.distance(eye) <= REACH_M && self.is_straight(floor_point(eye), floor_point(*place)) {
+                graph.join_viewpoints(&id, other)?;
             }
         }
         nodes.push((id, eye));
@@ -231,24 +233,24 @@ impl Raster {
         let Some((a, b)) = pairs.min_by(|(a, b), (c, d)| a.1.distance(b.1).total_cmp(&c.1.distance(d.1))) else {
             return Ok(false);
         };
-        let Some(way) = self.shortest(flat(a.1), flat(b.1)) else { return Ok(false) };
+        let Some(way) = self.shortest_way(floor_point(a.1), floor_point(b.1)) else { return Ok(false) };
         let mut before = a.0.clone();
         for corner in way.iter().skip(1).take(way.len().saturating_sub(2)) {
-            self.add(graph, nodes, DVec3::new(corner[0], corner[1], a.1.z))?;
+            self.add_viewpoint(graph, nodes, DVec3::new(corner[0], corner[1], a.1.z))?;
             let Some((id, _)) = nodes.last() else { return Ok(false) };
-            graph.join(&before, id)?;
+            graph.join_viewpoints(&before, id)?;
             before = id.clone();
         }
-        graph.join(&before, &b.0)?;
+        graph.join_viewpoints(&before, &b.0)?;
         Ok(true)
     }
 }
 
-fn flat(place: DVec3) -> [f64; 2] {
+fn floor_point(place: DVec3) -> [f64; 2] {
     [place.x, place.y]
 }
 
-fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
+fn floor_distance(a: [f64; 2], b: [f64; 2]) -> f64 {
     let (dx, dy) = (a[0] - b[0], a[1] - b[1]);
     (dx * dx + dy * dy).sqrt()
 }

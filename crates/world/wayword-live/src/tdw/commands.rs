@@ -5,7 +5,7 @@ use serde::Serialize;
 /// A point or a direction in Unity's coordinates (see [`crate::unity`]).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[allow(missing_docs, reason = "each is the coordinate of that name")]
-pub struct Vector3 {
+pub struct TdwVector3 {
     pub x: f64,
     pub y: f64,
     pub z: f64,
@@ -14,7 +14,7 @@ pub struct Vector3 {
 /// A rotation.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[allow(missing_docs, reason = "each is the component of that name")]
-pub struct Quaternion {
+pub struct TdwQuaternion {
     pub w: f64,
     pub x: f64,
     pub y: f64,
@@ -32,7 +32,7 @@ pub struct GridPoint {
 /// How often the build sends something.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Frequency {
+pub enum SendFrequency {
     /// With the answer to this list of commands.
     Once,
     /// With every answer from now on.
@@ -45,7 +45,7 @@ pub enum Frequency {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "$type", rename_all = "snake_case")]
 #[allow(missing_docs, reason = "fields are those of command_api.md")]
-pub enum Command {
+pub enum BuildCommand {
     /// Makes the build quit when it logs an error.
     SetErrorHandling,
     /// Asks for `vers`.
@@ -65,14 +65,14 @@ pub enum Command {
         name: String,
         url: String,
         scale_factor: f64,
-        position: Vector3,
-        rotation: Vector3,
+        position: TdwVector3,
+        rotation: TdwVector3,
         category: String,
         id: i32,
-        affordance_points: Vec<Vector3>,
+        affordance_points: Vec<TdwVector3>,
     },
     /// Resizes an object.
-    ScaleObject { scale_factor: Vector3, id: i32 },
+    ScaleObject { scale_factor: TdwVector3, id: i32 },
     /// Whether an object is moved by forces.
     SetKinematicState { id: i32, is_kinematic: bool, use_gravity: bool },
     /// Bakes the navmesh of a procedural scene.
@@ -84,9 +84,9 @@ pub enum Command {
         id: String,
     },
     /// Moves an avatar to a position.
-    TeleportAvatarTo { position: Vector3, avatar_id: String },
+    TeleportAvatarTo { position: TdwVector3, avatar_id: String },
     /// Sets an avatar's rotation.
-    RotateAvatarTo { rotation: Quaternion, avatar_id: String },
+    RotateAvatarTo { rotation: TdwQuaternion, avatar_id: String },
     /// Size of pictures, pixels.
     SetScreenSize { width: u32, height: u32 },
     /// Vertical field of view, degrees.
@@ -96,29 +96,29 @@ pub enum Command {
     /// Which passes come.
     SetPassMasks { pass_masks: Vec<&'static str>, avatar_id: String },
     /// Asks for `imag`; of all avatars where `ids` is empty.
-    SendImages { ids: Vec<String>, frequency: Frequency },
+    SendImages { ids: Vec<String>, frequency: SendFrequency },
     /// Asks for `segm`.
-    SendSegmentationColors { ids: Vec<i32>, frequency: Frequency },
+    SendSegmentationColors { ids: Vec<i32>, frequency: SendFrequency },
     /// Asks for `cate`.
-    SendCategories { frequency: Frequency },
+    SendCategories { frequency: SendFrequency },
     /// Asks for `avki`.
-    SendAvatars { ids: Vec<String>, frequency: Frequency },
+    SendAvatars { ids: Vec<String>, frequency: SendFrequency },
     /// Asks for `sreg`.
-    SendSceneRegions { frequency: Frequency },
+    SendSceneRegions { frequency: SendFrequency },
     /// Asks for `tran`.
-    SendTransforms { ids: Vec<i32>, frequency: Frequency },
+    SendTransforms { ids: Vec<i32>, frequency: SendFrequency },
     /// Asks for `boun`.
-    SendBounds { ids: Vec<i32>, frequency: Frequency },
+    SendBounds { ids: Vec<i32>, frequency: SendFrequency },
     /// Asks for `cama`.
-    SendCameraMatrices { ids: Vec<String>, frequency: Frequency },
+    SendCameraMatrices { ids: Vec<String>, frequency: SendFrequency },
     /// Asks for `imse`.
-    SendImageSensors { ids: Vec<String>, frequency: Frequency },
+    SendImageSensors { ids: Vec<String>, frequency: SendFrequency },
     /// Asks for `occu`.
     SendOccupancyMap { cell_size: f64, raycast_y: f64 },
     /// Asks for `isnm`.
-    SendIsOnNavMesh { position: Vector3, max_distance: f64, id: i32 },
+    SendIsOnNavMesh { position: TdwVector3, max_distance: f64, id: i32 },
     /// Asks for exactly one `path` with that id.
-    SendNavMeshPath { origin: Vector3, destination: Vector3, id: i32 },
+    SendNavMeshPath { origin: TdwVector3, destination: TdwVector3, id: i32 },
     /// Ends the build; it answers `quit`.
     Terminate,
 }
@@ -131,49 +131,49 @@ mod tests {
     /// The JSON of TDW's `command_api.md`, as its Python client sends it.
     #[test]
     fn commands_have_the_documented_json() {
-        let at = Vector3 { x: 1.0, y: 0.5, z: -2.0 };
+        let at = TdwVector3 { x: 1.0, y: 0.5, z: -2.0 };
         let avatar_id = || "a".to_owned();
-        let documented: Vec<(Command, Value)> = vec![
-            (Command::SetErrorHandling, json!({ "$type": "set_error_handling" })),
-            (Command::SendVersion, json!({ "$type": "send_version" })),
+        let documented: Vec<(BuildCommand, Value)> = vec![
+            (BuildCommand::SetErrorHandling, json!({ "$type": "set_error_handling" })),
+            (BuildCommand::SendVersion, json!({ "$type": "send_version" })),
             (
-                Command::LoadScene { scene_name: "ProcGenScene".into() },
+                BuildCommand::LoadScene { scene_name: "ProcGenScene".into() },
                 json!({ "$type": "load_scene", "scene_name": "ProcGenScene" }),
             ),
             (
-                Command::CreateExteriorWalls { walls: vec![GridPoint { x: 0, y: 3 }] },
+                BuildCommand::CreateExteriorWalls { walls: vec![GridPoint { x: 0, y: 3 }] },
                 json!({ "$type": "create_exterior_walls", "walls": [{ "x": 0, "y": 3 }] }),
             ),
-            (Command::CreateProcGenCeiling, json!({ "$type": "create_proc_gen_ceiling" })),
+            (BuildCommand::CreateProcGenCeiling, json!({ "$type": "create_proc_gen_ceiling" })),
             (
-                Command::CreateAvatar { kind: "A_Img_Caps_Kinematic", id: avatar_id() },
+                BuildCommand::CreateAvatar { kind: "A_Img_Caps_Kinematic", id: avatar_id() },
                 json!({ "$type": "create_avatar", "type": "A_Img_Caps_Kinematic", "id": "a" }),
             ),
             (
-                Command::TeleportAvatarTo { position: at, avatar_id: avatar_id() },
+                BuildCommand::TeleportAvatarTo { position: at, avatar_id: avatar_id() },
                 json!({ "$type": "teleport_avatar_to", "position": { "x": 1.0, "y": 0.5, "z": -2.0 }, "avatar_id": "a" }),
             ),
             (
-                Command::RotateAvatarTo {
-                    rotation: Quaternion { w: 1.0, x: 0.0, y: 0.0, z: 0.0 },
+                BuildCommand::RotateAvatarTo {
+                    rotation: TdwQuaternion { w: 1.0, x: 0.0, y: 0.0, z: 0.0 },
                     avatar_id: avatar_id(),
                 },
                 json!({ "$type": "rotate_avatar_to", "rotation": { "w": 1.0, "x": 0.0, "y": 0.0, "z": 0.0 }, "avatar_id": "a" }),
             ),
             (
-                Command::SetPassMasks { pass_masks: vec!["_img", "_id"], avatar_id: avatar_id() },
+                BuildCommand::SetPassMasks { pass_masks: vec!["_img", "_id"], avatar_id: avatar_id() },
                 json!({ "$type": "set_pass_masks", "pass_masks": ["_img", "_id"], "avatar_id": "a" }),
             ),
             (
-                Command::SendImages { ids: vec![], frequency: Frequency::Once },
+                BuildCommand::SendImages { ids: vec![], frequency: SendFrequency::Once },
                 json!({ "$type": "send_images", "ids": [], "frequency": "once" }),
             ),
             (
-                Command::SendOccupancyMap { cell_size: 0.5, raycast_y: 2.5 },
+                BuildCommand::SendOccupancyMap { cell_size: 0.5, raycast_y: 2.5 },
                 json!({ "$type": "send_occupancy_map", "cell_size": 0.5, "raycast_y": 2.5 }),
             ),
             (
-                Command::SendNavMeshPath { origin: at, destination: at, id: 7 },
+                BuildCommand::SendNavMeshPath { origin: at, destination: at, id: 7 },
                 json!({
                     "$type": "send_nav_mesh_path",
                     "origin": { "x": 1.0, "y": 0.5, "z": -2.0 },
@@ -181,7 +181,7 @@ mod tests {
                     "id": 7,
                 }),
             ),
-            (Command::Terminate, json!({ "$type": "terminate" })),
+            (BuildCommand::Terminate, json!({ "$type": "terminate" })),
         ];
         for (command, expected) in documented {
             assert_eq!(serde_json::to_value(&command).unwrap(), expected);

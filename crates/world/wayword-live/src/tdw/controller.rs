@@ -4,10 +4,10 @@
 //! frame of every answer is the number of the frame that the build rendered.
 
 use super::{
-    commands::Command,
+    commands::BuildCommand,
     error::TdwError,
-    output::{Output, Version, id_of},
-    zmtp::{Peer, Role, WireError},
+    output::{BuildOutput, VersionOutput, id_of},
+    zmtp::{SocketRole, WireError, ZmtpPeer},
 };
 use std::{
     net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream},
@@ -19,7 +19,7 @@ use std::{
 /// (`Controller.communicate`) has the same limit.
 const MAX_RESENDS: u32 = 1000;
 /// How long a new connection may take for its greeting.
-const GREETING: Duration = Duration::from_secs(5);
+const GREETING_TIMEOUT: Duration = Duration::from_secs(5);
 
 /// Where to wait for a build, and for how long.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -45,17 +45,17 @@ impl Default for ControllerOptions {
 /// A controller: at most one build at a time.
 ///
 /// After an error on the wire the controller drops the build, because it is then unknown which side has to send next.
-/// [`Controller::connect`] takes the next build.
+/// [`TdwController::connect_build`] takes the next build.
 #[derive(Debug)]
-pub struct Controller {
+pub struct TdwController {
     listener: TcpListener,
     options: ControllerOptions,
-    build: Option<Build>,
+    build: Option<ConnectedBuild>,
 }
 
 #[derive(Debug)]
-struct Build {
-    peer: Peer,
+struct ConnectedBuild {
+    peer: ZmtpPeer,
     version: BuildVersion,
 }
 
@@ -68,24 +68,24 @@ pub struct BuildVersion {
     pub unity: String,
 }
 
-impl From<Version<'_>> for BuildVersion {
-    fn from(version: Version<'_>) -> Self {
+impl From<VersionOutput<'_>> for BuildVersion {
+    fn from(version: VersionOutput<'_>) -> Self {
         Self { tdw: version.tdw.to_owned(), unity: version.unity.to_owned() }
     }
 }
 
 /// A build's answer: frames of output data, and the number of the build's own frame.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Response {
+pub struct BuildResponse {
     frames: Vec<Vec<u8>>,
     /// The build's own count of frames.
     pub frame_number: u32,
 }
 
-impl Response {
+impl BuildResponse {
     /// The frames, read one by one.
-    pub fn outputs(&self) -> impl Iterator<Item = Result<Output<'_>, TdwError>> {
-        self.frames.iter().map(|frame| Ok(Output::read(frame)?))
+    pub fn read_outputs(&self) -> impl Iterator<Item = Result<BuildOutput<'_>, TdwError>> {
+        self.frames.iter().map(|frame| Ok(BuildOutput::read(frame)?))
     }
 
     /// Calls `pick` with each frame that has this `id`, and returns the first result that is not `None`. `asked` names
@@ -93,14 +93,14 @@ impl Response {
     ///
     /// # Errors
     /// Where there is no result, or a frame with this id cannot be read.
-    pub fn first<'a, T>(
+    pub fn first_output<'a, T>(
         &'a self,
         id: &'static str,
         asked: &'static str,
-        pick: impl Fn(Output<'a>) -> Option<T>,
+        pick: impl Fn(BuildOutput<'a>) -> Option<T>,
     ) -> Result<T, TdwError> {
         for output in self.frames.iter().filter(|frame| id_of(frame).is_some_and(|its| its == id.as_bytes())) {
-            if let Some(found) = pick(Output::read(output)?) {
+            if let Some(found) = pick(BuildOutput::read(output)?) {
                 return Ok(found);
             }
         }
@@ -108,7 +108,7 @@ impl Response {
     }
 }
 
-impl Controller {
+impl TdwController {
     /// Starts to listen. No build has to run yet.
     ///
     /// # Errors
@@ -134,13 +134,13 @@ impl Controller {
 
     /// The version of the connected build.
     #[must_use]
-    pub fn version(&self) -> Option<&BuildVersion> {
+    pub fn build_version(&self) -> Option<&BuildVersion> {
         self.build.as_ref().map(|build| &build.version)
     }
 
     /// How long the controller waits for a build.
     #[must_use]
-    pub fn patience(&self) -> Duration {
+    pub fn connect_timeout(&self) -> Duration {
         self.options.connect_timeout
     }
 
@@ -150,12 +150,12 @@ impl Controller {
     /// When no build connects in time, or the program that connects does not follow a build's protocol.
     pub fn connect(&mut self) -> Result<&BuildVersion, TdwError> {
         if self.build.is_none() {
-            let peer = self.wait()?;
-            self.build = Some(Build { peer, version: BuildVersion::default() });
-            let hello = [Command::SetErrorHandling, Command::SendVersion];
+            let peer = self.wait_for_build()?;
+            self.build = Some(ConnectedBuild { peer, version: BuildVersion::default() });
+            let hello = [BuildCommand::SetErrorHandling, BuildCommand::SendVersion];
             let version = self.communicate(&hello).and_then(|response| {
-                response.first("vers", "send_version", |output| match output {
-                    Output::Version(version) => Some(BuildVersion::from(version)),
+                response.first_output("vers", "send_version", |output| match output {
+                    BuildOutput::Version(version) => Some(BuildVersion::from(version)),
                     _ => None,
                 })
             });
@@ -167,16 +167,16 @@ impl Controller {
                 }
             }
         }
-        self.version().ok_or_else(|| self.no_build(None))
+        self.build_version().ok_or_else(|| self.no_build(None))
     }
 
     /// Accepts connections until one greets as a build does. A connection that stays silent costs five seconds.
-    fn wait(&self) -> Result<Peer, TdwError> {
+    fn wait_for_build(&self) -> Result<ZmtpPeer, TdwError> {
         let deadline = Instant::now() + self.options.connect_timeout;
         let mut last = None;
         while Instant::now() < deadline {
             match self.listener.accept() {
-                Ok((stream, _)) => match greet(stream, deadline) {
+                Ok((stream, _)) => match greet_build(stream, deadline) {
                     Ok(peer) => return Ok(peer),
                     Err(error) => last = Some(error),
                 },
@@ -195,30 +195,30 @@ impl Controller {
     ///
     /// # Errors
     /// When no build is connected; when it is gone, is late or quits with an error; or when its answer is not valid.
-    pub fn communicate(&mut self, commands: &[Command]) -> Result<Response, TdwError> {
-        let told = self.tell(commands);
+    pub fn communicate(&mut self, commands: &[BuildCommand]) -> Result<BuildResponse, TdwError> {
+        let told = self.send_commands(commands);
         if told.as_ref().is_err_and(TdwError::is_loss) {
             self.build = None;
         }
         told
     }
 
-    fn tell(&mut self, commands: &[Command]) -> Result<Response, TdwError> {
+    fn send_commands(&mut self, commands: &[BuildCommand]) -> Result<BuildResponse, TdwError> {
         let address = self.address();
         let Some(build) = &mut self.build else {
             return Err(self.no_build(None));
         };
         let text = serde_json::to_vec(commands).map_err(|error| TdwError::Scene(error.to_string()))?;
-        build.peer.until(Instant::now() + self.options.step_timeout);
+        build.peer.set_deadline(Instant::now() + self.options.step_timeout);
         for _ in 0..=MAX_RESENDS {
             let answer = build.peer.send(&[&text]).and_then(|()| build.peer.receive());
-            let response = response(answer.map_err(|source| TdwError::Wire { address, source })?)?;
+            let response = response_from_frames(answer.map_err(|source| TdwError::Wire { address, source })?)?;
             let holds = |id: &[u8; 4]| response.frames.iter().find(|frame| id_of(frame).is_some_and(|its| its == *id));
             if holds(b"ftre").is_some() {
                 continue;
             }
-            return match holds(b"quit").map(|frame| Output::read(frame)).transpose()? {
-                Some(Output::Quit(false)) => Err(TdwError::Quit),
+            return match holds(b"quit").map(|frame| BuildOutput::read(frame)).transpose()? {
+                Some(BuildOutput::Quit(false)) => Err(TdwError::Quit),
                 Some(_) => {
                     self.build = None;
                     Ok(response)
@@ -235,7 +235,7 @@ impl Controller {
     /// When it does not answer. The controller drops it in any case.
     pub fn terminate(&mut self) -> Result<(), TdwError> {
         if self.is_connected() {
-            let told = self.communicate(&[Command::Terminate]);
+            let told = self.communicate(&[BuildCommand::Terminate]);
             self.build = None;
             told?;
         }
@@ -244,15 +244,15 @@ impl Controller {
 }
 
 /// Greets a build that has connected, and discards its first message, which has no meaningful content.
-fn greet(stream: TcpStream, deadline: Instant) -> Result<Peer, WireError> {
-    let deadline = deadline.min(Instant::now() + GREETING);
-    let mut peer = Peer::greet(stream, Role::Rep, deadline)?;
+fn greet_build(stream: TcpStream, deadline: Instant) -> Result<ZmtpPeer, WireError> {
+    let deadline = deadline.min(Instant::now() + GREETING_TIMEOUT);
+    let mut peer = ZmtpPeer::greet(stream, SocketRole::Rep, deadline)?;
     peer.receive()?;
     Ok(peer)
 }
 
-fn response(mut frames: Vec<Vec<u8>>) -> Result<Response, TdwError> {
+fn response_from_frames(mut frames: Vec<Vec<u8>>) -> Result<BuildResponse, TdwError> {
     let last = frames.pop().unwrap_or_default();
     let number = last.as_slice().try_into().map_err(|_| TdwError::NoFrameNumber { length: last.len() })?;
-    Ok(Response { frames, frame_number: u32::from_be_bytes(number) })
+    Ok(BuildResponse { frames, frame_number: u32::from_be_bytes(number) })
 }

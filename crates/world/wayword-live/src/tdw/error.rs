@@ -17,7 +17,7 @@ pub enum TdwError {
     /// No build connected.
     #[error(
         "no ThreeDWorld build connected to {address} within {seconds} s{}; start it with TDW.x86_64 -port {}",
-        said(.last),
+        describe_last_error(.last),
         address.port()
     )]
     NoBuild {
@@ -80,7 +80,7 @@ pub enum TdwError {
     Package(String),
 }
 
-fn said(last: &Option<WireError>) -> String {
+fn describe_last_error(last: &Option<WireError>) -> String {
     last.as_ref().map_or_else(String::new, |error| format!(" (the last connection failed: {error})"))
 }
 

@@ -11,7 +11,7 @@
 /// Bytes that do not have the expected form.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("byte {at}: expected {expected}")]
-pub struct Misread {
+pub struct FlatBufferError {
     /// Position in the frame.
     pub at: usize,
     /// The expected content.
@@ -20,7 +20,7 @@ pub struct Misread {
 
 /// A table of a buffer.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Table<'a> {
+pub(super) struct FlatBufferTable<'a> {
     bytes: &'a [u8],
     at: usize,
     vtable: &'a [u8],
@@ -30,54 +30,60 @@ pub(super) struct Table<'a> {
 
 /// A vector's elements: all of one size, and all within the input.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Items<'a> {
+pub(super) struct FlatBufferVector<'a> {
     bytes: &'a [u8],
     from: usize,
     size: usize,
     count: usize,
 }
 
-fn fixed<const N: usize>(bytes: &[u8], at: usize, expected: &'static str) -> Result<[u8; N], Misread> {
+fn fixed_bytes<const N: usize>(bytes: &[u8], at: usize, expected: &'static str) -> Result<[u8; N], FlatBufferError> {
     let slice = bytes.get(at..).and_then(|rest| rest.first_chunk());
-    slice.copied().ok_or(Misread { at, expected })
+    slice.copied().ok_or(FlatBufferError { at, expected })
 }
 
-fn u16_at(bytes: &[u8], at: usize, expected: &'static str) -> Result<usize, Misread> {
-    fixed(bytes, at, expected).map(|raw| usize::from(u16::from_le_bytes(raw)))
+fn u16_at(bytes: &[u8], at: usize, expected: &'static str) -> Result<usize, FlatBufferError> {
+    fixed_bytes(bytes, at, expected).map(|raw| usize::from(u16::from_le_bytes(raw)))
 }
 
-fn u32_at(bytes: &[u8], at: usize, expected: &'static str) -> Result<usize, Misread> {
-    fixed(bytes, at, expected).map(|raw| u32::from_le_bytes(raw) as usize)
+fn u32_at(bytes: &[u8], at: usize, expected: &'static str) -> Result<usize, FlatBufferError> {
+    fixed_bytes(bytes, at, expected).map(|raw| u32::from_le_bytes(raw) as usize)
 }
 
 /// Follows an offset, which counts from its own position.
-fn followed(bytes: &[u8], at: usize, expected: &'static str) -> Result<usize, Misread> {
+fn follow_offset(bytes: &[u8], at: usize, expected: &'static str) -> Result<usize, FlatBufferError> {
     let to = at.saturating_add(u32_at(bytes, at, expected)?);
-    if to < bytes.len() { Ok(to) } else { Err(Misread { at, expected }) }
+    if to < bytes.len() { Ok(to) } else { Err(FlatBufferError { at, expected }) }
 }
 
-impl<'a> Table<'a> {
+impl<'a> FlatBufferTable<'a> {
     /// The outermost table.
-    pub(super) fn root(bytes: &'a [u8]) -> Result<Self, Misread> {
-        Self::at(bytes, followed(bytes, 0, "an offset to the root table")?)
+    pub(super) fn root_table(bytes: &'a [u8]) -> Result<Self, FlatBufferError> {
+        Self::table_at(bytes, follow_offset(bytes, 0, "an offset to the root table")?)
     }
 
-    fn at(bytes: &'a [u8], at: usize) -> Result<Self, Misread> {
+    fn table_at(bytes: &'a [u8], at: usize) -> Result<Self, FlatBufferError> {
         let expected = "an offset to a vtable";
-        let back = i64::from(i32::from_le_bytes(fixed(bytes, at, expected)?));
-        let start = usize::try_from(at as i64 - back).map_err(|_| Misread { at, expected })?;
+        let back = i64::from(i32::from_le_bytes(fixed_bytes(bytes, at, expected)?));
+        let start = usize::try_from(at as i64 - back).map_err(|_| FlatBufferError { at, expected })?;
         let length = u16_at(bytes, start, expected)?;
         let vtable = start.checked_add(length).and_then(|end| bytes.get(start..end));
-        let vtable = vtable.filter(|vtable| vtable.len() >= 4).ok_or(Misread { at: start, expected: "a vtable" })?;
+        let vtable =
+            vtable.filter(|vtable| vtable.len() >= 4).ok_or(FlatBufferError { at: start, expected: "a vtable" })?;
         let end = at + u16_at(vtable, 2, "a vtable")?;
         if end > bytes.len() {
-            return Err(Misread { at: start + 2, expected: "a table within the frame" });
+            return Err(FlatBufferError { at: start + 2, expected: "a table within the frame" });
         }
         Ok(Self { bytes, at, vtable, end })
     }
 
     /// Where a field of `size` bytes lies; `None` where the table leaves it out.
-    fn field(&self, slot: usize, size: usize, expected: &'static str) -> Result<Option<usize>, Misread> {
+    fn field_position(
+        &self,
+        slot: usize,
+        size: usize,
+        expected: &'static str,
+    ) -> Result<Option<usize>, FlatBufferError> {
         let entry = 4 + 2 * slot;
         if entry + 2 > self.vtable.len() {
             return Ok(None);
@@ -87,118 +93,122 @@ impl<'a> Table<'a> {
         match offset {
             0 => Ok(None),
             _ if at + size <= self.end => Ok(Some(at)),
-            _ => Err(Misread { at, expected }),
+            _ => Err(FlatBufferError { at, expected }),
         }
     }
 
     /// The error for a field with invalid content.
-    pub(super) fn misfit(&self, slot: usize, expected: &'static str) -> Misread {
-        let at = self.field(slot, 1, expected).ok().flatten().unwrap_or(self.at);
-        Misread { at, expected }
+    pub(super) fn field_error(&self, slot: usize, expected: &'static str) -> FlatBufferError {
+        let at = self.field_position(slot, 1, expected).ok().flatten().unwrap_or(self.at);
+        FlatBufferError { at, expected }
     }
 
-    fn scalar<const N: usize>(&self, slot: usize, expected: &'static str) -> Result<Option<[u8; N]>, Misread> {
-        self.field(slot, N, expected)?.map(|at| fixed(self.bytes, at, expected)).transpose()
+    fn read_scalar<const N: usize>(
+        &self,
+        slot: usize,
+        expected: &'static str,
+    ) -> Result<Option<[u8; N]>, FlatBufferError> {
+        self.field_position(slot, N, expected)?.map(|at| fixed_bytes(self.bytes, at, expected)).transpose()
     }
 
-    pub(super) fn i32(&self, slot: usize, default: i32) -> Result<i32, Misread> {
-        Ok(self.scalar(slot, "an integer")?.map_or(default, i32::from_le_bytes))
+    pub(super) fn read_i32(&self, slot: usize, default: i32) -> Result<i32, FlatBufferError> {
+        Ok(self.read_scalar(slot, "an integer")?.map_or(default, i32::from_le_bytes))
     }
 
-    pub(super) fn u8(&self, slot: usize, default: u8) -> Result<u8, Misread> {
-        Ok(self.scalar(slot, "a byte")?.map_or(default, |[byte]| byte))
+    pub(super) fn read_u8(&self, slot: usize, default: u8) -> Result<u8, FlatBufferError> {
+        Ok(self.read_scalar(slot, "a byte")?.map_or(default, |[byte]| byte))
     }
 
-    pub(super) fn bool(&self, slot: usize) -> Result<bool, Misread> {
-        Ok(self.u8(slot, 0)? != 0)
+    pub(super) fn read_bool(&self, slot: usize) -> Result<bool, FlatBufferError> {
+        Ok(self.read_u8(slot, 0)? != 0)
     }
 
-    pub(super) fn f32(&self, slot: usize) -> Result<f32, Misread> {
-        Ok(self.scalar(slot, "a number")?.map_or(0.0, f32::from_le_bytes))
+    pub(super) fn read_f32(&self, slot: usize) -> Result<f32, FlatBufferError> {
+        Ok(self.read_scalar(slot, "a number")?.map_or(0.0, f32::from_le_bytes))
     }
 
     /// A struct of `N` numbers; zeros where the table leaves it out.
-    pub(super) fn floats<const N: usize>(&self, slot: usize) -> Result<[f32; N], Misread> {
+    pub(super) fn read_floats<const N: usize>(&self, slot: usize) -> Result<[f32; N], FlatBufferError> {
         let expected = "a struct of numbers";
-        let Some(at) = self.field(slot, 4 * N, expected)? else {
+        let Some(at) = self.field_position(slot, 4 * N, expected)? else {
             return Ok([0.0; N]);
         };
         let mut numbers = [0.0; N];
         for (index, number) in numbers.iter_mut().enumerate() {
-            *number = f32::from_le_bytes(fixed(self.bytes, at + 4 * index, expected)?);
+            *number = f32::from_le_bytes(fixed_bytes(self.bytes, at + 4 * index, expected)?);
         }
         Ok(numbers)
     }
 
     /// A struct of three integers.
-    pub(super) fn three_i32(&self, slot: usize) -> Result<[i32; 3], Misread> {
-        Ok(self.floats::<3>(slot)?.map(|raw| raw.to_bits() as i32))
+    pub(super) fn three_i32(&self, slot: usize) -> Result<[i32; 3], FlatBufferError> {
+        Ok(self.read_floats::<3>(slot)?.map(|raw| raw.to_bits() as i32))
     }
 
     /// A text; empty where the table leaves it out.
-    pub(super) fn text(&self, slot: usize) -> Result<&'a str, Misread> {
+    pub(super) fn read_text(&self, slot: usize) -> Result<&'a str, FlatBufferError> {
         let expected = "a text";
-        let Some(at) = self.field(slot, 4, expected)? else {
+        let Some(at) = self.field_position(slot, 4, expected)? else {
             return Ok("");
         };
-        text_at(self.bytes, followed(self.bytes, at, expected)?)
+        text_at(self.bytes, follow_offset(self.bytes, at, expected)?)
     }
 
     /// A vector with elements of `size` bytes each; empty where the table leaves it out.
-    pub(super) fn vector(&self, slot: usize, size: usize) -> Result<Items<'a>, Misread> {
+    pub(super) fn read_vector(&self, slot: usize, size: usize) -> Result<FlatBufferVector<'a>, FlatBufferError> {
         let expected = "a vector";
-        let Some(at) = self.field(slot, 4, expected)? else {
-            return Ok(Items { bytes: self.bytes, from: 0, size, count: 0 });
+        let Some(at) = self.field_position(slot, 4, expected)? else {
+            return Ok(FlatBufferVector { bytes: self.bytes, from: 0, size, count: 0 });
         };
-        Items::at(self.bytes, followed(self.bytes, at, expected)?, size)
+        FlatBufferVector::vector_at(self.bytes, follow_offset(self.bytes, at, expected)?, size)
     }
 
-    pub(super) fn bytes(&self, slot: usize) -> Result<&'a [u8], Misread> {
-        Ok(self.vector(slot, 1)?.raw())
+    pub(super) fn read_bytes(&self, slot: usize) -> Result<&'a [u8], FlatBufferError> {
+        Ok(self.read_vector(slot, 1)?.raw_bytes())
     }
 
-    pub(super) fn i32s(&self, slot: usize) -> Result<Vec<i32>, Misread> {
-        let raw = self.vector(slot, 4)?.raw();
+    pub(super) fn read_i32s(&self, slot: usize) -> Result<Vec<i32>, FlatBufferError> {
+        let raw = self.read_vector(slot, 4)?.raw_bytes();
         Ok(raw.as_chunks().0.iter().map(|word| i32::from_le_bytes(*word)).collect())
     }
 
-    pub(super) fn f32s(&self, slot: usize) -> Result<Vec<f32>, Misread> {
-        let raw = self.vector(slot, 4)?.raw();
+    pub(super) fn read_f32s(&self, slot: usize) -> Result<Vec<f32>, FlatBufferError> {
+        let raw = self.read_vector(slot, 4)?.raw_bytes();
         Ok(raw.as_chunks().0.iter().map(|word| f32::from_le_bytes(*word)).collect())
     }
 
-    pub(super) fn texts(&self, slot: usize) -> Result<Vec<&'a str>, Misread> {
-        self.vector(slot, 4)?.targets()?.into_iter().map(|at| text_at(self.bytes, at)).collect()
+    pub(super) fn read_texts(&self, slot: usize) -> Result<Vec<&'a str>, FlatBufferError> {
+        self.read_vector(slot, 4)?.offset_targets()?.into_iter().map(|at| text_at(self.bytes, at)).collect()
     }
 
-    pub(super) fn tables(&self, slot: usize) -> Result<Vec<Self>, Misread> {
-        self.vector(slot, 4)?.targets()?.into_iter().map(|at| Self::at(self.bytes, at)).collect()
+    pub(super) fn read_tables(&self, slot: usize) -> Result<Vec<Self>, FlatBufferError> {
+        self.read_vector(slot, 4)?.offset_targets()?.into_iter().map(|at| Self::table_at(self.bytes, at)).collect()
     }
 }
 
-fn text_at(bytes: &[u8], at: usize) -> Result<&str, Misread> {
-    let raw = Items::at(bytes, at, 1)?.raw();
-    std::str::from_utf8(raw).map_err(|_| Misread { at, expected: "a text in UTF-8" })
+fn text_at(bytes: &[u8], at: usize) -> Result<&str, FlatBufferError> {
+    let raw = FlatBufferVector::vector_at(bytes, at, 1)?.raw_bytes();
+    std::str::from_utf8(raw).map_err(|_| FlatBufferError { at, expected: "a text in UTF-8" })
 }
 
-impl<'a> Items<'a> {
-    fn at(bytes: &'a [u8], at: usize, size: usize) -> Result<Self, Misread> {
+impl<'a> FlatBufferVector<'a> {
+    fn vector_at(bytes: &'a [u8], at: usize, size: usize) -> Result<Self, FlatBufferError> {
         let count = u32_at(bytes, at, "a vector's length")?;
         let from = at + 4;
         let end = count.checked_mul(size).and_then(|length| length.checked_add(from));
         if end.is_none_or(|end| end > bytes.len()) {
-            return Err(Misread { at, expected: "a vector that ends within the frame" });
+            return Err(FlatBufferError { at, expected: "a vector that ends within the frame" });
         }
         Ok(Self { bytes, from, size, count })
     }
 
-    pub(super) fn raw(&self) -> &'a [u8] {
+    pub(super) fn raw_bytes(&self) -> &'a [u8] {
         &self.bytes[self.from..self.from + self.size * self.count]
     }
 
     /// Where the offsets of a vector lead.
-    fn targets(&self) -> Result<Vec<usize>, Misread> {
+    fn offset_targets(&self) -> Result<Vec<usize>, FlatBufferError> {
         let at = |index| self.from + 4 * index;
-        (0..self.count).map(|index| followed(self.bytes, at(index), "an offset within the frame")).collect()
+        (0..self.count).map(|index| follow_offset(self.bytes, at(index), "an offset within the frame")).collect()
     }
 }

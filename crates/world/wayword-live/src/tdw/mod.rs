@@ -16,16 +16,16 @@ mod session;
 pub mod stand_in;
 mod zmtp;
 
-pub use commands::{Command, Frequency, GridPoint, Quaternion, Vector3};
-pub use controller::{BuildVersion, Controller, ControllerOptions, Response};
+pub use commands::{BuildCommand, GridPoint, SendFrequency, TdwQuaternion, TdwVector3};
+pub use controller::{BuildResponse, BuildVersion, ControllerOptions, TdwController};
 pub use error::TdwError;
-pub use flat::Misread;
+pub use flat::FlatBufferError;
 pub use output::{
-    Avatar, Bounds, Camera, Images, NavMeshPath, Occupancy, OnNavMesh, Output, OutputError, Pass, Region, Segment,
-    Sensor, Transform, Version,
+    AvatarImages, AvatarPose, AvatarSensor, BuildOutput, NavMeshPath, OnNavMesh, OutputError, PicturePass,
+    SegmentedObject, TdwCameraMatrices, TdwObjectBounds, TdwObjectTransform, TdwOccupancyMap, TdwRegion, VersionOutput,
 };
 pub use pictures::depth_m;
-pub use platform::{Tdw, TdwOptions, TdwPlatform};
+pub use platform::{TdwOptions, TdwPlatform, TdwSimulator};
 pub use zmtp::WireError;
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Decodes the passes of a picture: colours (`_img`), object colours (`_id`) and depth (`_depth`).
 
-use super::{error::TdwError, output::Pass};
+use super::{error::TdwError, output::PicturePass};
 use crate::decode;
 use image::ImageFormat;
 
@@ -16,7 +16,7 @@ pub(super) enum PassKind {
 
 impl PassKind {
     /// Its number in `imag`.
-    pub(super) fn mask(self) -> i32 {
+    pub(super) fn pass_mask(self) -> i32 {
         match self {
             Self::Img => 1,
             Self::Id => 2,
@@ -36,9 +36,9 @@ impl PassKind {
 ///
 /// # Errors
 /// When it cannot be decoded, or is not of the size that was announced with it.
-pub(super) fn rgb(pass: &Pass<'_>, kind: PassKind, size: (u32, u32)) -> Result<Vec<u8>, TdwError> {
+pub(super) fn decode_pass(pass: &PicturePass<'_>, kind: PassKind, size: (u32, u32)) -> Result<Vec<u8>, TdwError> {
     let format = if pass.extension == 2 { ImageFormat::Jpeg } else { ImageFormat::Png };
-    decode::rgb(pass.bytes, format, size).map_err(|reason| TdwError::Picture { pass: kind.name(), reason })
+    decode::decode_rgb(pass.bytes, format, size).map_err(|reason| TdwError::Picture { pass: kind.name(), reason })
 }
 
 /// Depth along the camera's forward axis from a `_depth` pass, metres, rows from the top. The pass has raw pixels with

@@ -1,15 +1,17 @@
 //! The platform on top of a live build.
 
 use super::{
-    controller::{Controller, ControllerOptions},
+    controller::{ControllerOptions, TdwController},
     error::TdwError,
-    scenes::{self, Plan},
+    scenes::{self, TdwScenePlan},
     session,
 };
-use crate::live::{Ear, Live, Pictures, Shot, Simulator, Survey, Wanted};
+use crate::live::{
+    LivePictureOptions, LivePlatform, ProgressListener, Simulator, SimulatorShot, SimulatorShotKind, SimulatorSurvey,
+};
 use std::path::PathBuf;
-use wayword_core::{DVec3, Failure, SceneId};
-use wayword_render::Camera;
+use wayword_core::{DVec3, FailureKind, SceneId};
+use wayword_render::PinholeCamera;
 use wayword_world::said;
 
 /// Options of the platform.
@@ -20,23 +22,23 @@ pub struct TdwOptions {
     /// Folder of the Python package `tdw`. Furnished floor plans need its lists of furniture.
     pub package: Option<PathBuf>,
     /// Size of pictures, and distance between frames.
-    pub pictures: Pictures,
+    pub pictures: LivePictureOptions,
 }
 
 /// ThreeDWorld over a live build: scenes `floorplan_1a` to `floorplan_5c` (with furniture `floorplan_1a_0`), and
 /// procedural rooms like `room_8x10`.
-pub type TdwPlatform = Live<Tdw>;
+pub type TdwPlatform = LivePlatform<TdwSimulator>;
 
 /// A build, and the scene that it has loaded.
 #[derive(Debug)]
-pub struct Tdw {
-    controller: Controller,
+pub struct TdwSimulator {
+    controller: TdwController,
     package: Option<PathBuf>,
     size: (u32, u32),
     loaded: Option<SceneId>,
     /// The data that the camera was last set to send, if known.
-    sends: Option<Wanted>,
-    ear: Ear,
+    sends: Option<SimulatorShotKind>,
+    ear: ProgressListener,
 }
 
 impl TdwPlatform {
@@ -46,9 +48,19 @@ impl TdwPlatform {
     /// When the port cannot be opened.
     pub fn new(options: TdwOptions) -> Result<Self, TdwError> {
         let TdwOptions { controller, package, pictures } = options;
-        let controller = Controller::bind(controller)?;
+        let controller = TdwController::bind(controller)?;
         let size = (pictures.width_px, pictures.height_px);
-        Ok(Self::over(Tdw { controller, package, size, loaded: None, sends: None, ear: Ear::deaf() }, pictures))
+        Ok(Self::from_simulator(
+            TdwSimulator {
+                controller,
+                package,
+                size,
+                loaded: None,
+                sends: None,
+                ear: ProgressListener::without_listener(),
+            },
+            pictures,
+        ))
     }
 
     /// Where builds connect to: `tcp://`, the host, and the port that was really opened.
@@ -58,23 +70,23 @@ impl TdwPlatform {
     }
 }
 
-impl Tdw {
-    fn connect(&mut self) -> Result<(), TdwError> {
-        let (address, seconds) = (self.controller.address(), self.controller.patience().as_secs());
-        self.ear.hear(&format!(
+impl TdwSimulator {
+    fn connect_build(&mut self) -> Result<(), TdwError> {
+        let (address, seconds) = (self.controller.address(), self.controller.connect_timeout().as_secs());
+        self.ear.report_line(&format!(
             "waiting up to {seconds} s for a ThreeDWorld build to connect to {address}; \
              if it does not run yet, start it with TDW.x86_64 -port {}",
             address.port()
         ));
         let build = self.controller.connect()?.tdw.clone();
-        self.ear.hear(&format!("ThreeDWorld build {} has connected", said::plain(&build, 40)));
+        self.ear.report_line(&format!("ThreeDWorld build {} has connected", said::to_safe_text(&build, 40)));
         Ok(())
     }
 }
 
 /// A hint for a scene without labels. In a floor plan, walls, doors and windows are not objects, so an unfurnished plan
 /// has none.
-fn unlabelled(scene: Option<&SceneId>) -> String {
+fn unfurnished_hint(scene: Option<&SceneId>) -> String {
     let scene = scene.map_or("the scene", SceneId::as_str);
     let plan =
         scene.get(.."floorplan_1a".len()).filter(|plan| plan.starts_with("floorplan_")).unwrap_or("floorplan_1a");
@@ -84,7 +96,7 @@ fn unlabelled(scene: Option<&SceneId>) -> String {
     )
 }
 
-impl Simulator for Tdw {
+impl Simulator for TdwSimulator {
     type Error = TdwError;
     const NAME: &'static str = "tdw";
 
@@ -92,57 +104,60 @@ impl Simulator for Tdw {
         format!("tcp://{}", self.controller.address())
     }
 
-    fn tell(&mut self, ear: Ear) {
+    fn set_listener(&mut self, ear: ProgressListener) {
         self.ear = ear;
     }
 
-    fn scenes(&self) -> Vec<String> {
-        scenes::names(self.package.as_deref())
+    fn scene_names(&self) -> Vec<String> {
+        scenes::scene_names(self.package.as_deref())
     }
 
-    fn refuses(&self, scene: &SceneId) -> Option<&'static str> {
+    fn scene_name_hint(&self, scene: &SceneId) -> Option<&'static str> {
         let hint = "scenes are named like floorplan_1a, floorplan_1a_0 (furnished) or room_8x10";
-        Plan::of(scene).is_none().then_some(hint)
+        TdwScenePlan::for_scene(scene).is_none().then_some(hint)
     }
 
-    fn enter(&mut self, scene: &SceneId) -> Result<(), TdwError> {
+    fn enter_scene(&mut self, scene: &SceneId) -> Result<(), TdwError> {
         if !self.controller.is_connected() {
             self.loaded = None;
-            self.connect()?;
+            self.connect_build()?;
         }
         if self.loaded.as_ref() == Some(scene) {
             return Ok(());
         }
         (self.loaded, self.sends) = (None, None);
-        let plan = Plan::of(scene).ok_or_else(|| TdwError::Scene(format!("there is no scene {scene}")))?;
-        let commands = plan.commands(self.package.as_deref())?;
-        self.ear.hear(&format!("the build loads {scene}; it downloads what it does not have yet, which takes minutes"));
-        session::load(&mut self.controller, commands, self.size)?;
+        let plan =
+            TdwScenePlan::for_scene(scene).ok_or_else(|| TdwError::Scene(format!("there is no scene {scene}")))?;
+        let commands = plan.load_commands(self.package.as_deref())?;
+        self.ear.report_line(&format!(
+            "the build loads {scene}; it downloads what it does not have yet, which takes minutes"
+        ));
+        session::load_scene(&mut self.controller, commands, self.size)?;
         self.loaded = Some(scene.clone());
         Ok(())
     }
 
-    fn survey(&mut self) -> Result<Survey, TdwError> {
-        let survey = session::survey(&mut self.controller)?;
+    fn survey_scene(&mut self) -> Result<SimulatorSurvey, TdwError> {
+        let survey = session::survey_scene(&mut self.controller)?;
         if survey.palette.is_empty() {
-            self.ear.hear(&unlabelled(self.loaded.as_ref()));
+            self.ear.report_line(&unfurnished_hint(self.loaded.as_ref()));
         }
         Ok(survey)
     }
 
-    fn shoot(&mut self, camera: &Camera, wanted: Wanted) -> Result<Shot, TdwError> {
+    fn take_picture(&mut self, camera: &PinholeCamera, wanted: SimulatorShotKind) -> Result<SimulatorShot, TdwError> {
         let is_told = self.sends == Some(wanted);
         self.sends = None;
-        let shot = session::shoot(&mut self.controller, camera, (wanted, is_told))?;
+        let shot = session::take_picture(&mut self.controller, camera, (wanted, is_told))?;
         self.sends = Some(wanted);
         Ok(shot)
     }
 
-    fn way(&mut self, _: &Survey, from: DVec3, to: DVec3) -> Result<Option<Vec<DVec3>>, TdwError> {
-        session::way(&mut self.controller, from, to)
+    fn shortest_way(&mut self, _: &SimulatorSurvey, from: DVec3, to: DVec3) -> Result<Option<Vec<DVec3>>, TdwError> {
+        session::navmesh_way(&mut self.controller, from, to)
     }
 
-    fn hint(error: &TdwError) -> &'static str {
+    fn error_hint(error: &TdwError) -> &'static str {
         match error {
             TdwError::Scene(_) => "choose another scene",
             TdwError::Package(_) => {
@@ -161,12 +176,12 @@ impl Simulator for Tdw {
         error.is_loss()
     }
 
-    fn failure(error: &TdwError) -> Failure {
+    fn failure_kind(error: &TdwError) -> FailureKind {
         match error {
-            error if error.is_loss() => Failure::Lost,
-            TdwError::NoBuild { .. } => Failure::Lost,
-            TdwError::Bind { .. } | TdwError::Scene(_) | TdwError::Package(_) => Failure::Missing,
-            _ => Failure::Broken,
+            error if error.is_loss() => FailureKind::Lost,
+            TdwError::NoBuild { .. } => FailureKind::Lost,
+            TdwError::Bind { .. } | TdwError::Scene(_) | TdwError::Package(_) => FailureKind::Missing,
+            _ => FailureKind::Broken,
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The scenes that a build can load: TDW's floor plans, and procedural rooms.
 
 use super::{
-    commands::{Command, GridPoint, Vector3},
+    commands::{BuildCommand, GridPoint, TdwVector3},
     error::TdwError,
 };
 use serde::Deserialize;
@@ -14,11 +14,11 @@ use std::{
 use wayword_core::SceneId;
 
 /// Floor plans that TDW has, by their structure and look (`tdw/add_ons/floorplan.py`).
-const PLANS: [&str; 12] = ["1a", "1b", "1c", "2a", "2b", "2c", "4a", "4b", "4c", "5a", "5b", "5c"];
+const FLOOR_PLANS: [&str; 12] = ["1a", "1b", "1c", "2a", "2b", "2c", "4a", "4b", "4c", "5a", "5b", "5c"];
 /// Furniture layouts of each floor plan.
-const LAYOUTS: [&str; 3] = ["0", "1", "2"];
+const FURNITURE_LAYOUTS: [&str; 3] = ["0", "1", "2"];
 /// The one procedural scene in the list of scenes; other sizes are available by name.
-const ROOM: &str = "room_8x10";
+const LISTED_ROOM: &str = "room_8x10";
 /// Lengths that the sides of a procedural room may have, metres.
 const SIDES_M: std::ops::RangeInclusive<u32> = 3..=40;
 /// Largest file of the Python package that is read, bytes.
@@ -26,7 +26,7 @@ const MAX_FILE_BYTES: u64 = 32 << 20;
 
 /// A scene, parsed from its name.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) enum Plan {
+pub(super) enum TdwScenePlan {
     /// `floorplan_1a`, or with furniture `floorplan_1a_0`.
     Floor { scene: String, layout: Option<String> },
     /// `room_8x10`: two rooms side by side, without furniture.
@@ -35,26 +35,27 @@ pub(super) enum Plan {
 
 /// The names of the floor plans without furniture.
 #[cfg(feature = "stand-in")]
-pub(super) fn plans() -> Vec<String> {
-    PLANS.map(|plan| format!("floorplan_{plan}")).to_vec()
+pub(super) fn floor_plan_names() -> Vec<String> {
+    FLOOR_PLANS.map(|plan| format!("floorplan_{plan}")).to_vec()
 }
 
 /// The names of all listed scenes. Floor plans are furnished where the lists of furniture are available.
-pub(super) fn names(package: Option<&Path>) -> Vec<String> {
-    let furnished = |plan: &str| LAYOUTS.map(|layout| format!("floorplan_{plan}_{layout}")).to_vec();
+pub(super) fn scene_names(package: Option<&Path>) -> Vec<String> {
+    let furnished = |plan: &str| FURNITURE_LAYOUTS.map(|layout| format!("floorplan_{plan}_{layout}")).to_vec();
     let mut names: Vec<String> = match package {
-        Some(_) => PLANS.iter().flat_map(|plan| furnished(plan)).collect(),
-        None => PLANS.iter().map(|plan| format!("floorplan_{plan}")).collect(),
+        Some(_) => FLOOR_PLANS.iter().flat_map(|plan| furnished(plan)).collect(),
+        None => FLOOR_PLANS.iter().map(|plan| format!("floorplan_{plan}")).collect(),
     };
-    names.push(ROOM.to_owned());
+    names.push(LISTED_ROOM.to_owned());
     names
 }
 
-impl Plan {
-    pub(super) fn of(scene: &SceneId) -> Option<Self> {
+impl TdwScenePlan {
+    pub(super) fn for_scene(scene: &SceneId) -> Option<Self> {
         if let Some(rest) = scene.as_str().strip_prefix("floorplan_") {
             let (plan, layout) = rest.split_once('_').map_or((rest, None), |(plan, layout)| (plan, Some(layout)));
-            let is_known = PLANS.contains(&plan) && layout.is_none_or(|layout| LAYOUTS.contains(&layout));
+            let is_known =
+                FLOOR_PLANS.contains(&plan) && layout.is_none_or(|layout| FURNITURE_LAYOUTS.contains(&layout));
             let scene = format!("floorplan_{plan}");
             return is_known.then(|| Self::Floor { scene, layout: layout.map(str::to_owned) });
         }
@@ -68,17 +69,17 @@ impl Plan {
     ///
     /// # Errors
     /// When the lists of its furniture cannot be read.
-    pub(super) fn commands(&self, package: Option<&Path>) -> Result<Vec<Command>, TdwError> {
+    pub(super) fn load_commands(&self, package: Option<&Path>) -> Result<Vec<BuildCommand>, TdwError> {
         match self {
-            Self::Room { width_m, length_m } => Ok(room(*width_m, *length_m)),
+            Self::Room { width_m, length_m } => Ok(room_commands(*width_m, *length_m)),
             Self::Floor { scene, layout } => {
-                let url = format!("https://tdw-public.s3.amazonaws.com/scenes/{}/2020.3/{scene}", system().0);
-                let mut commands = vec![Command::AddScene { name: scene.clone(), url }];
+                let url = format!("https://tdw-public.s3.amazonaws.com/scenes/{}/2020.3/{scene}", system_names().0);
+                let mut commands = vec![BuildCommand::AddScene { name: scene.clone(), url }];
                 if let Some(layout) = layout {
                     let package = package.ok_or_else(|| {
                         TdwError::Package(format!("the furniture of {scene}_{layout} is not available"))
                     })?;
-                    commands.extend(Furniture::read(package)?.commands(scene, layout)?);
+                    commands.extend(FurniturePackage::from_package(package)?.placement_commands(scene, layout)?);
                 }
                 Ok(commands)
             }
@@ -88,7 +89,7 @@ impl Plan {
 
 /// The operating system's name in the scenes' addresses, and in the records of 3D models. The build is assumed to run on
 /// this machine.
-fn system() -> (&'static str, &'static str) {
+fn system_names() -> (&'static str, &'static str) {
     match std::env::consts::OS {
         "macos" => ("osx", "Darwin"),
         "windows" => ("windows", "Windows"),
@@ -97,67 +98,67 @@ fn system() -> (&'static str, &'static str) {
 }
 
 /// A box of walls. Where it is large enough, a wall across it with a gap of two metres makes two rooms.
-fn room(width: u32, length: u32) -> Vec<Command> {
+fn room_commands(width: u32, length: u32) -> Vec<BuildCommand> {
     let bottom = (0..=width).map(|x| GridPoint { x, y: 0 });
     let top = (0..=width).map(|x| GridPoint { x, y: length });
     let left = (1..length).map(|y| GridPoint { x: 0, y });
     let right = (1..length).map(|y| GridPoint { x: width, y });
     let mut commands = vec![
-        Command::LoadScene { scene_name: "ProcGenScene".to_owned() },
-        Command::CreateExteriorWalls { walls: bottom.chain(top).chain(left).chain(right).collect() },
+        BuildCommand::LoadScene { scene_name: "ProcGenScene".to_owned() },
+        BuildCommand::CreateExteriorWalls { walls: bottom.chain(top).chain(left).chain(right).collect() },
     ];
     if length >= 6 && width >= 4 {
         let gap = width / 2 - 1..=width / 2;
         let walls = (1..width).filter(|x| !gap.contains(x)).map(|x| GridPoint { x, y: length / 2 });
-        commands.push(Command::CreateInteriorWalls { walls: walls.collect() });
+        commands.push(BuildCommand::CreateInteriorWalls { walls: walls.collect() });
     }
-    commands.push(Command::CreateProcGenCeiling);
-    commands.push(Command::BakeNavMesh { voxel_size: 0.166_666_7, carve_type: "all", ignore: Vec::new() });
+    commands.push(BuildCommand::CreateProcGenCeiling);
+    commands.push(BuildCommand::BakeNavMesh { voxel_size: 0.166_666_7, carve_type: "all", ignore: Vec::new() });
     commands
 }
 
 /// The lists of furniture in the Python package `tdw`.
-struct Furniture {
+struct FurniturePackage {
     /// Pieces by structure ("1"), then by layout.
-    layouts: BTreeMap<String, BTreeMap<String, Vec<Placed>>>,
+    layouts: BTreeMap<String, BTreeMap<String, Vec<PlacedFurniture>>>,
     package: PathBuf,
 }
 
 #[derive(Debug, Clone, Deserialize)]
-struct Placed {
+struct PlacedFurniture {
     name: String,
     library: String,
-    position: Axes,
-    rotation: Axes,
-    scale_factor: Axes,
+    position: LayoutVector,
+    rotation: LayoutVector,
+    scale_factor: LayoutVector,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
-struct Axes {
+struct LayoutVector {
     x: f64,
     y: f64,
     z: f64,
 }
 
 #[derive(Deserialize)]
-struct Library {
-    records: BTreeMap<String, Record>,
+struct TdwModelLibrary {
+    records: BTreeMap<String, TdwModelRecord>,
 }
 
 #[derive(Deserialize)]
-struct Record {
+struct TdwModelRecord {
     urls: BTreeMap<String, String>,
     scale_factor: f64,
     wcategory: String,
 }
 
-impl From<Axes> for Vector3 {
-    fn from(Axes { x, y, z }: Axes) -> Self {
+impl From<LayoutVector> for TdwVector3 {
+    fn from(LayoutVector { x, y, z }: LayoutVector) -> Self {
         Self { x, y, z }
     }
 }
 
-fn read<T: for<'de> Deserialize<'de>>(file: &Path) -> Result<T, TdwError> {
+fn read_json<T: for<'de> Deserialize<'de>>(file: &Path) -> Result<T, TdwError> {
     let refused = |reason: String| TdwError::Package(format!("{}: {reason}", file.display()));
     let mut text = String::new();
     let opened = File::open(file).and_then(|file| file.take(MAX_FILE_BYTES).read_to_string(&mut text));
@@ -167,32 +168,32 @@ fn read<T: for<'de> Deserialize<'de>>(file: &Path) -> Result<T, TdwError> {
     serde_json::from_str(&text).map_err(|error| refused(error.to_string()))
 }
 
-impl Furniture {
-    fn read(package: &Path) -> Result<Self, TdwError> {
-        let layouts = read(&package.join("add_ons").join("floorplan_layouts.json"))?;
+impl FurniturePackage {
+    fn from_package(package: &Path) -> Result<Self, TdwError> {
+        let layouts = read_json(&package.join("add_ons").join("floorplan_layouts.json"))?;
         Ok(Self { layouts, package: package.to_owned() })
     }
 
     /// Commands that place each piece where the layout has it, and fix it there so that pictures of it are always the
     /// same. Pieces are numbered from 1.
-    fn commands(&self, scene: &str, layout: &str) -> Result<Vec<Command>, TdwError> {
+    fn placement_commands(&self, scene: &str, layout: &str) -> Result<Vec<BuildCommand>, TdwError> {
         let structure = scene.trim_start_matches("floorplan_").get(..1).unwrap_or_default();
         let pieces = self.layouts.get(structure).and_then(|layouts| layouts.get(layout));
         let pieces =
             pieces.ok_or_else(|| TdwError::Scene(format!("the package tdw has no layout {layout} of {scene}")))?;
-        let mut libraries: BTreeMap<&str, Library> = BTreeMap::new();
+        let mut libraries: BTreeMap<&str, TdwModelLibrary> = BTreeMap::new();
         let mut commands = Vec::new();
         for (piece, id) in pieces.iter().zip(1..) {
             if !libraries.contains_key(piece.library.as_str()) {
-                libraries.insert(&piece.library, self.library(&piece.library)?);
+                libraries.insert(&piece.library, self.read_library(&piece.library)?);
             }
             let record = libraries.get(piece.library.as_str()).and_then(|library| library.records.get(&piece.name));
-            let url = record.and_then(|record| record.urls.get(system().1));
+            let url = record.and_then(|record| record.urls.get(system_names().1));
             let (Some(record), Some(url)) = (record, url) else {
                 let at = format!("{} of {}", piece.name, piece.library);
                 return Err(TdwError::Scene(format!("the package tdw has no 3D model {at} for this system")));
             };
-            commands.push(Command::AddObject {
+            commands.push(BuildCommand::AddObject {
                 name: piece.name.clone(),
                 url: url.clone(),
                 scale_factor: record.scale_factor,
@@ -202,20 +203,20 @@ impl Furniture {
                 id,
                 affordance_points: Vec::new(),
             });
-            if piece.scale_factor != (Axes { x: 1.0, y: 1.0, z: 1.0 }) {
-                commands.push(Command::ScaleObject { scale_factor: piece.scale_factor.into(), id });
+            if piece.scale_factor != (LayoutVector { x: 1.0, y: 1.0, z: 1.0 }) {
+                commands.push(BuildCommand::ScaleObject { scale_factor: piece.scale_factor.into(), id });
             }
-            commands.push(Command::SetKinematicState { id, is_kinematic: true, use_gravity: false });
+            commands.push(BuildCommand::SetKinematicState { id, is_kinematic: true, use_gravity: false });
         }
         Ok(commands)
     }
 
     /// A library's records. The name comes from a file, so a name that leads out of the folder is refused.
-    fn library(&self, name: &str) -> Result<Library, TdwError> {
+    fn read_library(&self, name: &str) -> Result<TdwModelLibrary, TdwError> {
         if name.contains(['/', '\\']) || name.starts_with('.') {
             return Err(TdwError::Package(format!("the package tdw names a library {name:?}: expected a file name")));
         }
-        read(&self.package.join("metadata_libraries").join(name))
+        read_json(&self.package.join("metadata_libraries").join(name))
     }
 }
 
@@ -223,13 +224,13 @@ impl Furniture {
 mod tests {
     use super::*;
 
-    fn plan(name: &str) -> Option<Plan> {
-        Plan::of(&SceneId::new(name).unwrap())
+    fn plan(name: &str) -> Option<TdwScenePlan> {
+        TdwScenePlan::for_scene(&SceneId::new(name).unwrap())
     }
 
     #[test]
     fn plan_exists_for_every_listed_scene_and_no_other_name() {
-        for name in names(None).into_iter().chain(names(Some(Path::new("tdw")))) {
+        for name in scene_names(None).into_iter().chain(scene_names(Some(Path::new("tdw")))) {
             assert!(plan(&name).is_some(), "{name}");
         }
         for name in
@@ -241,10 +242,10 @@ mod tests {
 
     #[test]
     fn a_room_is_closed_and_its_inner_wall_is_not() {
-        let commands = plan("room_8x10").unwrap().commands(None).unwrap();
-        let Command::CreateExteriorWalls { walls } = &commands[1] else { panic!("{commands:?}") };
+        let commands = plan("room_8x10").unwrap().load_commands(None).unwrap();
+        let BuildCommand::CreateExteriorWalls { walls } = &commands[1] else { panic!("{commands:?}") };
         assert_eq!(walls.len(), 2 * (8 + 10), "the perimeter, each point once");
-        let Command::CreateInteriorWalls { walls } = &commands[2] else { panic!("{commands:?}") };
+        let BuildCommand::CreateInteriorWalls { walls } = &commands[2] else { panic!("{commands:?}") };
         assert!(walls.iter().all(|point| point.y == 5) && walls.len() == 5);
     }
 
@@ -268,14 +269,14 @@ mod tests {
                 r#"{{"records":{{"sofa_a":{{"urls":{urls},"physics_quality": NaN,"scale_factor":1.0,"wcategory":"sofa"}}}}}}"#
             ),
         );
-        let commands = plan("floorplan_1a_0").unwrap().commands(Some(package.path())).unwrap();
-        let Command::AddObject { category, position, id, .. } = &commands[1] else { panic!("{commands:?}") };
+        let commands = plan("floorplan_1a_0").unwrap().load_commands(Some(package.path())).unwrap();
+        let BuildCommand::AddObject { category, position, id, .. } = &commands[1] else { panic!("{commands:?}") };
         assert_eq!((category.as_str(), position.z, *id), ("sofa", -2.0, 1));
-        let unfurnished = plan("floorplan_1a_0").unwrap().commands(None).unwrap_err();
+        let unfurnished = plan("floorplan_1a_0").unwrap().load_commands(None).unwrap_err();
         assert!(matches!(&unfurnished, TdwError::Package(_)), "{unfurnished}");
-        let elsewhere = plan("floorplan_1a_0").unwrap().commands(Some(Path::new("nowhere"))).unwrap_err();
+        let elsewhere = plan("floorplan_1a_0").unwrap().load_commands(Some(Path::new("nowhere"))).unwrap_err();
         assert!(matches!(&elsewhere, TdwError::Package(_)), "{elsewhere}");
-        let missing = plan("floorplan_1a_1").unwrap().commands(Some(package.path())).unwrap_err().to_string();
+        let missing = plan("floorplan_1a_1").unwrap().load_commands(Some(package.path())).unwrap_err().to_string();
         assert!(missing.contains("no layout 1"), "{missing}");
     }
 }

@@ -1,25 +1,25 @@
 //! The sequences of commands for one task each: load a scene, survey it, find a way, take a picture.
 
 use super::{
-    commands::{Command, Frequency, Quaternion, Vector3},
-    controller::{Controller, Response},
+    commands::{BuildCommand, SendFrequency, TdwQuaternion, TdwVector3},
+    controller::{BuildResponse, TdwController},
     error::TdwError,
-    output::{Bounds, NavMeshPath, Occupancy, OnNavMesh, Output, Segment},
+    output::{BuildOutput, NavMeshPath, OnNavMesh, SegmentedObject, TdwObjectBounds, TdwOccupancyMap},
     pictures::{self, PassKind},
 };
 use crate::{
-    live::{Shot, Survey, Wanted},
-    raster::Raster,
-    sight::{Palette, Thing, colour_id},
+    live::{SimulatorShot, SimulatorShotKind, SimulatorSurvey},
+    raster::FloorRaster,
+    sight::{ObjectPalette, SimulatorObject, colour_id},
     unity::{unity_from_wayword, unity_rotation_from_heading, wayword_from_unity},
     walk::EYE_M,
 };
 use std::collections::BTreeMap;
 use wayword_core::{DVec3, Heading};
-use wayword_render::Camera;
+use wayword_render::PinholeCamera;
 
 /// The avatar that looks.
-const AVATAR: &str = "a";
+const AVATAR_ID: &str = "a";
 /// Side of the occupancy map's cells, metres: two fit into a narrow door.
 const CELL_M: f64 = 0.25;
 /// Height from which the map looks down for obstacles, metres: below ceilings.
@@ -27,32 +27,32 @@ const RAYCAST_M: f64 = 2.5;
 /// How far a place may be from the navmesh, metres.
 const SNAP_M: f64 = 0.5;
 /// Most commands in one list.
-const BATCH: usize = 256;
+const MAX_BATCH_COMMANDS: usize = 256;
 
 /// Loads a scene and puts the avatar into it.
-pub(super) fn load(
-    controller: &mut Controller,
-    mut commands: Vec<Command>,
+pub(super) fn load_scene(
+    controller: &mut TdwController,
+    mut commands: Vec<BuildCommand>,
     (width, height): (u32, u32),
 ) -> Result<(), TdwError> {
     commands.extend([
-        Command::SetScreenSize { width, height },
-        Command::CreateAvatar { kind: "A_Img_Caps_Kinematic", id: AVATAR.to_owned() },
-        Command::SetImgPassEncoding { value: true },
+        BuildCommand::SetScreenSize { width, height },
+        BuildCommand::CreateAvatar { kind: "A_Img_Caps_Kinematic", id: AVATAR_ID.to_owned() },
+        BuildCommand::SetImgPassEncoding { value: true },
     ]);
     controller.communicate(&commands).map(drop)
 }
 
 /// Asks where the objects are, and where one can walk.
-pub(super) fn survey(controller: &mut Controller) -> Result<Survey, TdwError> {
-    let (ids, frequency) = (Vec::new(), Frequency::Once);
+pub(super) fn survey_scene(controller: &mut TdwController) -> Result<SimulatorSurvey, TdwError> {
+    let (ids, frequency) = (Vec::new(), SendFrequency::Once);
     let answer = controller.communicate(&[
-        Command::SendSegmentationColors { ids: ids.clone(), frequency },
-        Command::SendBounds { ids, frequency },
-        Command::SendOccupancyMap { cell_size: CELL_M, raycast_y: RAYCAST_M },
+        BuildCommand::SendSegmentationColors { ids: ids.clone(), frequency },
+        BuildCommand::SendBounds { ids, frequency },
+        BuildCommand::SendOccupancyMap { cell_size: CELL_M, raycast_y: RAYCAST_M },
     ])?;
-    let raster = answer.first("occu", "send_occupancy_map", |output| match output {
-        Output::Occupancy(map) => Some(raster(&map)),
+    let raster = answer.first_output("occu", "send_occupancy_map", |output| match output {
+        BuildOutput::Occupancy(map) => Some(raster_from_map(&map)),
         _ => None,
     })?;
     let unusable = || {
@@ -60,53 +60,60 @@ pub(super) fn survey(controller: &mut Controller) -> Result<Survey, TdwError> {
     };
     let mut raster = raster.ok_or_else(unusable)?;
     raster.keep_largest_part();
-    let eyes = eyes(controller, &raster.places())?;
-    let graph = raster.graph(&eyes).map_err(|error| TdwError::Scene(error.to_string()))?;
+    let eyes = eyes_on_navmesh(controller, &raster.viewpoint_places())?;
+    let graph = raster.viewpoint_graph(&eyes).map_err(|error| TdwError::Scene(error.to_string()))?;
     // The build's regions have boxes, but no names.
-    Ok(Survey { graph, raster, palette: palette(&answer)?, rooms: Vec::new(), thresholds: Vec::new() })
+    Ok(SimulatorSurvey {
+        graph,
+        raster,
+        palette: palette_from_response(&answer)?,
+        rooms: Vec::new(),
+        thresholds: Vec::new(),
+    })
 }
 
-fn raster(map: &Occupancy) -> Option<Raster> {
+fn raster_from_map(map: &TdwOccupancyMap) -> Option<FloorRaster> {
     let floor = |[x, z]: [f32; 2]| [f64::from(x), f64::from(z)];
     let cells: Vec<_> = map.positions.iter().zip(&map.cells).map(|(at, cell)| (floor(*at), *cell == 0)).collect();
-    Raster::of_cells(&cells, CELL_M)
+    FloorRaster::of_cells(&cells, CELL_M)
 }
 
 /// Objects by their colours. An object without a box is left out, because its place is not known.
-fn palette(answer: &Response) -> Result<Palette, TdwError> {
-    let bounds = answer.first("boun", "send_bounds", |output| match output {
-        Output::Bounds(bounds) => Some(bounds),
+fn palette_from_response(answer: &BuildResponse) -> Result<ObjectPalette, TdwError> {
+    let bounds = answer.first_output("boun", "send_bounds", |output| match output {
+        BuildOutput::Bounds(bounds) => Some(bounds),
         _ => None,
     })?;
-    let segments = answer.first("segm", "send_segmentation_colors", |output| match output {
-        Output::Segmentation(segments) => Some(segments),
+    let segments = answer.first_output("segm", "send_segmentation_colors", |output| match output {
+        BuildOutput::Segmentation(segments) => Some(segments),
         _ => None,
     })?;
-    let by_id: BTreeMap<i32, Bounds> = bounds.into_iter().map(|each| (each.id, each)).collect();
-    let thing = |segment: &Segment<'_>| {
+    let by_id: BTreeMap<i32, TdwObjectBounds> = bounds.into_iter().map(|each| (each.id, each)).collect();
+    let thing = |segment: &SegmentedObject<'_>| {
         let points = by_id.get(&segment.id)?.points.map(|point| wayword_from_unity(point.map(f64::from)));
         let [front, _, right, _, top, _, centre] = points;
         let name = if segment.category.is_empty() { segment.name } else { segment.category };
-        let thing = Thing::new(segment.id.into(), name, centre, [front - centre, right - centre, top - centre])?;
+        let thing =
+            SimulatorObject::new(segment.id.into(), name, centre, [front - centre, right - centre, top - centre])?;
         Some((colour_id(segment.colour), thing))
     };
     Ok(segments.iter().filter_map(thing).collect())
 }
 
 /// Eye positions above those of the places that are on the navmesh.
-fn eyes(controller: &mut Controller, places: &[[f64; 2]]) -> Result<Vec<DVec3>, TdwError> {
+fn eyes_on_navmesh(controller: &mut TdwController, places: &[[f64; 2]]) -> Result<Vec<DVec3>, TdwError> {
     let mut eyes = Vec::new();
-    for batch in places.chunks(BATCH) {
-        let ask = |(id, [x, y]): (usize, &[f64; 2])| Command::SendIsOnNavMesh {
-            position: vector(DVec3::new(*x, *y, 0.0)),
+    for batch in places.chunks(MAX_BATCH_COMMANDS) {
+        let ask = |(id, [x, y]): (usize, &[f64; 2])| BuildCommand::SendIsOnNavMesh {
+            position: unity_vector(DVec3::new(*x, *y, 0.0)),
             max_distance: SNAP_M,
             id: id as i32,
         };
-        let commands: Vec<Command> = batch.iter().enumerate().map(ask).collect();
+        let commands: Vec<BuildCommand> = batch.iter().enumerate().map(ask).collect();
         let answer = controller.communicate(&commands)?;
         let mut found: Vec<Option<f64>> = vec![None; batch.len()];
-        for output in answer.outputs() {
-            if let Output::OnNavMesh(OnNavMesh { id, is_on: true, position }) = output?
+        for output in answer.read_outputs() {
+            if let BuildOutput::OnNavMesh(OnNavMesh { id, is_on: true, position }) = output?
                 && let Some(height) = usize::try_from(id).ok().and_then(|id| found.get_mut(id))
             {
                 *height = Some(f64::from(position[1])).filter(|height| height.is_finite());
@@ -119,11 +126,15 @@ fn eyes(controller: &mut Controller, places: &[[f64; 2]]) -> Result<Vec<DVec3>, 
 }
 
 /// The corners of the way between two eye positions, all at eye height; `None` where the navmesh has no way.
-pub(super) fn way(controller: &mut Controller, from: DVec3, to: DVec3) -> Result<Option<Vec<DVec3>>, TdwError> {
-    let [origin, destination] = [from, to].map(|eye| vector(eye - DVec3::Z * EYE_M));
-    let answer = controller.communicate(&[Command::SendNavMeshPath { origin, destination, id: 0 }])?;
-    let path = answer.first("path", "send_nav_mesh_path", |output| match output {
-        Output::Path(path) => Some(path),
+pub(super) fn navmesh_way(
+    controller: &mut TdwController,
+    from: DVec3,
+    to: DVec3,
+) -> Result<Option<Vec<DVec3>>, TdwError> {
+    let [origin, destination] = [from, to].map(|eye| unity_vector(eye - DVec3::Z * EYE_M));
+    let answer = controller.communicate(&[BuildCommand::SendNavMeshPath { origin, destination, id: 0 }])?;
+    let path = answer.first_output("path", "send_nav_mesh_path", |output| match output {
+        BuildOutput::Path(path) => Some(path),
         _ => None,
     })?;
     let NavMeshPath { corners, state: 1, .. } = path else { return Ok(None) };
@@ -134,31 +145,31 @@ pub(super) fn way(controller: &mut Controller, from: DVec3, to: DVec3) -> Result
 
 /// Takes a picture through a camera of the size that the scene was loaded with. If `is_told` is true, the camera is
 /// already set to send exactly the `wanted` passes.
-pub(super) fn shoot(
-    controller: &mut Controller,
-    camera: &Camera,
-    (wanted, is_told): (Wanted, bool),
-) -> Result<Shot, TdwError> {
+pub(super) fn take_picture(
+    controller: &mut TdwController,
+    camera: &PinholeCamera,
+    (wanted, is_told): (SimulatorShotKind, bool),
+) -> Result<SimulatorShot, TdwError> {
     let size = (camera.width, camera.height);
-    let avatar_id = || AVATAR.to_owned();
+    let avatar_id = || AVATAR_ID.to_owned();
     let heading = Heading::new(camera.heading_rad).unwrap_or(Heading::NORTH);
     let [x, y, z, w] = unity_rotation_from_heading(heading);
     let field_of_view = camera.vertical_fov_rad.to_degrees();
     let passes: &[PassKind] = match wanted {
-        Wanted::Picture => &[PassKind::Img, PassKind::Id],
-        Wanted::Ids => &[PassKind::Id],
+        SimulatorShotKind::Picture => &[PassKind::Img, PassKind::Id],
+        SimulatorShotKind::Ids => &[PassKind::Id],
     };
     let pass_masks = passes.iter().map(|pass| pass.name()).collect();
-    let told = (!is_told).then(|| Command::SetPassMasks { pass_masks, avatar_id: avatar_id() });
+    let told = (!is_told).then(|| BuildCommand::SetPassMasks { pass_masks, avatar_id: avatar_id() });
     let looking = [
-        Command::TeleportAvatarTo { position: vector(camera.position), avatar_id: avatar_id() },
-        Command::RotateAvatarTo { rotation: Quaternion { w, x, y, z }, avatar_id: avatar_id() },
-        Command::SetFieldOfView { field_of_view, avatar_id: avatar_id() },
-        Command::SendImages { ids: vec![avatar_id()], frequency: Frequency::Once },
+        BuildCommand::TeleportAvatarTo { position: unity_vector(camera.position), avatar_id: avatar_id() },
+        BuildCommand::RotateAvatarTo { rotation: TdwQuaternion { w, x, y, z }, avatar_id: avatar_id() },
+        BuildCommand::SetFieldOfView { field_of_view, avatar_id: avatar_id() },
+        BuildCommand::SendImages { ids: vec![avatar_id()], frequency: SendFrequency::Once },
     ];
     let answer = controller.communicate(&told.into_iter().chain(looking).collect::<Vec<_>>())?;
-    let images = answer.first("imag", "send_images", |output| match output {
-        Output::Images(images) if images.avatar == AVATAR => Some(images),
+    let images = answer.first_output("imag", "send_images", |output| match output {
+        BuildOutput::Images(images) if images.avatar == AVATAR_ID => Some(images),
         _ => None,
     })?;
     if (images.width, images.height) != size {
@@ -166,16 +177,16 @@ pub(super) fn shoot(
         return Err(TdwError::Picture { pass: PassKind::Img.name(), reason });
     }
     let pixels = |kind: PassKind| {
-        let pass = images.passes.iter().find(|pass| pass.mask == kind.mask());
+        let pass = images.passes.iter().find(|pass| pass.mask == kind.pass_mask());
         let missing = || TdwError::Picture { pass: kind.name(), reason: "it was not sent".to_owned() };
-        pictures::rgb(pass.ok_or_else(missing)?, kind, size)
+        pictures::decode_pass(pass.ok_or_else(missing)?, kind, size)
     };
     let ids = pixels(PassKind::Id)?.as_chunks().0.iter().map(|rgb| colour_id(*rgb)).collect();
-    let rgb = (wanted == Wanted::Picture).then(|| pixels(PassKind::Img)).transpose()?;
-    Ok(Shot { rgb, ids })
+    let rgb = (wanted == SimulatorShotKind::Picture).then(|| pixels(PassKind::Img)).transpose()?;
+    Ok(SimulatorShot { rgb, ids })
 }
 
-fn vector(place: DVec3) -> Vector3 {
+fn unity_vector(place: DVec3) -> TdwVector3 {
     let [x, y, z] = unity_from_wayword(place);
-    Vector3 { x, y, z }
+    TdwVector3 { x, y, z }
 }

@@ -1,21 +1,21 @@
 //! Tests the reader with the stand-in's frames, and with frames that no build should send.
 
-use super::{Output, output, stand_in::frames_of_every_kind};
+use super::{BuildOutput, output, stand_in::frames_of_every_kind};
 use proptest::prelude::*;
 
 #[test]
 fn every_kind_of_frame_is_read_whole() {
     for (id, frame) in frames_of_every_kind() {
-        let read = Output::read(frame).unwrap_or_else(|error| panic!("{error}"));
-        assert!(!matches!(read, Output::Other(_)), "{id}");
+        let read = BuildOutput::read(frame).unwrap_or_else(|error| panic!("{error}"));
+        assert!(!matches!(read, BuildOutput::Other(_)), "{id}");
     }
 }
 
 #[test]
 fn both_layouts_of_the_version_are_read() {
     let versions = frames_of_every_kind().iter().filter(|(id, _)| id == "vers").map(|(_, frame)| {
-        match Output::read(frame).unwrap() {
-            Output::Version(version) => (version.tdw.to_owned(), version.unity.to_owned(), version.standalone),
+        match BuildOutput::read(frame).unwrap() {
+            BuildOutput::Version(version) => (version.tdw.to_owned(), version.unity.to_owned(), version.standalone),
             other => panic!("{other:?}"),
         }
     });
@@ -39,29 +39,29 @@ fn a_buffer_laid_out_by_another_writer_is_read() {
     frame.extend(12_u32.to_le_bytes());
     frame.extend([1.5_f32, 0.0, -2.0].iter().flat_map(|number| number.to_le_bytes()));
     let path = super::NavMeshPath { id: 9, state: 2, corners: vec![[1.5, 0.0, -2.0]] };
-    assert_eq!(Output::read(&frame), Ok(Output::Path(path)));
+    assert_eq!(BuildOutput::read(&frame), Ok(BuildOutput::Path(path)));
 }
 
 #[test]
 fn output_errors_name_position_and_expected_content() {
     let frame = &frames_of_every_kind().iter().find(|(id, _)| id == "path").unwrap().1;
-    let error = Output::read(&frame[..frame.len() - 8]).unwrap_err().to_string();
+    let error = BuildOutput::read(&frame[..frame.len() - 8]).unwrap_err().to_string();
     assert!(error.contains("`path`") && error.contains("byte ") && error.contains("within the frame"), "{error}");
-    assert_eq!(Output::read(b"abc").unwrap_err().source.at, 4);
+    assert_eq!(BuildOutput::read(b"abc").unwrap_err().source.at, 4);
 }
 
 /// Bytes that reading a frame allocates, at most.
-fn held(output: &Output<'_>) -> usize {
+fn held(output: &BuildOutput<'_>) -> usize {
     match output {
-        Output::Images(images) => size_of_val(&images.passes[..]),
-        Output::Segmentation(segments) => size_of_val(&segments[..]),
-        Output::Path(path) => size_of_val(&path.corners[..]),
-        Output::Regions(regions) => size_of_val(&regions[..]),
-        Output::Occupancy(map) => map.cells.len() + size_of_val(&map.positions[..]),
-        Output::Transforms(transforms) => size_of_val(&transforms[..]),
-        Output::Bounds(bounds) => size_of_val(&bounds[..]),
-        Output::Categories(categories) => size_of_val(&categories[..]),
-        Output::Sensors(_, sensors) => size_of_val(&sensors[..]),
+        BuildOutput::Images(images) => size_of_val(&images.passes[..]),
+        BuildOutput::Segmentation(segments) => size_of_val(&segments[..]),
+        BuildOutput::Path(path) => size_of_val(&path.corners[..]),
+        BuildOutput::Regions(regions) => size_of_val(&regions[..]),
+        BuildOutput::Occupancy(map) => map.cells.len() + size_of_val(&map.positions[..]),
+        BuildOutput::Transforms(transforms) => size_of_val(&transforms[..]),
+        BuildOutput::Bounds(bounds) => size_of_val(&bounds[..]),
+        BuildOutput::Categories(categories) => size_of_val(&categories[..]),
+        BuildOutput::Sensors(_, sensors) => size_of_val(&sensors[..]),
         _ => 0,
     }
 }
@@ -70,7 +70,7 @@ fn held(output: &Output<'_>) -> usize {
 const MOST_FOLD: usize = 16;
 
 fn reads_within_bounds(frame: &[u8]) {
-    if let Ok(output) = Output::read(frame) {
+    if let Ok(output) = BuildOutput::read(frame) {
         assert!(held(&output) <= MOST_FOLD * frame.len() + 64, "{} bytes of {}", held(&output), frame.len());
     }
 }

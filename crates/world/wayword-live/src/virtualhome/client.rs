@@ -16,7 +16,7 @@ const QUOTED_CHARS: usize = 200;
 
 /// A simulator at an address.
 #[derive(Debug)]
-pub struct Client {
+pub struct VirtualHomeClient {
     agent: Agent,
     url: String,
     asked: u64,
@@ -25,7 +25,7 @@ pub struct Client {
 /// Where a camera of the scene is: Unity's position, Euler angles in degrees, vertical field of view in degrees.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[allow(missing_docs, reason = "the type's documentation names each")]
-pub struct Camera {
+pub struct VirtualHomeCamera {
     pub position: [f64; 3],
     pub rotation_deg: [f64; 3],
     pub field_of_view_deg: f64,
@@ -33,7 +33,7 @@ pub struct Camera {
 
 /// The kind of picture that a camera takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Mode {
+pub enum CameraMode {
     /// Colours as an eye sees them.
     Normal,
     /// Each object in a different colour.
@@ -41,7 +41,7 @@ pub enum Mode {
 }
 
 #[derive(Debug, Deserialize)]
-struct Answer {
+struct VirtualHomeAnswer {
     success: bool,
     #[serde(default)]
     message: Option<String>,
@@ -51,15 +51,15 @@ struct Answer {
     message_list: Option<Vec<String>>,
 }
 
-fn vector([x, y, z]: [f64; 3]) -> Value {
+fn json_vector([x, y, z]: [f64; 3]) -> Value {
     json!({ "x": x, "y": y, "z": z })
 }
 
-fn quoted(text: &str) -> String {
+fn quote_message(text: &str) -> String {
     text.chars().take(QUOTED_CHARS).collect()
 }
 
-impl Client {
+impl VirtualHomeClient {
     /// A client of the simulator at an address like `http://127.0.0.1:8080`; each answer takes at most `timeout`.
     #[must_use]
     pub fn new(url: impl Into<String>, timeout: Duration) -> Self {
@@ -79,7 +79,12 @@ impl Client {
         &self.url
     }
 
-    fn post(&mut self, action: &'static str, ints: &[i64], texts: &[String]) -> Result<Answer, HomeError> {
+    fn post_action(
+        &mut self,
+        action: &'static str,
+        ints: &[i64],
+        texts: &[String],
+    ) -> Result<VirtualHomeAnswer, HomeError> {
         self.asked += 1;
         let mut request = json!({ "id": self.asked.to_string(), "action": action });
         if !ints.is_empty() {
@@ -93,14 +98,14 @@ impl Client {
         let (head, mut body) = sent.map_err(unreachable)?.into_parts();
         let body = body.with_config().limit(LARGEST_ANSWER).read_to_vec().map_err(unreachable)?;
         if head.status != 200 {
-            let message = quoted(&String::from_utf8_lossy(&body));
+            let message = quote_message(&String::from_utf8_lossy(&body));
             return Err(HomeError::Status { action, status: head.status.as_u16(), message });
         }
-        let answer: Answer = parsed(action, "JSON with `success`", &body)?;
+        let answer: VirtualHomeAnswer = parse_answer(action, "JSON with `success`", &body)?;
         if answer.success {
             return Ok(answer);
         }
-        Err(HomeError::Failed { action, message: quoted(&answer.message.unwrap_or_default()) })
+        Err(HomeError::Failed { action, message: quote_message(&answer.message.unwrap_or_default()) })
     }
 
     /// Loads one of its homes, and removes the characters and cameras that were there before.
@@ -109,11 +114,11 @@ impl Client {
     /// When the simulator is gone or does not have this home.
     pub fn reset(&mut self, home: u32) -> Result<(), HomeError> {
         // Like the genuine client, this goes on if "clear" fails because no home is loaded.
-        match self.post("clear", &[home.into()], &[]) {
+        match self.post_action("clear", &[home.into()], &[]) {
             Ok(_) | Err(HomeError::Failed { .. }) => {}
             Err(error) => return Err(error),
         }
-        self.post("environment", &[home.into()], &[]).map(drop)
+        self.post_action("environment", &[home.into()], &[]).map(drop)
     }
 
     /// The objects, rooms and walls of the home.
@@ -122,8 +127,8 @@ impl Client {
     /// When the simulator is gone, or does not send a graph.
     pub fn environment_graph(&mut self) -> Result<EnvironmentGraph, HomeError> {
         let action = "environment_graph";
-        let answer = self.post(action, &[], &[])?;
-        parsed(action, "a graph of nodes with boxes", answer.message.unwrap_or_default().as_bytes())
+        let answer = self.post_action(action, &[], &[])?;
+        parse_answer(action, "a graph of nodes with boxes", answer.message.unwrap_or_default().as_bytes())
     }
 
     /// How many cameras there are.
@@ -134,42 +139,47 @@ impl Client {
         let action = "camera_count";
         let missing =
             || HomeError::Malformed { action, expected: "JSON with `value`", reason: "it has none".to_owned() };
-        self.post(action, &[], &[])?.value.ok_or_else(missing)
+        self.post_action(action, &[], &[])?.value.ok_or_else(missing)
     }
 
-    /// Adds a camera to the scene; it is the last of [`Client::camera_count`].
+    /// Adds a camera to the scene; it is the last of [`VirtualHomeClient::camera_count`].
     ///
     /// # Errors
     /// When the simulator is gone or refuses.
-    pub fn add_camera(&mut self, camera: &Camera) -> Result<(), HomeError> {
-        self.post("add_camera", &[], &[camera.to_json()]).map(drop)
+    pub fn add_camera(&mut self, camera: &VirtualHomeCamera) -> Result<(), HomeError> {
+        self.post_action("add_camera", &[], &[camera.to_json()]).map(drop)
     }
 
     /// Moves a camera of the scene.
     ///
     /// # Errors
     /// When the simulator is gone or does not have this camera.
-    pub fn update_camera(&mut self, index: i64, camera: &Camera) -> Result<(), HomeError> {
-        self.post("update_camera", &[index], &[camera.to_json()]).map(drop)
+    pub fn update_camera(&mut self, index: i64, camera: &VirtualHomeCamera) -> Result<(), HomeError> {
+        self.post_action("update_camera", &[index], &[camera.to_json()]).map(drop)
     }
 
     /// A camera's picture: RGB, rows from the top.
     ///
     /// # Errors
     /// When the simulator is gone, or sends no picture of this size.
-    pub fn camera_image(&mut self, index: i64, mode: Mode, (width, height): (u32, u32)) -> Result<Vec<u8>, HomeError> {
+    pub fn camera_image(
+        &mut self,
+        index: i64,
+        mode: CameraMode,
+        (width, height): (u32, u32),
+    ) -> Result<Vec<u8>, HomeError> {
         let action = "camera_image";
         let mode = match mode {
-            Mode::Normal => "normal",
-            Mode::Instances => "seg_inst",
+            CameraMode::Normal => "normal",
+            CameraMode::Instances => "seg_inst",
         };
         let wanted = json!({ "mode": mode, "image_width": width, "image_height": height });
-        let answer = self.post(action, &[index], &[wanted.to_string()])?;
+        let answer = self.post_action(action, &[index], &[wanted.to_string()])?;
         let malformed = |reason: String| HomeError::Malformed { action, expected: "a PNG in base64", reason };
         let pictures = answer.message_list.unwrap_or_default();
         let first = pictures.first().ok_or_else(|| malformed("it has no picture".to_owned()))?;
         let file = BASE64_STANDARD.decode(first).map_err(|error| malformed(error.to_string()))?;
-        decode::rgb(&file, ImageFormat::Png, (width, height)).map_err(malformed)
+        decode::decode_rgb(&file, ImageFormat::Png, (width, height)).map_err(malformed)
     }
 
     /// The colour of each object in pictures of instances, by the object's id.
@@ -178,9 +188,9 @@ impl Client {
     /// When the simulator is gone, or does not send colours.
     pub fn instance_colors(&mut self) -> Result<BTreeMap<i64, [u8; 3]>, HomeError> {
         let action = "instance_colors";
-        let answer = self.post(action, &[], &[])?;
+        let answer = self.post_action(action, &[], &[])?;
         let message = answer.message.unwrap_or_default();
-        let colours: BTreeMap<i64, [f64; 3]> = parsed(action, "three numbers for each id", message.as_bytes())?;
+        let colours: BTreeMap<i64, [f64; 3]> = parse_answer(action, "three numbers for each id", message.as_bytes())?;
         // Channels of Unity's colours lie between 0 and 1. A channel above 1 shows that these are bytes.
         let scale = if colours.values().flatten().any(|channel| *channel > 1.0) { 1.0 } else { 255.0 };
         let byte = |channel: f64| (channel * scale).round().clamp(0.0, 255.0) as u8;
@@ -188,18 +198,22 @@ impl Client {
     }
 }
 
-impl Camera {
+impl VirtualHomeCamera {
     fn to_json(self) -> String {
         let Self { position, rotation_deg, field_of_view_deg } = self;
         let fields = json!({
-            "position": vector(position),
-            "rotation": vector(rotation_deg),
+            "position": json_vector(position),
+            "rotation": json_vector(rotation_deg),
             "field_view": field_of_view_deg,
         });
         fields.to_string()
     }
 }
 
-fn parsed<T: DeserializeOwned>(action: &'static str, expected: &'static str, json: &[u8]) -> Result<T, HomeError> {
+fn parse_answer<T: DeserializeOwned>(
+    action: &'static str,
+    expected: &'static str,
+    json: &[u8],
+) -> Result<T, HomeError> {
     serde_json::from_slice(json).map_err(|error| HomeError::Malformed { action, expected, reason: error.to_string() })
 }

@@ -8,17 +8,17 @@ use wayword_core::DVec3;
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 pub struct EnvironmentGraph {
     /// Rooms, walls, doors, furniture, things.
-    pub nodes: Vec<Node>,
+    pub nodes: Vec<EnvironmentNode>,
 }
 
 /// Something in a home.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
-pub struct Node {
+pub struct EnvironmentNode {
     /// Its number.
     pub id: i64,
     /// Its class, with the words run together: `coffeetable`.
     pub class_name: String,
-    /// Its category, such as `Rooms`, `Doors`, `Walls` or `Furniture`.
+    /// Its category, such as `Rooms`, `Doors`, `Walls` or `FurniturePackage`.
     #[serde(default)]
     pub category: String,
     /// Its box, where it has one.
@@ -44,7 +44,7 @@ impl BoundingBox {
     }
 }
 
-impl Node {
+impl EnvironmentNode {
     pub(super) fn is_room(&self) -> bool {
         self.category == "Rooms"
     }

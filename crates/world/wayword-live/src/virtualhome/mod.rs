@@ -12,7 +12,7 @@ mod platform;
 #[cfg(feature = "stand-in")]
 pub mod stand_in;
 
-pub use client::{Camera, Client, Mode};
+pub use client::{CameraMode, VirtualHomeCamera, VirtualHomeClient};
 pub use error::HomeError;
-pub use graph::{BoundingBox, EnvironmentGraph, Node};
+pub use graph::{BoundingBox, EnvironmentGraph, EnvironmentNode};
 pub use platform::{VirtualHome, VirtualHomeOptions, VirtualHomePlatform};

@@ -3,10 +3,10 @@
 use std::{collections::BTreeMap, sync::LazyLock};
 
 /// The classes that VirtualHome has.
-const LIST: &str = include_str!("classes.txt");
+const CLASS_LIST: &str = include_str!("classes.txt");
 
-static CLASSES: LazyLock<BTreeMap<&str, &str>> = LazyLock::new(|| {
-    let lines = LIST.lines().filter(|line| !line.starts_with('#'));
+static CLASS_WORDS: LazyLock<BTreeMap<&str, &str>> = LazyLock::new(|| {
+    let lines = CLASS_LIST.lines().filter(|line| !line.starts_with('#'));
     let named = |line: &'static str| match line.split_once(": ") {
         Some(pair) => vec![pair],
         None => line.split_whitespace().map(|word| (word, word)).collect(),
@@ -16,7 +16,7 @@ static CLASSES: LazyLock<BTreeMap<&str, &str>> = LazyLock::new(|| {
 
 /// First words of names that are not in the list: names of classes that users add, and the stand-in's. The rest of the
 /// name must have at least three letters, so that it can be a word.
-const FIRST: [&str; 35] = [
+const FIRST_WORDS: [&str; 35] = [
     "bathroom",
     "bath",
     "bedroom",
@@ -54,7 +54,7 @@ const FIRST: [&str; 35] = [
     "washing",
 ];
 /// Names that begin with one of these words but are one word.
-const WHOLE: [&str; 12] = [
+const WHOLE_WORDS: [&str; 12] = [
     "bathrobe",
     "bathtub",
     "closets",
@@ -70,19 +70,20 @@ const WHOLE: [&str; 12] = [
 ];
 
 /// `coffeetable` as "coffee table", `clothes_pants` as "pants".
-pub(super) fn words(class_name: &str) -> String {
+pub(super) fn split_class_name(class_name: &str) -> String {
     let name: String = class_name.to_lowercase().chars().filter(|c| !matches!(c, '_' | '-' | ' ')).collect();
-    match CLASSES.get(name.as_str()) {
+    match CLASS_WORDS.get(name.as_str()) {
         Some(words) => (*words).to_owned(),
-        None => apart(&class_name.to_lowercase().replace('_', " ")),
+        None => split_unlisted_name(&class_name.to_lowercase().replace('_', " ")),
     }
 }
 
-/// Splits a name that is not in the list, after each word of [`FIRST`] at its beginning.
-fn apart(name: &str) -> String {
+/// Splits a name that is not in the list, after each word of [`FIRST_WORDS`] at its beginning.
+fn split_unlisted_name(name: &str) -> String {
     let (mut rest, mut words) = (name, Vec::new());
-    while !WHOLE.contains(&rest) {
-        let cut = FIRST.iter().find_map(|first| rest.strip_prefix(first).filter(|rest| rest.chars().count() >= 3));
+    while !WHOLE_WORDS.contains(&rest) {
+        let cut =
+            FIRST_WORDS.iter().find_map(|first| rest.strip_prefix(first).filter(|rest| rest.chars().count() >= 3));
         let Some(after) = cut else { break };
         words.push(rest[..rest.len() - after.len()].to_owned());
         rest = after;
@@ -93,12 +94,12 @@ fn apart(name: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{CLASSES, words};
+    use super::{CLASS_WORDS, split_class_name};
 
     #[test]
     fn every_class_of_the_list_has_words_that_are_spelled_as_words() {
-        assert!(CLASSES.len() > 400, "{}", CLASSES.len());
-        for (class, name) in CLASSES.iter() {
+        assert!(CLASS_WORDS.len() > 400, "{}", CLASS_WORDS.len());
+        for (class, name) in CLASS_WORDS.iter() {
             assert!(class.bytes().all(|byte| byte.is_ascii_lowercase()), "{class}");
             assert!(!name.is_empty() && !name.contains("  "), "{class}: {name:?}");
             assert!(name.split(' ').all(|word| word.len() < 12), "{class}: {name} still runs words together");
@@ -128,7 +129,7 @@ mod tests {
             ("table\u{e9}\u{e9}\u{e9}", "table \u{e9}\u{e9}\u{e9}"),
         ];
         for (name, apart) in expected {
-            assert_eq!(words(name), apart);
+            assert_eq!(split_class_name(name), apart);
         }
     }
 }

@@ -9,8 +9,8 @@ use std::{
     time::{Duration, Instant},
 };
 use wayword_live::tdw::{
-    Command, Controller, ControllerOptions, Frequency, Output, TdwError, WireError,
-    stand_in::{StandIn, StandInOptions, canned_picture},
+    BuildCommand, BuildOutput, ControllerOptions, SendFrequency, TdwController, TdwError, WireError,
+    stand_in::{StandInOptions, TdwStandIn, canned_picture},
 };
 use zeromq::{Socket, SocketRecv, SocketSend};
 
@@ -26,23 +26,24 @@ fn canned() -> StandInOptions {
     StandInOptions { canned: Some(vec![canned_picture(4, 2)]), ..StandInOptions::default() }
 }
 
-fn once() -> Command {
-    Command::SendImages { ids: vec![], frequency: Frequency::Once }
+fn once() -> BuildCommand {
+    BuildCommand::SendImages { ids: vec![], frequency: SendFrequency::Once }
 }
 
 #[test]
 fn build_reports_its_version_and_answers_until_terminated() {
     for version in ["1.12.27", "1.13.0.0"] {
-        let mut controller = Controller::bind(options()).unwrap();
-        let build = StandIn::start(controller.address(), StandInOptions { version, ..StandInOptions::default() });
+        let mut controller = TdwController::bind(options()).unwrap();
+        let build = TdwStandIn::start(controller.address(), StandInOptions { version, ..StandInOptions::default() });
         assert_eq!(controller.connect().unwrap().tdw, version);
-        let first = controller.communicate(&[Command::SendSceneRegions { frequency: Frequency::Once }]).unwrap();
-        let rooms = first.first("sreg", "send_scene_regions", |output| match output {
-            Output::Regions(regions) => Some(regions.len()),
+        let first =
+            controller.communicate(&[BuildCommand::SendSceneRegions { frequency: SendFrequency::Once }]).unwrap();
+        let rooms = first.first_output("sreg", "send_scene_regions", |output| match output {
+            BuildOutput::Regions(regions) => Some(regions.len()),
             _ => None,
         });
         assert!(rooms.unwrap() >= 3);
-        let missing = first.first("segm", "send_segmentation_colors", Some).unwrap_err().to_string();
+        let missing = first.first_output("segm", "send_segmentation_colors", Some).unwrap_err().to_string();
         assert!(missing.contains("`segm`"), "{missing}");
         let second = controller.communicate(&[]).unwrap();
         assert_eq!(second.frame_number, first.frame_number + 1);
@@ -54,24 +55,24 @@ fn build_reports_its_version_and_answers_until_terminated() {
 
 #[test]
 fn communicate_resends_commands_that_the_build_did_not_receive() {
-    let mut controller = Controller::bind(options()).unwrap();
-    let _build = StandIn::start(controller.address(), StandInOptions { deaf: 7, ..canned() });
+    let mut controller = TdwController::bind(options()).unwrap();
+    let _build = TdwStandIn::start(controller.address(), StandInOptions { deaf: 7, ..canned() });
     controller.connect().unwrap();
-    assert_eq!(controller.communicate(&[once()]).unwrap().outputs().count(), 1);
+    assert_eq!(controller.communicate(&[once()]).unwrap().read_outputs().count(), 1);
 }
 
 #[test]
 fn communicate_gives_up_a_build_that_never_receives() {
-    let mut controller = Controller::bind(options()).unwrap();
-    let _build = StandIn::start(controller.address(), StandInOptions { deaf: u32::MAX, ..canned() });
+    let mut controller = TdwController::bind(options()).unwrap();
+    let _build = TdwStandIn::start(controller.address(), StandInOptions { deaf: u32::MAX, ..canned() });
     assert!(matches!(controller.connect(), Err(TdwError::NeverHeard { times: 1000 })));
     assert!(!controller.is_connected());
 }
 
 #[test]
 fn a_lost_build_is_replaced_by_the_next() {
-    let mut controller = Controller::bind(options()).unwrap();
-    let _build = StandIn::start(controller.address(), StandInOptions { breaks_after: Some(2), ..canned() });
+    let mut controller = TdwController::bind(options()).unwrap();
+    let _build = TdwStandIn::start(controller.address(), StandInOptions { breaks_after: Some(2), ..canned() });
     controller.connect().unwrap();
     controller.communicate(&[once()]).unwrap();
     let lost = controller.communicate(&[once()]).unwrap_err();
@@ -85,8 +86,8 @@ fn a_lost_build_is_replaced_by_the_next() {
 #[test]
 fn communicate_times_out_on_a_silent_build() {
     let options = ControllerOptions { step_timeout: Duration::from_millis(300), ..options() };
-    let mut controller = Controller::bind(options).unwrap();
-    let _build = StandIn::start(controller.address(), StandInOptions { hangs_after: Some(1), ..canned() });
+    let mut controller = TdwController::bind(options).unwrap();
+    let _build = TdwStandIn::start(controller.address(), StandInOptions { hangs_after: Some(1), ..canned() });
     controller.connect().unwrap();
     let late = controller.communicate(&[once()]).unwrap_err();
     assert!(matches!(late, TdwError::Wire { source: WireError::Late { .. }, .. }), "{late}");
@@ -95,7 +96,7 @@ fn communicate_times_out_on_a_silent_build() {
 #[test]
 fn connect_error_without_a_build_shows_how_to_start_one() {
     let options = ControllerOptions { connect_timeout: Duration::from_millis(50), ..options() };
-    let mut controller = Controller::bind(options).unwrap();
+    let mut controller = TdwController::bind(options).unwrap();
     let error = controller.connect().unwrap_err().to_string();
     assert!(error.contains("TDW.x86_64 -port"), "{error}");
 }
@@ -115,7 +116,7 @@ fn greeting() -> Vec<u8> {
 /// The controller's error for a connection on which exactly these bytes come.
 fn connected_by(bytes: &[u8]) -> TdwError {
     let options = ControllerOptions { connect_timeout: Duration::from_millis(700), ..options() };
-    let mut controller = Controller::bind(options).unwrap();
+    let mut controller = TdwController::bind(options).unwrap();
     let address = controller.address();
     let sent = bytes.to_vec();
     let stranger = thread::spawn(move || {
@@ -164,7 +165,7 @@ fn an_answer_without_its_frame_number_is_refused() {
 /// NetMQ before 4.0.1 speaks ZMTP 2.0, which the crate `zeromq` refuses.
 #[test]
 fn a_build_with_an_older_zeromq_is_understood() {
-    let mut controller = Controller::bind(options()).unwrap();
+    let mut controller = TdwController::bind(options()).unwrap();
     let address = controller.address();
     let build = thread::spawn(move || {
         let mut stream = TcpStream::connect(address).unwrap();
@@ -183,7 +184,7 @@ fn a_build_with_an_older_zeromq_is_understood() {
 /// A third-party implementation plays the build: each side can read the other's bytes.
 #[test]
 fn the_zeromq_crate_agrees_about_the_bytes() {
-    let mut controller = Controller::bind(options()).unwrap();
+    let mut controller = TdwController::bind(options()).unwrap();
     let address = controller.address();
     let sent = canned_picture(640, 480);
     let build = thread::spawn(move || {
@@ -206,8 +207,8 @@ fn the_zeromq_crate_agrees_about_the_bytes() {
     let commands = vec![once(); 5000];
     let response = controller.communicate(&commands).unwrap();
     assert_eq!(response.frame_number, 5);
-    let pixels = response.first("imag", "send_images", |output| match output {
-        Output::Images(images) => Some((images.width, images.height, images.passes[0].bytes.len())),
+    let pixels = response.first_output("imag", "send_images", |output| match output {
+        BuildOutput::Images(images) => Some((images.width, images.height, images.passes[0].bytes.len())),
         _ => None,
     });
     assert_eq!(pixels.unwrap(), (640, 480, 640 * 480 * 3));
@@ -220,9 +221,9 @@ fn the_zeromq_crate_agrees_about_the_bytes() {
 #[test]
 #[ignore = "takes a minute; for measuring"]
 fn ten_thousand_steps_need_no_more_memory_than_a_hundred() {
-    let mut controller = Controller::bind(options()).unwrap();
+    let mut controller = TdwController::bind(options()).unwrap();
     let canned = Some(vec![canned_picture(640, 480)]);
-    let _build = StandIn::start(controller.address(), StandInOptions { canned, ..StandInOptions::default() });
+    let _build = TdwStandIn::start(controller.address(), StandInOptions { canned, ..StandInOptions::default() });
     controller.connect().unwrap();
     let resident_kb = || {
         let status = std::fs::read_to_string("/proc/self/status").unwrap();
@@ -232,7 +233,7 @@ fn ten_thousand_steps_need_no_more_memory_than_a_hundred() {
     let mut early_kb = 0;
     let start = Instant::now();
     for step in 0..10_000 {
-        assert_eq!(controller.communicate(&[once()]).unwrap().outputs().filter(Result::is_ok).count(), 1);
+        assert_eq!(controller.communicate(&[once()]).unwrap().read_outputs().filter(Result::is_ok).count(), 1);
         if step == 100 {
             early_kb = resident_kb();
         }

@@ -10,15 +10,15 @@ use std::{
     process::Command,
 };
 use wayword_core::Platform;
-use wayword_house::{HouseScene, Role, generate};
+use wayword_house::{HouseScene, ObjectRole, generate_house};
 use wayword_live::tdw::{
-    Command as TdwCommand, Controller, ControllerOptions, Frequency, TdwOptions, TdwPlatform,
-    stand_in::{StandIn, StandInOptions},
+    BuildCommand as TdwCommand, ControllerOptions, SendFrequency, TdwController, TdwOptions, TdwPlatform,
+    stand_in::{StandInOptions, TdwStandIn},
 };
 
 fn drive(python: &str, version: &'static str) -> (Value, Vec<String>) {
     let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
-    let build = StandIn::start(
+    let build = TdwStandIn::start(
         SocketAddr::from(([127, 0, 0, 1], port)),
         StandInOptions { version, ..StandInOptions::default() },
     );
@@ -80,11 +80,11 @@ fn furniture_of_the_genuine_package_can_be_placed() {
             ControllerOptions { address: SocketAddr::from(([127, 0, 0, 1], 0)), ..ControllerOptions::default() };
         let platform = TdwPlatform::new(TdwOptions { controller, package, ..TdwOptions::default() }).unwrap();
         let address = platform.waits_at().trim_start_matches("tcp://").parse().unwrap();
-        let _build = StandIn::start(address, StandInOptions::default());
-        let scenes = platform.scenes().unwrap();
+        let _build = TdwStandIn::start(address, StandInOptions::default());
+        let scenes = platform.list_scenes().unwrap();
         assert_eq!(scenes.len(), 12 * 3 + 1);
         for scene in &scenes {
-            assert!(platform.graph(scene).unwrap().len() > 20, "{scene}");
+            assert!(platform.graph_for_scene(scene).unwrap().len() > 20, "{scene}");
         }
     }
 }
@@ -98,13 +98,13 @@ fn libzmq_agrees_about_the_bytes() {
     };
     let python = pythons.split(',').next().unwrap_or_default().to_owned();
     let options = ControllerOptions { address: SocketAddr::from(([127, 0, 0, 1], 0)), ..ControllerOptions::default() };
-    let mut controller = Controller::bind(options).unwrap();
+    let mut controller = TdwController::bind(options).unwrap();
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/python/pretend_build.py");
     let port = controller.address().port().to_string();
     let build = std::thread::spawn(move || Command::new(python).arg(script).arg(port).output().unwrap());
     // Its first answer is `ftre` (not received), its second has a megabyte, its third follows a long list.
     assert_eq!(controller.connect().unwrap().tdw, "1.13.0.0");
-    let many = vec![TdwCommand::SendSceneRegions { frequency: Frequency::Once }; 10_000];
+    let many = vec![TdwCommand::SendSceneRegions { frequency: SendFrequency::Once }; 10_000];
     assert_eq!(controller.communicate(&many).unwrap().frame_number, 2);
     let told = String::from_utf8(build.join().unwrap().stdout).unwrap();
     let told: Vec<(usize, Vec<String>)> = told.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
@@ -115,9 +115,9 @@ fn libzmq_agrees_about_the_bytes() {
 }
 
 fn holds(told: &Value, saved: &[String], version: &str) {
-    let house = (1..).map(generate).find(|house| house.storeys == 1).unwrap();
+    let house = (1..).map(generate_house).find(|house| house.storeys == 1).unwrap();
     let scene = HouseScene::new(house).unwrap();
-    let objects: Vec<_> = scene.objects.iter().filter(|(_, object)| object.role != Role::Shell).collect();
+    let objects: Vec<_> = scene.objects.iter().filter(|(_, object)| object.role != ObjectRole::Shell).collect();
     assert_eq!((&told["build"], &told["unity"]), (&version.into(), &"2020.3.24f1".into()));
     assert_eq!(told["size"], serde_json::json!([160, 120]));
     assert_eq!(told["passes"], serde_json::json!(["_img", "_id", "_depth"]));

@@ -6,9 +6,9 @@
 use serde_json::Value;
 use std::{collections::BTreeSet, path::Path, process::Command};
 use wayword_core::DVec3;
-use wayword_house::{HouseScene, Role, generate};
-use wayword_live::virtualhome::stand_in::StandIn;
-use wayword_render::Camera;
+use wayword_house::{HouseScene, ObjectRole, generate_house};
+use wayword_live::virtualhome::stand_in::VirtualHomeStandIn;
+use wayword_render::PinholeCamera;
 
 #[test]
 fn the_genuine_client_reads_everything_that_the_stand_in_sends() {
@@ -19,7 +19,7 @@ fn the_genuine_client_reads_everything_that_the_stand_in_sends() {
         );
         return;
     };
-    let simulator = StandIn::start(([127, 0, 0, 1], 0).into()).unwrap();
+    let simulator = VirtualHomeStandIn::start(([127, 0, 0, 1], 0).into()).unwrap();
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/python/drive_virtualhome.py");
     let driven = Command::new(&python).arg(script).arg(simulator.port().to_string()).output().unwrap();
     let (out, err) = (String::from_utf8_lossy(&driven.stdout), String::from_utf8_lossy(&driven.stderr));
@@ -35,12 +35,12 @@ fn the_genuine_client_reads_everything_that_the_stand_in_sends() {
 }
 
 fn holds(told: &Value) {
-    let scene = HouseScene::new((1..).map(generate).find(|house| house.storeys == 1).unwrap()).unwrap();
+    let scene = HouseScene::new((1..).map(generate_house).find(|house| house.storeys == 1).unwrap()).unwrap();
     for done in ["connected", "reset", "character", "added", "moved"] {
         assert_eq!(told[done], true, "{done}");
     }
     assert_eq!(told["unknown_action"], false);
-    let objects: Vec<_> = scene.objects.iter().filter(|(_, object)| object.role != Role::Shell).collect();
+    let objects: Vec<_> = scene.objects.iter().filter(|(_, object)| object.role != ObjectRole::Shell).collect();
     assert_eq!(told["nodes"].as_object().unwrap().len(), objects.len() + scene.house.rooms.len());
     assert_eq!(told["inside"], objects.len());
     for (id, object) in &objects {
@@ -55,7 +55,7 @@ fn holds(told: &Value) {
     // The client decoded what our renderer draws from the same place, looking east.
     let at = |n: usize| told["at"][n].as_f64().unwrap();
     let picture = scene
-        .picture(&Camera {
+        .render_picture(&PinholeCamera {
             position: DVec3::new(at(0), at(1), 1.5),
             heading_rad: std::f64::consts::FRAC_PI_2,
             elevation_rad: 0.0,
@@ -72,7 +72,7 @@ fn holds(told: &Value) {
         .ids
         .iter()
         .copied()
-        .filter(|id| scene.objects.get(id).is_some_and(|object| object.role != Role::Shell))
+        .filter(|id| scene.objects.get(id).is_some_and(|object| object.role != ObjectRole::Shell))
         .collect();
     let seen: BTreeSet<u32> = told["seen"].as_array().unwrap().iter().map(|id| id.as_u64().unwrap() as u32).collect();
     assert_eq!(seen, drawn);

@@ -10,30 +10,30 @@ use std::{
     sync::{Arc, Mutex},
     time::Duration,
 };
-use wayword_core::{Gaze, Heading, ObjectId, PathRequest, Platform, SceneId};
-use wayword_house::{Ground, HouseOptions, HousePlatform, HouseScene, Role, generate};
+use wayword_core::{Heading, ObjectId, PathRequest, Platform, SceneId, ViewGaze};
+use wayword_house::{HouseGround, HouseOptions, HousePlatform, HouseScene, ObjectRole, generate_house};
 use wayword_live::{
-    Houses, Pictures,
+    LivePictureOptions, StandInHouses,
     tdw::{
         ControllerOptions, TdwOptions, TdwPlatform,
-        stand_in::{Furnished, StandIn, StandInOptions},
+        stand_in::{StandInFurnishing, StandInOptions, TdwStandIn},
     },
 };
 
-fn start(options: StandInOptions) -> (TdwPlatform, StandIn) {
+fn start(options: StandInOptions) -> (TdwPlatform, TdwStandIn) {
     start_with(options, None)
 }
 
-fn start_with(options: StandInOptions, package: Option<PathBuf>) -> (TdwPlatform, StandIn) {
+fn start_with(options: StandInOptions, package: Option<PathBuf>) -> (TdwPlatform, TdwStandIn) {
     let controller = ControllerOptions {
         address: SocketAddr::from(([127, 0, 0, 1], 0)),
         connect_timeout: Duration::from_secs(20),
         step_timeout: Duration::from_secs(60),
     };
-    let pictures = Pictures { width_px: 160, height_px: 120, ..Pictures::default() };
+    let pictures = LivePictureOptions { width_px: 160, height_px: 120, ..LivePictureOptions::default() };
     let platform = TdwPlatform::new(TdwOptions { controller, pictures, package }).unwrap();
     let address = platform.waits_at().trim_start_matches("tcp://").parse().unwrap();
-    let build = StandIn::start(address, options);
+    let build = TdwStandIn::start(address, options);
     (platform, build)
 }
 
@@ -44,14 +44,14 @@ fn scene() -> SceneId {
 #[test]
 fn the_graph_lies_on_walkable_ground_and_is_one() {
     let (platform, _build) = start(StandInOptions::default());
-    let graph = platform.graph(&scene()).unwrap();
-    let house = (1..).map(generate).find(|house| house.storeys == 1).unwrap();
-    let ground = Ground::of(&house);
-    assert!(graph.len() > 20 && graph.components() == 1, "{} viewpoints", graph.len());
+    let graph = platform.graph_for_scene(&scene()).unwrap();
+    let house = (1..).map(generate_house).find(|house| house.storeys == 1).unwrap();
+    let ground = HouseGround::for_house(&house);
+    assert!(graph.len() > 20 && graph.count_components() == 1, "{} viewpoints", graph.len());
     let rooms: BTreeSet<_> = graph
         .viewpoints()
         .map(|id| {
-            let eye = graph.position(id).unwrap();
+            let eye = graph.position_of(id).unwrap();
             assert!((eye.z - 1.5).abs() < 1e-6);
             assert!(ground.is_walkable(eye.with_z(0.0)), "{eye}");
             house.room_at(eye.x, eye.y, 0.0).unwrap().outline.x0
@@ -78,14 +78,14 @@ fn paths_keep_to_their_length_and_end_at_their_target_and_repeat() {
 #[test]
 fn look_returns_the_houses_pixels_and_labels_of_visible_objects() {
     let (platform, _build) = start(StandInOptions::default());
-    let graph = platform.graph(&scene()).unwrap();
-    let drawn = HouseScene::new((1..).map(generate).find(|house| house.storeys == 1).unwrap()).unwrap();
+    let graph = platform.graph_for_scene(&scene()).unwrap();
+    let drawn = HouseScene::new((1..).map(generate_house).find(|house| house.storeys == 1).unwrap()).unwrap();
     let mut labels = 0;
     for id in graph.viewpoints().step_by(9) {
-        let frame = graph.walk(std::slice::from_ref(id), None).unwrap().remove(0);
-        let gaze = Gaze::quarter(Heading::new(1.0).unwrap());
-        let view = platform.look(&scene(), &frame, gaze).unwrap();
-        let camera = wayword_render::Camera {
+        let frame = graph.path_frames(std::slice::from_ref(id), None).unwrap().remove(0);
+        let gaze = ViewGaze::quarter_view(Heading::new(1.0).unwrap());
+        let view = platform.look_from(&scene(), &frame, gaze).unwrap();
+        let camera = wayword_render::PinholeCamera {
             position: frame.pose.position,
             heading_rad: 1.0,
             elevation_rad: 0.0,
@@ -93,8 +93,8 @@ fn look_returns_the_houses_pixels_and_labels_of_visible_objects() {
             width: 160,
             height: 120,
         };
-        let picture = drawn.picture(&camera).unwrap();
-        let pixels = view.image.as_ref().unwrap().rgb();
+        let picture = drawn.render_picture(&camera).unwrap();
+        let pixels = view.image.as_ref().unwrap().rgb_bytes();
         let off = picture.rgb.iter().zip(pixels).filter(|(a, b)| a.abs_diff(**b) > 8).count();
         assert!(off < pixels.len() / 200, "{off} of {} values differ", pixels.len());
         let truth = view.ground_truth().unwrap();
@@ -103,7 +103,7 @@ fn look_returns_the_houses_pixels_and_labels_of_visible_objects() {
         assert!(truth.lists_objects);
         for label in &truth.labels {
             let object = &drawn.objects[&label.object.as_str().parse::<u32>().unwrap()];
-            assert!(object.role != Role::Shell && object.name == label.name);
+            assert!(object.role != ObjectRole::Shell && object.name == label.name);
             assert!(label.position.unwrap().distance(object.centre_m()) < 1e-4);
             assert!(picture.ids.contains(&label.object.as_str().parse().unwrap()));
         }
@@ -117,14 +117,14 @@ fn look_returns_the_houses_pixels_and_labels_of_visible_objects() {
 #[test]
 fn labels_are_those_of_the_built_in_platform() {
     let (platform, _build) = start(StandInOptions::default());
-    let seed = (1..).find(|seed| generate(*seed).storeys == 1).unwrap();
+    let seed = (1..).find(|seed| generate_house(*seed).storeys == 1).unwrap();
     let within = HousePlatform::new(HouseOptions { width_px: 160, height_px: 120, ..HouseOptions::default() });
-    let graph = platform.graph(&scene()).unwrap();
+    let graph = platform.graph_for_scene(&scene()).unwrap();
     let mut labels = 0;
     for id in graph.viewpoints().step_by(5) {
-        let frame = graph.walk(std::slice::from_ref(id), None).unwrap().remove(0);
+        let frame = graph.path_frames(std::slice::from_ref(id), None).unwrap().remove(0);
         let told = |platform: &dyn Platform, scene: &SceneId| -> BTreeSet<(ObjectId, String)> {
-            let view = platform.look(scene, &frame, Gaze::quarter(Heading::new(4.0).unwrap())).unwrap();
+            let view = platform.look_from(scene, &frame, ViewGaze::quarter_view(Heading::new(4.0).unwrap())).unwrap();
             view.ground_truth().unwrap().labels.iter().map(|label| (label.object.clone(), label.name.clone())).collect()
         };
         let ours = told(&platform, &scene());
@@ -137,17 +137,18 @@ fn labels_are_those_of_the_built_in_platform() {
 /// Each house is the floor plan of its place, with labels of its furniture alone.
 #[test]
 fn several_houses_are_floor_plans_of_their_own() {
-    let houses = Houses::with_one_storey(5, 3);
-    let shown = StandIn::scenes(&houses).unwrap();
-    let (platform, _build) = start(StandInOptions { houses, furnished: Furnished::Always, ..Default::default() });
+    let houses = StandInHouses::with_one_storey(5, 3);
+    let shown = TdwStandIn::shown_scenes(&houses).unwrap();
+    let (platform, _build) =
+        start(StandInOptions { houses, furnished: StandInFurnishing::Always, ..Default::default() });
     for shown in shown.iter().chain(shown.iter().rev()) {
         let scene = SceneId::new(shown.scene.clone()).unwrap();
-        let graph = platform.graph(&scene).unwrap();
-        let frame = graph.walk(&[graph.viewpoints().next().unwrap().clone()], None).unwrap().remove(0);
-        let house = HouseScene::new(generate(shown.seed)).unwrap();
+        let graph = platform.graph_for_scene(&scene).unwrap();
+        let frame = graph.path_frames(&[graph.viewpoints().next().unwrap().clone()], None).unwrap().remove(0);
+        let house = HouseScene::new(generate_house(shown.seed)).unwrap();
         for (id, object) in &house.objects {
             let told = platform.object_name(&scene, &frame, &ObjectId::new(id.to_string()).unwrap()).unwrap();
-            let expected = (object.role == Role::Furniture).then_some(object.name.as_str());
+            let expected = (object.role == ObjectRole::Furniture).then_some(object.name.as_str());
             assert_eq!(told.as_deref(), expected, "{shown}");
         }
     }
@@ -170,17 +171,17 @@ fn graph_refuses_an_unknown_scene_without_a_build() {
         ..ControllerOptions::default()
     };
     let platform = TdwPlatform::new(TdwOptions { controller, ..TdwOptions::default() }).unwrap();
-    let unknown = platform.graph(&SceneId::new("floorplan_9z").unwrap()).unwrap_err().to_string();
+    let unknown = platform.graph_for_scene(&SceneId::new("floorplan_9z").unwrap()).unwrap_err().to_string();
     assert!(unknown.contains("room_8x10"), "{unknown}");
-    let alone = platform.graph(&scene()).unwrap_err().to_string();
+    let alone = platform.graph_for_scene(&scene()).unwrap_err().to_string();
     assert!(alone.contains("tcp://127.0.0.1") && alone.contains("TDW.x86_64"), "{alone}");
-    assert!(platform.scenes().unwrap().contains(&scene()));
+    assert!(platform.list_scenes().unwrap().contains(&scene()));
 }
 
 #[test]
 fn graph_of_a_furnished_plan_without_the_package_names_the_flag() {
     let (platform, _build) = start(StandInOptions::default());
-    let error = platform.graph(&SceneId::new("floorplan_1a_0").unwrap()).unwrap_err().to_string();
+    let error = platform.graph_for_scene(&SceneId::new("floorplan_1a_0").unwrap()).unwrap_err().to_string();
     assert!(error.contains(": the furniture of floorplan_1a_0 is not available; give --data the folder of"), "{error}");
 }
 
@@ -203,10 +204,12 @@ fn package(folder: &Path) {
 /// The ground truth of a view to the north from every seventh viewpoint of a scene.
 fn truths(platform: &TdwPlatform, scene: &str) -> Vec<Option<wayword_core::GroundTruth>> {
     let scene = SceneId::new(scene).unwrap();
-    let graph = platform.graph(&scene).unwrap();
+    let graph = platform.graph_for_scene(&scene).unwrap();
     let eyes: Vec<_> = graph.viewpoints().step_by(7).cloned().collect();
-    let frames = eyes.iter().map(|eye| graph.walk(std::slice::from_ref(eye), None).unwrap().remove(0));
-    let look = |frame| platform.look(&scene, &frame, Gaze::quarter(Heading::NORTH)).unwrap().ground_truth().cloned();
+    let frames = eyes.iter().map(|eye| graph.path_frames(std::slice::from_ref(eye), None).unwrap().remove(0));
+    let look = |frame| {
+        platform.look_from(&scene, &frame, ViewGaze::quarter_view(Heading::NORTH)).unwrap().ground_truth().cloned()
+    };
     frames.map(look).collect()
 }
 
@@ -214,7 +217,7 @@ fn truths(platform: &TdwPlatform, scene: &str) -> Vec<Option<wayword_core::Groun
 fn unfurnished_plan_has_no_labels_and_a_hint_about_furniture() {
     let folder = tempfile::tempdir().unwrap();
     package(folder.path());
-    let honest = StandInOptions { furnished: Furnished::OnceAdded, ..StandInOptions::default() };
+    let honest = StandInOptions { furnished: StandInFurnishing::OnceAdded, ..StandInOptions::default() };
     let (platform, _build) = start_with(honest, Some(folder.path().to_owned()));
     let heard = Arc::new(Mutex::new(Vec::new()));
     let hearing = heard.clone();

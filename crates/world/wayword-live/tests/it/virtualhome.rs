@@ -8,16 +8,16 @@ use std::{
     thread,
     time::Duration,
 };
-use wayword_core::{DVec3, Frame, Gaze, Heading, ObjectId, PathRequest, Platform, Pose, SceneId};
-use wayword_house::{Ground, HousePlatform, HouseScene, generate};
+use wayword_core::{DVec3, Frame, Heading, ObjectId, PathRequest, Platform, Pose, SceneId, ViewGaze};
+use wayword_house::{HouseGround, HousePlatform, HouseScene, generate_house};
 use wayword_live::{
-    Houses, Pictures,
-    virtualhome::{Client, VirtualHomeOptions, VirtualHomePlatform, stand_in::StandIn},
+    LivePictureOptions, StandInHouses,
+    virtualhome::{VirtualHomeClient, VirtualHomeOptions, VirtualHomePlatform, stand_in::VirtualHomeStandIn},
 };
 
-fn start() -> (VirtualHomePlatform, StandIn) {
-    let simulator = StandIn::start(([127, 0, 0, 1], 0).into()).unwrap();
-    let pictures = Pictures { width_px: 160, height_px: 120, ..Pictures::default() };
+fn start() -> (VirtualHomePlatform, VirtualHomeStandIn) {
+    let simulator = VirtualHomeStandIn::start(([127, 0, 0, 1], 0).into()).unwrap();
+    let pictures = LivePictureOptions { width_px: 160, height_px: 120, ..LivePictureOptions::default() };
     let timeout = Duration::from_secs(20);
     (VirtualHomePlatform::new(VirtualHomeOptions { url: simulator.url(), timeout, pictures }), simulator)
 }
@@ -28,17 +28,17 @@ fn scene() -> SceneId {
 
 /// The house that the stand-in shows as home 0.
 fn house() -> HouseScene {
-    HouseScene::new((1..).map(generate).find(|house| house.storeys == 1).unwrap()).unwrap()
+    HouseScene::new((1..).map(generate_house).find(|house| house.storeys == 1).unwrap()).unwrap()
 }
 
 #[test]
 fn the_graph_leads_through_doors_from_room_to_room() {
     let (platform, _simulator) = start();
-    let graph = platform.graph(&scene()).unwrap();
+    let graph = platform.graph_for_scene(&scene()).unwrap();
     let house = house().house;
-    let ground = Ground::of(&house);
-    let eyes: Vec<_> = graph.viewpoints().map(|id| graph.position(id).unwrap()).collect();
-    assert!(eyes.len() > 20 && graph.components() == 1, "{} viewpoints", eyes.len());
+    let ground = HouseGround::for_house(&house);
+    let eyes: Vec<_> = graph.viewpoints().map(|id| graph.position_of(id).unwrap()).collect();
+    assert!(eyes.len() > 20 && graph.count_components() == 1, "{} viewpoints", eyes.len());
     let rooms: std::collections::BTreeSet<_> = eyes
         .iter()
         .filter_map(|eye| house.room_at(eye.x, eye.y, 0.0))
@@ -67,12 +67,12 @@ fn paths_keep_to_their_length_and_end_at_their_target_and_repeat() {
 #[test]
 fn look_returns_the_houses_pixels_with_names_and_room() {
     let (platform, _simulator) = start();
-    let graph = platform.graph(&scene()).unwrap();
+    let graph = platform.graph_for_scene(&scene()).unwrap();
     let (drawn, mut labels) = (house(), 0);
     for id in graph.viewpoints().step_by(9) {
-        let frame = graph.walk(std::slice::from_ref(id), None).unwrap().remove(0);
-        let view = platform.look(&scene(), &frame, Gaze::quarter(Heading::new(2.0).unwrap())).unwrap();
-        let camera = wayword_render::Camera {
+        let frame = graph.path_frames(std::slice::from_ref(id), None).unwrap().remove(0);
+        let view = platform.look_from(&scene(), &frame, ViewGaze::quarter_view(Heading::new(2.0).unwrap())).unwrap();
+        let camera = wayword_render::PinholeCamera {
             position: frame.pose.position,
             heading_rad: 2.0,
             elevation_rad: 0.0,
@@ -80,12 +80,13 @@ fn look_returns_the_houses_pixels_with_names_and_room() {
             width: 160,
             height: 120,
         };
-        let picture = drawn.picture(&camera).unwrap();
-        let pixels = view.image.as_ref().unwrap().rgb();
+        let picture = drawn.render_picture(&camera).unwrap();
+        let pixels = view.image.as_ref().unwrap().rgb_bytes();
         let off = picture.rgb.iter().zip(pixels).filter(|(a, b)| a.abs_diff(**b) > 8).count();
         assert!(off < pixels.len() / 200, "{off} of {} values differ", pixels.len());
         let truth = view.ground_truth().unwrap();
-        let without = platform.look_without_picture(&scene(), &frame, Gaze::quarter(Heading::new(2.0).unwrap()));
+        let without =
+            platform.look_without_picture(&scene(), &frame, ViewGaze::quarter_view(Heading::new(2.0).unwrap()));
         let without = without.unwrap();
         assert!(without.image.is_none() && without.ground_truth() == Some(truth), "labels need no picture");
         for label in &truth.labels {
@@ -107,15 +108,15 @@ fn rooms_are_those_of_the_built_in_platform_in_doorways_too() {
     let scene_within = HousePlatform::scene_of(house.seed).unwrap();
     let doorways: Vec<_> = house.openings.iter().filter(|opening| opening.is_passable()).collect();
     let ends = doorways.iter().map(|opening| {
-        let (x, y) = opening.span.thickened(1).centre();
+        let (x, y) = opening.span.thickened_by(1).centre();
         DVec3::new(f64::from(x) / 100.0, f64::from(y) / 100.0, 1.5)
     });
-    let graph = platform.graph(&scene()).unwrap();
-    let eyes = graph.viewpoints().step_by(9).map(|id| graph.position(id).unwrap()).collect::<Vec<_>>();
+    let graph = platform.graph_for_scene(&scene()).unwrap();
+    let eyes = graph.viewpoints().step_by(9).map(|id| graph.position_of(id).unwrap()).collect::<Vec<_>>();
     let mut told = 0;
     for (eye, turn) in ends.chain(eyes).flat_map(|eye| [0.3, 1.9, 3.4, 5.0].map(|turn| (eye, turn))) {
-        let frame = Frame { pose: Pose::level(eye, Heading::new(turn).unwrap()), viewpoint: None, level: None };
-        let gaze = Gaze::quarter(frame.pose.heading);
+        let frame = Frame { pose: Pose::looking_level(eye, Heading::new(turn).unwrap()), viewpoint: None, level: None };
+        let gaze = ViewGaze::quarter_view(frame.pose.heading);
         let room = |platform: &dyn Platform, scene: &SceneId| {
             let view = platform.look_without_picture(scene, &frame, gaze).unwrap();
             view.ground_truth().unwrap().room.clone()
@@ -130,48 +131,51 @@ fn rooms_are_those_of_the_built_in_platform_in_doorways_too() {
 /// Home `n` is house `n` of the list.
 #[test]
 fn several_houses_are_homes_of_their_own() {
-    let houses = Houses::with_one_storey(5, 3);
-    let simulator = StandIn::showing(([127, 0, 0, 1], 0).into(), houses.clone()).unwrap();
+    let houses = StandInHouses::with_one_storey(5, 3);
+    let simulator = VirtualHomeStandIn::showing_houses(([127, 0, 0, 1], 0).into(), houses.clone()).unwrap();
     let options = VirtualHomeOptions { url: simulator.url(), timeout: Duration::from_secs(20), ..Default::default() };
     let platform = VirtualHomePlatform::new(options);
-    let shown = StandIn::scenes(&houses).unwrap();
+    let shown = VirtualHomeStandIn::shown_scenes(&houses).unwrap();
     // Forwards and backwards: on the way back every home was surveyed before.
     for shown in shown.iter().chain(shown.iter().rev()) {
         let scene = SceneId::new(shown.scene.clone()).unwrap();
-        let house = generate(shown.seed);
+        let house = generate_house(shown.seed);
         for piece in &house.furniture {
             let object = ObjectId::new(piece.id.to_string()).unwrap();
-            let frame =
-                Frame { pose: Pose::level(DVec3::new(1.0, 1.0, 1.5), Heading::NORTH), viewpoint: None, level: None };
+            let frame = Frame {
+                pose: Pose::looking_level(DVec3::new(1.0, 1.0, 1.5), Heading::NORTH),
+                viewpoint: None,
+                level: None,
+            };
             let name = platform.object_name(&scene, &frame, &object).unwrap();
             assert_eq!(name.as_deref(), Some(&*piece.name), "{shown}");
         }
     }
-    let beyond = platform.graph(&SceneId::new("home_3").unwrap()).unwrap_err().to_string();
+    let beyond = platform.graph_for_scene(&SceneId::new("home_3").unwrap()).unwrap_err().to_string();
     assert!(beyond.contains("cannot do that"), "{beyond}");
 }
 
 #[test]
 fn a_simulator_that_is_started_anew_gets_its_home_again() {
     let (platform, simulator) = start();
-    let graph = platform.graph(&scene()).unwrap();
+    let graph = platform.graph_for_scene(&scene()).unwrap();
     let first = graph.viewpoints().next().unwrap().clone();
-    let frame = graph.walk(&[first], None).unwrap().remove(0);
-    let look = || platform.look(&scene(), &frame, Gaze::quarter(Heading::NORTH));
+    let frame = graph.path_frames(&[first], None).unwrap().remove(0);
+    let look = || platform.look_from(&scene(), &frame, ViewGaze::quarter_view(Heading::NORTH));
     let before = look().unwrap();
     // Another client takes the camera away.
-    Client::new(simulator.url(), Duration::from_secs(5)).reset(3).unwrap();
-    assert_eq!(look().unwrap().image.unwrap().rgb(), before.image.unwrap().rgb());
+    VirtualHomeClient::new(simulator.url(), Duration::from_secs(5)).reset(3).unwrap();
+    assert_eq!(look().unwrap().image.unwrap().rgb_bytes(), before.image.unwrap().rgb_bytes());
 }
 
 #[test]
 fn scenes_are_homes_and_a_simulator_that_is_not_there_is_named() {
     let (platform, simulator) = start();
-    assert_eq!(platform.scenes().unwrap().len(), 50);
-    let unknown = platform.graph(&SceneId::new("home_50").unwrap()).unwrap_err().to_string();
+    assert_eq!(platform.list_scenes().unwrap().len(), 50);
+    let unknown = platform.graph_for_scene(&SceneId::new("home_50").unwrap()).unwrap_err().to_string();
     assert!(unknown.contains("home_0 to home_49"), "{unknown}");
     drop(simulator);
-    let gone = platform.graph(&scene()).unwrap_err().to_string();
+    let gone = platform.graph_for_scene(&scene()).unwrap_err().to_string();
     assert!(
         gone.contains("http://127.0.0.1") && gone.contains("-http-port=PORT, where PORT is the port in --at"),
         "{gone}"
@@ -181,8 +185,8 @@ fn scenes_are_homes_and_a_simulator_that_is_not_there_is_named() {
 /// The stand-in fails to clear where no home is loaded, as the genuine executable may. The genuine client goes on then.
 #[test]
 fn reset_goes_on_when_clear_fails() {
-    let simulator = StandIn::start(([127, 0, 0, 1], 0).into()).unwrap();
-    let mut client = Client::new(simulator.url(), Duration::from_secs(20));
+    let simulator = VirtualHomeStandIn::start(([127, 0, 0, 1], 0).into()).unwrap();
+    let mut client = VirtualHomeClient::new(simulator.url(), Duration::from_secs(20));
     client.reset(0).unwrap();
     assert!(!client.environment_graph().unwrap().nodes.is_empty());
 }
@@ -194,7 +198,7 @@ fn progress_lines_name_the_simulator_and_how_to_start_it() {
     let hearing = heard.clone();
     let hear = move |line: &str| hearing.lock().unwrap().push(line.to_owned());
     let platform = platform.heard_by(std::sync::Arc::new(hear));
-    platform.graph(&scene()).unwrap();
+    platform.graph_for_scene(&scene()).unwrap();
     let lines = heard.lock().unwrap().join("\n");
     assert!(lines.contains(&format!("asking VirtualHome at {} for home_0", simulator.url())), "{lines}");
     assert!(lines.contains(&format!("-batchmode -http-port={}", simulator.port())), "{lines}");
@@ -209,7 +213,7 @@ fn answered(status: &'static str, announced: usize, content: &'static str) -> St
         let _ = stream.read(&mut [0; 4096]);
         let _ = write!(stream, "HTTP/1.1 {status}\r\nContent-Length: {announced}\r\n\r\n{content}");
     });
-    let error = Client::new(url, Duration::from_secs(5)).environment_graph().unwrap_err();
+    let error = VirtualHomeClient::new(url, Duration::from_secs(5)).environment_graph().unwrap_err();
     simulator.join().unwrap();
     error.to_string()
 }

@@ -11,7 +11,7 @@ use wayword_core::{Heading, ObjectId, PlatformError, ViewpointId};
 use wayword_world::object_names;
 
 /// Number of the simulator's views at a viewpoint.
-pub(crate) const VIEWS: usize = 36;
+pub(crate) const SIMULATOR_VIEW_COUNT: usize = 36;
 pub(crate) const WIDTH_PX: f64 = 640.0;
 pub(crate) const HEIGHT_PX: f64 = 480.0;
 /// Pixels per unit of the image plane: 240 / tan(30 degrees).
@@ -21,11 +21,11 @@ pub(crate) const FOCAL_PX: f64 = 415.692_193_816_530_5;
 const MAX_OBJECTS: usize = 10_000;
 /// Largest file, bytes; the largest real one has 40 kB.
 const MAX_BYTES: u64 = 1 << 20;
-const HINT: &str = "extract the file again from REVERIE's BBox.zip";
+const BOXES_HINT: &str = "extract the file again from REVERIE's BBox.zip";
 
 /// An object that REVERIE lists at a viewpoint.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Listed {
+pub(crate) struct ListedObject {
     pub(crate) object: ObjectId,
     /// In plain words; `None` if the annotators' name has no plain words.
     pub(crate) name: Option<String>,
@@ -36,7 +36,7 @@ pub(crate) struct Listed {
 /// An object's box in one of the 36 views.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct SeenBox {
-    /// Index of the view, less than [`VIEWS`].
+    /// Index of the view, less than [`SIMULATOR_VIEW_COUNT`].
     pub(crate) view: u8,
     /// x and y of the upper left corner, width and height, pixels.
     pub(crate) box_px: [f64; 4],
@@ -44,13 +44,13 @@ pub(crate) struct SeenBox {
 
 /// A direction from a viewpoint.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Ray {
+pub(crate) struct ViewpointRay {
     pub(crate) heading: Heading,
     /// Up positive.
     pub(crate) elevation_rad: f64,
 }
 
-impl Listed {
+impl ListedObject {
     /// The most central of its boxes. Boxes that the edge of a picture cuts come last, because the centre of such a box
     /// is not the centre of the object.
     pub(crate) fn best_box(&self) -> Option<&SeenBox> {
@@ -80,14 +80,14 @@ impl SeenBox {
     }
 
     /// The ray to the centre of the box.
-    pub(crate) fn ray(&self) -> Option<Ray> {
+    pub(crate) fn centre_ray(&self) -> Option<ViewpointRay> {
         let (x_px, y_px) = self.centre_px();
         ray_through(self.view, x_px, y_px)
     }
 }
 
 /// The ray through a pixel of a view; `None` straight up or down, because there is no heading.
-pub(crate) fn ray_through(view: u8, x_px: f64, y_px: f64) -> Option<Ray> {
+pub(crate) fn ray_through(view: u8, x_px: f64, y_px: f64) -> Option<ViewpointRay> {
     let (right, up) = ((x_px - WIDTH_PX / 2.0) / FOCAL_PX, (HEIGHT_PX / 2.0 - y_px) / FOCAL_PX);
     let tilt = FRAC_PI_6 * (f64::from(view / 12) - 1.0);
     let (sin, cos) = (libm::sin(tilt), libm::cos(tilt));
@@ -97,21 +97,21 @@ pub(crate) fn ray_through(view: u8, x_px: f64, y_px: f64) -> Option<Ray> {
         return None;
     }
     let heading = Heading::new(FRAC_PI_6 * f64::from(view % 12) + libm::atan2(right, ahead)).ok()?;
-    Some(Ray { heading, elevation_rad: libm::atan2(above, flat) })
+    Some(ViewpointRay { heading, elevation_rad: libm::atan2(above, flat) })
 }
 
 /// Reads the objects that are listed at a viewpoint; `None` if there is no such file.
 ///
 /// # Errors
 /// If the file does not have this format; the message names the object and the field.
-pub(crate) fn read(file: &Path, viewpoint: &ViewpointId) -> Result<Option<Vec<Listed>>, PlatformError> {
-    let Some(bytes) = read::json_if_there(file, MAX_BYTES, HINT)? else {
+pub(crate) fn read_boxes(file: &Path, viewpoint: &ViewpointId) -> Result<Option<Vec<ListedObject>>, PlatformError> {
+    let Some(bytes) = read::json_if_there(file, MAX_BYTES, BOXES_HINT)? else {
         return Ok(None);
     };
-    parse(&bytes, viewpoint).map(Some).map_err(|reason| read::wrong(file, reason, HINT))
+    parse_boxes(&bytes, viewpoint).map(Some).map_err(|reason| read::file_error(file, reason, BOXES_HINT))
 }
 
-fn parse(bytes: &[u8], viewpoint: &ViewpointId) -> Result<Vec<Listed>, String> {
+fn parse_boxes(bytes: &[u8], viewpoint: &ViewpointId) -> Result<Vec<ListedObject>, String> {
     let all: Map<String, Value> =
         serde_json::from_slice(bytes).map_err(|error| format!("is not a JSON object of viewpoints: {error}"))?;
     let objects = all.get(viewpoint.as_str()).ok_or_else(|| format!("viewpoint {viewpoint} is missing"))?;
@@ -121,34 +121,36 @@ fn parse(bytes: &[u8], viewpoint: &ViewpointId) -> Result<Vec<Listed>, String> {
     }
     objects
         .iter()
-        .map(|(object, entry)| listed(object, entry).map_err(|reason| format!("object {object:.40}: {reason}")))
+        .map(|(object, entry)| {
+            parse_listed_object(object, entry).map_err(|reason| format!("object {object:.40}: {reason}"))
+        })
         .collect()
 }
 
-fn listed(object: &str, entry: &Value) -> Result<Listed, String> {
-    let views = read::list(entry, "visible_pos")?;
-    let boxes = read::list(entry, "bbox2d")?;
-    if views.len() != boxes.len() || views.len() > VIEWS {
+fn parse_listed_object(object: &str, entry: &Value) -> Result<ListedObject, String> {
+    let views = read::list_field(entry, "visible_pos")?;
+    let boxes = read::list_field(entry, "bbox2d")?;
+    if views.len() != boxes.len() || views.len() > SIMULATOR_VIEW_COUNT {
         let (views, boxes) = (views.len(), boxes.len());
         return Err(format!(
-            "fields `visible_pos` and `bbox2d` have {views} and {boxes} entries, expected equal numbers up to {VIEWS}"
+            "fields `visible_pos` and `bbox2d` have {views} and {boxes} entries, expected equal numbers up to {SIMULATOR_VIEW_COUNT}"
         ));
     }
-    Ok(Listed {
+    Ok(ListedObject {
         object: ObjectId::new(object).map_err(|error| error.to_string())?,
-        name: object_names::plain(read::text(entry, "name")?),
-        boxes: views.iter().zip(boxes).map(|(view, found)| seen(view, found)).collect::<Result<_, _>>()?,
+        name: object_names::plain_name(read::text_field(entry, "name")?),
+        boxes: views.iter().zip(boxes).map(|(view, found)| parse_seen_box(view, found)).collect::<Result<_, _>>()?,
     })
 }
 
-fn seen(view: &Value, found: &Value) -> Result<SeenBox, String> {
-    let view = view.as_u64().filter(|view| *view < VIEWS as u64);
+fn parse_seen_box(view: &Value, found: &Value) -> Result<SeenBox, String> {
+    let view = view.as_u64().filter(|view| *view < SIMULATOR_VIEW_COUNT as u64);
     let view = view.ok_or("field `visible_pos` has an entry that is not a view index (0..35)")?;
     let numbers = found.as_array().filter(|numbers| numbers.len() == 4);
     let numbers = numbers.ok_or("field `bbox2d` has an entry that is not a box of four numbers")?;
     let mut box_px = [0.0; 4];
     for (place, number) in box_px.iter_mut().zip(numbers) {
-        *place = read::number(number, "bbox2d")?;
+        *place = read::read_coordinate(number, "bbox2d")?;
     }
     if box_px[2] < 0.0 || box_px[3] < 0.0 {
         return Err("field `bbox2d` has a box of negative size".into());
@@ -166,8 +168,8 @@ mod tests {
         ViewpointId::new("v").unwrap()
     }
 
-    fn parsed(entry: &Value) -> Result<Vec<Listed>, String> {
-        parse(json!({ "v": { "7": entry } }).to_string().as_bytes(), &viewpoint())
+    fn parsed(entry: &Value) -> Result<Vec<ListedObject>, String> {
+        parse_boxes(json!({ "v": { "7": entry } }).to_string().as_bytes(), &viewpoint())
     }
 
     #[test]
@@ -200,7 +202,7 @@ mod tests {
         assert!(no_box.contains("have 1 and 0 entries"));
         let negative = parsed(&json!({"name": "lamp", "visible_pos": [3], "bbox2d": [[0, 0, -1, 1]]})).unwrap_err();
         assert!(negative.contains("negative size"));
-        assert_eq!(parse(b"{\"w\": {}}", &viewpoint()).unwrap_err(), "viewpoint v is missing");
+        assert_eq!(parse_boxes(b"{\"w\": {}}", &viewpoint()).unwrap_err(), "viewpoint v is missing");
     }
 
     proptest! {
@@ -224,9 +226,9 @@ mod tests {
         fn each_box_belongs_to_one_of_the_four_views_of_a_panorama(
             view in 0u8..36, x in 0.0..600.0f64, y in 0.0..440.0f64, around in 0.0..std::f64::consts::TAU,
         ) {
-            let ray = SeenBox { view, box_px: [x, y, 40.0, 40.0] }.ray().unwrap();
+            let ray = SeenBox { view, box_px: [x, y, 40.0, 40.0] }.centre_ray().unwrap();
             let around = Heading::new(around).unwrap();
-            let holders = wayword_core::Gaze::around(around).iter().filter(|gaze| gaze.holds(ray.heading)).count();
+            let holders = wayword_core::ViewGaze::around_heading(around).iter().filter(|gaze| gaze.holds_heading(ray.heading)).count();
             let on_seam = ((around.turn_to(ray.heading).abs() / std::f64::consts::FRAC_PI_2).fract() - 0.5).abs() < 1e-9;
             prop_assert!(holders == 1 || on_seam);
         }

@@ -13,21 +13,21 @@ use wayword_world::object_names;
 const MAX_BYTES: u64 = 64 << 20;
 /// Most words of a line that are read; the records have fewer than 40.
 const MAX_WORDS: usize = 64;
-const HINT: &str = "get the file again from Matterport3D's house_segmentations";
+const HOUSE_FILE_HINT: &str = "get the file again from Matterport3D's house_segmentations";
 
 /// The contents of a `.house` file.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub(crate) struct House {
+pub(crate) struct MatterportHouseFile {
     /// Height of each level, metres, by its index in the file.
     levels_m: BTreeMap<i64, f64>,
-    regions: BTreeMap<i64, Region>,
+    regions: BTreeMap<i64, HouseFileRegion>,
     panoramas: BTreeMap<ViewpointId, i64>,
     pub(crate) objects: Vec<HouseObject>,
 }
 
 /// A region of a building: the level it belongs to, and the letter of its kind of room.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Region {
+struct HouseFileRegion {
     level: i64,
     letter: char,
 }
@@ -44,9 +44,9 @@ pub(crate) struct HouseObject {
     pub(crate) centre: DVec3,
 }
 
-impl House {
+impl MatterportHouseFile {
     /// The storey of a viewpoint; the lowest is 1.
-    pub(crate) fn level(&self, viewpoint: &ViewpointId) -> Option<u32> {
+    pub(crate) fn storey_of_viewpoint(&self, viewpoint: &ViewpointId) -> Option<u32> {
         let region = self.regions.get(self.panoramas.get(viewpoint)?)?;
         let height_m = self.levels_m.get(&region.level)?;
         // Storeys are numbered from the lowest, whatever the order in the file is.
@@ -70,26 +70,26 @@ impl House {
 ///
 /// # Errors
 /// If the file does not have this format; the message names the line and the column.
-pub(crate) fn read(file: &Path) -> Result<Option<House>, PlatformError> {
-    let Some(text) = read::text_if_there(file, MAX_BYTES, HINT)? else {
+pub(crate) fn read_house_file(file: &Path) -> Result<Option<MatterportHouseFile>, PlatformError> {
+    let Some(text) = read::text_if_there(file, MAX_BYTES, HOUSE_FILE_HINT)? else {
         return Ok(None);
     };
-    parse(&text).map(Some).map_err(|reason| read::wrong(file, reason, HINT))
+    parse_house_file(&text).map(Some).map_err(|reason| read::file_error(file, reason, HOUSE_FILE_HINT))
 }
 
-fn parse(text: &str) -> Result<House, String> {
+fn parse_house_file(text: &str) -> Result<MatterportHouseFile, String> {
     if !text.starts_with("ASCII") {
         return Err("line 1: does not begin with ASCII".into());
     }
-    let mut house = House::default();
+    let mut house = MatterportHouseFile::default();
     let mut categories = BTreeMap::new();
     let mut objects = Vec::new();
     for (number, line) in text.lines().enumerate().skip(1) {
         if !line.starts_with(['L', 'R', 'P', 'O', 'C']) {
             continue;
         }
-        let record = Record { words: line.split_whitespace().take(MAX_WORDS).collect() };
-        add(&record, &mut house, &mut categories, &mut objects)
+        let record = HouseFileEntry { words: line.split_whitespace().take(MAX_WORDS).collect() };
+        add_entry(&record, &mut house, &mut categories, &mut objects)
             .map_err(|reason| format!("line {}: {reason}", number + 1))?;
     }
     house.objects = objects
@@ -101,31 +101,31 @@ fn parse(text: &str) -> Result<House, String> {
 
 /// Adds one line of the file to the house. An object's name is its category, which may come later in the file, so
 /// `objects` are collected with the number of their category.
-fn add(
-    record: &Record<'_>,
-    house: &mut House,
+fn add_entry(
+    record: &HouseFileEntry<'_>,
+    house: &mut MatterportHouseFile,
     categories: &mut BTreeMap<i64, Option<String>>,
     objects: &mut Vec<(HouseObject, i64)>,
 ) -> Result<(), String> {
-    match record.word(0)? {
+    match record.word_at(0)? {
         "L" => {
-            house.levels_m.insert(record.index(1)?, record.position(4)?.z);
+            house.levels_m.insert(record.index_at(1)?, record.position_at(4)?.z);
         }
         "R" => {
-            let letter = record.word(5)?.chars().next().unwrap_or('Z');
-            house.regions.insert(record.index(1)?, Region { level: record.index(2)?, letter });
+            let letter = record.word_at(5)?.chars().next().unwrap_or('Z');
+            house.regions.insert(record.index_at(1)?, HouseFileRegion { level: record.index_at(2)?, letter });
         }
         "P" => {
-            let viewpoint = ViewpointId::new(record.word(1)?).map_err(|error| error.to_string())?;
-            house.panoramas.insert(viewpoint, record.index(3)?);
+            let viewpoint = ViewpointId::new(record.word_at(1)?).map_err(|error| error.to_string())?;
+            house.panoramas.insert(viewpoint, record.index_at(3)?);
         }
         "O" => {
-            let id = ObjectId::new(record.word(1)?).map_err(|error| error.to_string())?;
-            let object = HouseObject { id, name: None, region: record.index(2)?, centre: record.position(4)? };
-            objects.push((object, record.index(3)?));
+            let id = ObjectId::new(record.word_at(1)?).map_err(|error| error.to_string())?;
+            let object = HouseObject { id, name: None, region: record.index_at(2)?, centre: record.position_at(4)? };
+            objects.push((object, record.index_at(3)?));
         }
         "C" => {
-            categories.insert(record.index(1)?, object_names::plain(record.word(3)?));
+            categories.insert(record.index_at(1)?, object_names::plain_name(record.word_at(3)?));
         }
         _ => {}
     }
@@ -133,27 +133,27 @@ fn add(
 }
 
 /// The words of a line.
-struct Record<'a> {
+struct HouseFileEntry<'a> {
     words: Vec<&'a str>,
 }
 
-impl<'a> Record<'a> {
-    fn word(&self, column: usize) -> Result<&'a str, String> {
+impl<'a> HouseFileEntry<'a> {
+    fn word_at(&self, column: usize) -> Result<&'a str, String> {
         let count = self.words.len();
         self.words.get(column).copied().ok_or_else(|| format!("has {count} columns; column {} is missing", column + 1))
     }
 
-    fn index(&self, column: usize) -> Result<i64, String> {
-        let word = self.word(column)?;
+    fn index_at(&self, column: usize) -> Result<i64, String> {
+        let word = self.word_at(column)?;
         word.parse().map_err(|_| format!("column {}: {word:.20?} is not an index", column + 1))
     }
 
-    fn position(&self, column: usize) -> Result<DVec3, String> {
+    fn position_at(&self, column: usize) -> Result<DVec3, String> {
         let number = |column: usize| {
-            let word = self.word(column)?;
+            let word = self.word_at(column)?;
             let number: f64 =
                 word.parse().map_err(|_| format!("column {}: {word:.20?} is not a number", column + 1))?;
-            read::coordinate(number).map_err(|reason| format!("column {}: {reason}", column + 1))
+            read::check_coordinate(number).map_err(|reason| format!("column {}: {reason}", column + 1))
         };
         Ok(DVec3::new(number(column)?, number(column + 1)?, number(column + 2)?))
     }
@@ -181,15 +181,18 @@ mod tests {
 
     #[test]
     fn levels_are_numbered_from_the_lowest_whatever_their_order() {
-        let house = parse(TEXT).unwrap();
-        assert_eq!((house.level(&id("lower")), house.level(&id("upper"))), (Some(1), Some(2)));
-        assert_eq!(house.level(&id("elsewhere")), None);
+        let house = parse_house_file(TEXT).unwrap();
+        assert_eq!(
+            (house.storey_of_viewpoint(&id("lower")), house.storey_of_viewpoint(&id("upper"))),
+            (Some(1), Some(2))
+        );
+        assert_eq!(house.storey_of_viewpoint(&id("elsewhere")), None);
         assert_eq!(house.room_letter(&id("upper")), Some('b'));
     }
 
     #[test]
     fn objects_have_the_names_of_their_categories() {
-        let house = parse(TEXT).unwrap();
+        let house = parse_house_file(TEXT).unwrap();
         let around: Vec<_> = house.objects_around(&id("lower")).collect();
         assert_eq!(around.len(), 1);
         assert_eq!((around[0].id.as_str(), around[0].name.as_deref()), ("5", Some("coffee table")));
@@ -198,9 +201,12 @@ mod tests {
 
     #[test]
     fn errors_name_the_line_and_the_column() {
-        assert_eq!(parse("ply\n").unwrap_err(), "line 1: does not begin with ASCII");
-        assert_eq!(parse("ASCII\nL 0 1").unwrap_err(), "line 2: has 3 columns; column 5 is missing");
-        assert_eq!(parse("ASCII\nL 0 1 - 0 nan 3").unwrap_err(), "line 2: column 6: NaN is not a plausible coordinate");
-        assert_eq!(parse("ASCII\nP v 0 x 0 0 0 0").unwrap_err(), "line 2: column 4: \"x\" is not an index");
+        assert_eq!(parse_house_file("ply\n").unwrap_err(), "line 1: does not begin with ASCII");
+        assert_eq!(parse_house_file("ASCII\nL 0 1").unwrap_err(), "line 2: has 3 columns; column 5 is missing");
+        assert_eq!(
+            parse_house_file("ASCII\nL 0 1 - 0 nan 3").unwrap_err(),
+            "line 2: column 6: NaN is not a plausible coordinate"
+        );
+        assert_eq!(parse_house_file("ASCII\nP v 0 x 0 0 0 0").unwrap_err(), "line 2: column 4: \"x\" is not an index");
     }
 }

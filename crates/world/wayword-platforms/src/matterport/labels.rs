@@ -1,12 +1,12 @@
 //! Makes the labels at a viewpoint of Matterport3D, from REVERIE's boxes or else from the `.house` file.
 
 use super::{
-    boxes::{Listed, Ray},
-    house_file::House,
+    boxes::{ListedObject, ViewpointRay},
+    house_file::MatterportHouseFile,
 };
 use glam::DVec3;
 use std::collections::BTreeMap;
-use wayword_core::{Heading, Label, ViewpointId};
+use wayword_core::{Heading, ObjectLabel, ViewpointId};
 
 /// Objects of a `.house` file count as visible within this distance and in the same region, metres. REVERIE's paper
 /// gives this distance for its own annotations. Walls within the region are not known.
@@ -17,15 +17,15 @@ const HOUSE_REACH_M: f64 = 3.0;
 /// A label's direction is that of the object's most central box. If the edges of all pictures cut the object, it surrounds
 /// the viewer or continues below the lowest view, and no box shows its direction. Then the direction of its centre is
 /// used, if the centre is known. The distance is to the centre.
-pub(crate) fn from_boxes(listed: &[Listed], eye: DVec3, centres: &BTreeMap<String, DVec3>) -> Vec<Label> {
-    let mut labels: Vec<Label> = listed
+pub(crate) fn from_boxes(listed: &[ListedObject], eye: DVec3, centres: &BTreeMap<String, DVec3>) -> Vec<ObjectLabel> {
+    let mut labels: Vec<ObjectLabel> = listed
         .iter()
         .filter_map(|entry| {
             let seen = entry.best_box()?;
             let centre = centres.get(entry.object.as_str()).copied();
             let by_centre = centre.and_then(|centre| ray_to(eye, centre));
-            let ray = if seen.is_cut() { by_centre.or(seen.ray()) } else { seen.ray() }?;
-            Some(Label {
+            let ray = if seen.is_cut() { by_centre.or(seen.centre_ray()) } else { seen.centre_ray() }?;
+            Some(ObjectLabel {
                 object: entry.object.clone(),
                 name: entry.name.clone()?,
                 heading: ray.heading,
@@ -42,13 +42,13 @@ pub(crate) fn from_boxes(listed: &[Listed], eye: DVec3, centres: &BTreeMap<Strin
 }
 
 /// Labels from the centres of the objects in a viewpoint's region.
-pub(crate) fn from_house(house: &House, viewpoint: &ViewpointId, eye: DVec3) -> Vec<Label> {
-    let mut labels: Vec<Label> = house
+pub(crate) fn from_house(house: &MatterportHouseFile, viewpoint: &ViewpointId, eye: DVec3) -> Vec<ObjectLabel> {
+    let mut labels: Vec<ObjectLabel> = house
         .objects_around(viewpoint)
         .filter(|object| eye.distance(object.centre) <= HOUSE_REACH_M)
         .filter_map(|object| {
             let ray = ray_to(eye, object.centre)?;
-            Some(Label {
+            Some(ObjectLabel {
                 object: object.id.clone(),
                 name: object.name.clone()?,
                 heading: ray.heading,
@@ -65,14 +65,14 @@ pub(crate) fn from_house(house: &House, viewpoint: &ViewpointId, eye: DVec3) -> 
 }
 
 /// The ray from an eye to a point; `None` if the point lies straight above or below.
-fn ray_to(eye: DVec3, point: DVec3) -> Option<Ray> {
+fn ray_to(eye: DVec3, point: DVec3) -> Option<ViewpointRay> {
     let to = point - eye;
     let flat_m = libm::hypot(to.x, to.y);
     if flat_m <= 1e-6 {
         return None;
     }
     let heading = Heading::new(libm::atan2(to.x, to.y)).ok()?;
-    Some(Ray { heading, elevation_rad: libm::atan2(to.z, flat_m) })
+    Some(ViewpointRay { heading, elevation_rad: libm::atan2(to.z, flat_m) })
 }
 
 #[cfg(test)]
@@ -81,8 +81,8 @@ mod tests {
     use crate::matterport::boxes::SeenBox;
     use wayword_core::ObjectId;
 
-    fn listed(boxes: &[SeenBox]) -> Listed {
-        Listed { object: ObjectId::new("3").unwrap(), name: Some("lamp".into()), boxes: boxes.to_vec() }
+    fn listed(boxes: &[SeenBox]) -> ListedObject {
+        ListedObject { object: ObjectId::new("3").unwrap(), name: Some("lamp".into()), boxes: boxes.to_vec() }
     }
 
     fn centres(at: DVec3) -> BTreeMap<String, DVec3> {

@@ -5,15 +5,15 @@ use std::path::{Path, PathBuf};
 use wayword_core::{PlatformError, SceneId, ViewpointId};
 
 /// Number of Matterport3DSimulator's views at a viewpoint.
-const VIEWS: usize = 36;
-const HINT: &str = "give --data the folder that holds Matterport3DSimulator's `connectivity` folder";
+const VIEWS_PER_VIEWPOINT: usize = 36;
+const DATA_FOLDER_HINT: &str = "give --data the folder that holds Matterport3DSimulator's `connectivity` folder";
 
 /// Places of REVERIE's boxes below the data folder, in the order in which they are tried.
-const BOXES: [&str; 4] = ["reverie/BBox", "BBox", "matterport/BBox", "REVERIE/BBox"];
+const BOX_FOLDERS: [&str; 4] = ["reverie/BBox", "BBox", "matterport/BBox", "REVERIE/BBox"];
 
 /// The folders and files of Matterport3D that exist below the data folder.
 #[derive(Debug, Clone)]
-pub(crate) struct Layout {
+pub(crate) struct MatterportLayout {
     connectivity: PathBuf,
     /// Folders with one folder per scan.
     scans: Vec<PathBuf>,
@@ -32,13 +32,13 @@ pub(crate) enum SkyboxFiles {
     Faces([PathBuf; 6]),
 }
 
-impl Layout {
+impl MatterportLayout {
     /// Searches a folder for the parts of Matterport3D, in the places where its tools put them.
     ///
     /// # Errors
     /// If there are no connectivity graphs; the message names the places that were tried.
-    pub(crate) fn find(data: &Path) -> Result<Self, PlatformError> {
-        let connectivity = first(data, &["matterport/connectivity", "connectivity", "graph"]).ok_or_else(|| {
+    pub(crate) fn find_data(data: &Path) -> Result<Self, PlatformError> {
+        let connectivity = first_folder(data, &["matterport/connectivity", "connectivity", "graph"]).ok_or_else(|| {
             let reason = if data.is_dir() {
                 "holds no connectivity graphs: it has no folder `matterport/connectivity`, `connectivity` or `graph`"
             } else if data.exists() {
@@ -46,22 +46,25 @@ impl Layout {
             } else {
                 "there is no such folder"
             };
-            read::wrong(data, reason, HINT)
+            read::file_error(data, reason, DATA_FOLDER_HINT)
         })?;
         Ok(Self {
             connectivity,
-            scans: all(data, &["matterport/v1/scans", "v1/scans", "matterport/scans", "scans", ""]),
-            boxes: first(data, &BOXES),
+            scans: existing_folders(data, &["matterport/v1/scans", "v1/scans", "matterport/scans", "scans", ""]),
+            boxes: first_folder(data, &BOX_FOLDERS),
             object_positions: ["reverie/objpos.json", "objpos.json", "BBox/objpos.json"]
                 .iter()
                 .map(|place| data.join(place))
                 .find(|file| file.is_file()),
-            views: all(data, &["matterport_36_views", "matterport/matterport_36_views", "matterport/views", "views"]),
+            views: existing_folders(
+                data,
+                &["matterport_36_views", "matterport/matterport_36_views", "matterport/views", "views"],
+            ),
         })
     }
 
     /// The scenes that have a connectivity file, sorted.
-    pub(crate) fn scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
+    pub(crate) fn list_scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
         let mut scenes = Vec::new();
         for file in files_in(&self.connectivity)? {
             let name = file.file_name().and_then(|name| name.to_str());
@@ -75,17 +78,17 @@ impl Layout {
     /// A warning for a user without REVERIE's boxes and with `.house` files for only some buildings or none: in the rest,
     /// objects are not known. It ends with advice. `None` if objects are known everywhere.
     pub(crate) fn lack_of_objects(&self, data: &Path) -> Option<String> {
-        let scenes = self.scenes().ok()?;
-        let houses = scenes.iter().filter(|scene| self.house(scene).is_some()).count();
+        let scenes = self.list_scenes().ok()?;
+        let houses = scenes.iter().filter(|scene| self.house_segmentation_file(scene).is_some()).count();
         if self.boxes.is_some() || houses == scenes.len() {
             return None;
         }
         let above = data.canonicalize().ok().and_then(|data| data.parent().map(Path::to_owned));
-        let hint = match above.filter(|above| first(above, &BOXES).is_some()) {
+        let hint = match above.filter(|above| first_folder(above, &BOX_FOLDERS).is_some()) {
             Some(above) => format!("give the folder above it, which has boxes: --data {}", above.display()),
             None => format!(
                 "put REVERIE's boxes into {}, or the .house file of each building at {}",
-                data.join(BOXES[0]).display(),
+                data.join(BOX_FOLDERS[0]).display(),
                 data.join("v1/scans/SCAN/house_segmentations/SCAN.house").display()
             ),
         };
@@ -94,7 +97,7 @@ impl Layout {
              objects are not known: labels name only rooms, and objects in texts stay unverified\n\
              hint: {hint}",
             data.display(),
-            BOXES.join(", "),
+            BOX_FOLDERS.join(", "),
             scenes.len() - houses,
             match scenes.len() {
                 1 => "1 scene has".to_owned(),
@@ -103,23 +106,31 @@ impl Layout {
         ))
     }
 
-    pub(crate) fn connectivity(&self, scene: &SceneId) -> PathBuf {
+    pub(crate) fn connectivity_file(&self, scene: &SceneId) -> PathBuf {
         self.connectivity.join(format!("{scene}_connectivity.json"))
     }
 
     /// Every existing file of a scene, sorted.
-    pub(crate) fn files<'a>(&self, scene: &SceneId, viewpoints: impl Iterator<Item = &'a ViewpointId>) -> Vec<PathBuf> {
-        let mut files = vec![self.connectivity(scene)];
-        files.extend([self.rooms(scene), self.house(scene), self.object_positions.clone()].into_iter().flatten());
+    pub(crate) fn files_of_scene<'a>(
+        &self,
+        scene: &SceneId,
+        viewpoints: impl Iterator<Item = &'a ViewpointId>,
+    ) -> Vec<PathBuf> {
+        let mut files = vec![self.connectivity_file(scene)];
+        files.extend(
+            [self.rooms_file(scene), self.house_segmentation_file(scene), self.object_positions.clone()]
+                .into_iter()
+                .flatten(),
+        );
         for viewpoint in viewpoints {
-            files.extend(self.boxes(scene, viewpoint));
-            match self.skybox(scene, viewpoint) {
+            files.extend(self.boxes_file(scene, viewpoint));
+            match self.skybox_files(scene, viewpoint) {
                 Some(SkyboxFiles::Strip(strip)) => files.push(strip),
                 Some(SkyboxFiles::Faces(faces)) => files.extend(faces),
                 None => {}
             }
-            if let Some(views) = self.views(scene, viewpoint) {
-                files.extend((0..VIEWS).map(|view| views.join(format!("{view}.jpg"))));
+            if let Some(views) = self.views_folder(scene, viewpoint) {
+                files.extend((0..VIEWS_PER_VIEWPOINT).map(|view| views.join(format!("{view}.jpg"))));
             }
         }
         files.retain(|file| file.is_file());
@@ -128,22 +139,22 @@ impl Layout {
     }
 
     /// The file of room letters, if it exists.
-    pub(crate) fn rooms(&self, scene: &SceneId) -> Option<PathBuf> {
+    pub(crate) fn rooms_file(&self, scene: &SceneId) -> Option<PathBuf> {
         self.in_scan(scene, "house_segmentations/panorama_to_region.txt")
     }
 
     /// The `.house` file, if it exists.
-    pub(crate) fn house(&self, scene: &SceneId) -> Option<PathBuf> {
+    pub(crate) fn house_segmentation_file(&self, scene: &SceneId) -> Option<PathBuf> {
         self.in_scan(scene, &format!("house_segmentations/{scene}.house"))
     }
 
     /// The file of REVERIE's boxes of a viewpoint, which need not exist.
-    pub(crate) fn boxes(&self, scene: &SceneId, viewpoint: &ViewpointId) -> Option<PathBuf> {
+    pub(crate) fn boxes_file(&self, scene: &SceneId, viewpoint: &ViewpointId) -> Option<PathBuf> {
         self.boxes.as_ref().map(|folder| folder.join(format!("{scene}_{viewpoint}.json")))
     }
 
     /// The six faces of a viewpoint's skybox: one file with all of them side by side, or one file each.
-    pub(crate) fn skybox(&self, scene: &SceneId, viewpoint: &ViewpointId) -> Option<SkyboxFiles> {
+    pub(crate) fn skybox_files(&self, scene: &SceneId, viewpoint: &ViewpointId) -> Option<SkyboxFiles> {
         let folder = "matterport_skybox_images";
         if let Some(strip) = self.in_scan(scene, &format!("{folder}/{viewpoint}_skybox_small.jpg")) {
             return Some(SkyboxFiles::Strip(strip));
@@ -154,7 +165,7 @@ impl Layout {
     }
 
     /// The folder of a viewpoint's 36 views, `0.jpg` to `35.jpg`.
-    pub(crate) fn views(&self, scene: &SceneId, viewpoint: &ViewpointId) -> Option<PathBuf> {
+    pub(crate) fn views_folder(&self, scene: &SceneId, viewpoint: &ViewpointId) -> Option<PathBuf> {
         let folders = self.views.iter().map(|views| views.join(scene.as_str()).join(viewpoint.as_str()));
         folders.into_iter().find(|folder| folder.is_dir())
     }
@@ -174,18 +185,18 @@ impl Layout {
 
 /// The entries of a folder, in no particular order.
 fn files_in(folder: &Path) -> Result<Vec<PathBuf>, PlatformError> {
-    let failed = |error: std::io::Error| PlatformError::unread(folder, &error, HINT);
+    let failed = |error: std::io::Error| PlatformError::for_unread_file(folder, &error, DATA_FOLDER_HINT);
     let entries = std::fs::read_dir(folder).map_err(failed)?;
     entries.map(|entry| Ok(entry.map_err(failed)?.path())).collect()
 }
 
 /// Those of `places` below the data folder that are folders.
-fn all(data: &Path, places: &[&str]) -> Vec<PathBuf> {
+fn existing_folders(data: &Path, places: &[&str]) -> Vec<PathBuf> {
     places.iter().map(|place| data.join(place)).filter(|folder| folder.is_dir()).collect()
 }
 
-fn first(data: &Path, places: &[&str]) -> Option<PathBuf> {
-    all(data, places).into_iter().next()
+fn first_folder(data: &Path, places: &[&str]) -> Option<PathBuf> {
+    existing_folders(data, places).into_iter().next()
 }
 
 #[cfg(test)]
@@ -198,7 +209,7 @@ mod tests {
         let data = above.path().join("matterport");
         std::fs::create_dir_all(data.join("connectivity")).unwrap();
         std::fs::write(data.join("connectivity/s_connectivity.json"), "[]").unwrap();
-        let lack = |data: &Path| Layout::find(data).unwrap().lack_of_objects(data);
+        let lack = |data: &Path| MatterportLayout::find_data(data).unwrap().lack_of_objects(data);
         let told = lack(&data).unwrap();
         assert!(told.contains(&data.display().to_string()) && told.contains("REVERIE's boxes into"), "{told}");
         assert!(told.contains("1 of 1 scene has no .house file"), "{told}");
@@ -214,14 +225,14 @@ mod tests {
     #[test]
     fn find_data_names_the_places_of_missing_data() {
         let empty = tempfile::tempdir().unwrap();
-        let error = Layout::find(empty.path()).unwrap_err().to_string();
+        let error = MatterportLayout::find_data(empty.path()).unwrap_err().to_string();
         assert!(error.contains("`matterport/connectivity`, `connectivity` or `graph`"), "{error}");
         assert!(error.contains("--data"), "{error}");
         let place = empty.path().join("place");
-        let nowhere = Layout::find(&place).unwrap_err().to_string();
+        let nowhere = MatterportLayout::find_data(&place).unwrap_err().to_string();
         assert!(nowhere.contains("place: there is no such folder; "), "{nowhere}");
         std::fs::write(&place, "").unwrap();
-        let file = Layout::find(&place).unwrap_err().to_string();
+        let file = MatterportLayout::find_data(&place).unwrap_err().to_string();
         assert!(file.contains("place: is not a folder; "), "{file}");
     }
 }

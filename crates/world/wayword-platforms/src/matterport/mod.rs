@@ -15,4 +15,4 @@ mod rooms;
 mod scene;
 mod thirty_six;
 
-pub use platform::Matterport;
+pub use platform::MatterportPlatform;

@@ -1,14 +1,14 @@
 //! Reads the photographs of a viewpoint, and makes a view in any direction from them.
 
 use super::{
-    layout::{Layout, SkyboxFiles},
+    layout::{MatterportLayout, SkyboxFiles},
     read::{self, PICTURE_HINT},
     thirty_six::ThirtySix,
 };
 use glam::DMat3;
-use wayword_core::{Gaze, Image, PlatformError, SceneId};
-use wayword_render::{CubeMap, Face, sample_view};
-use wayword_world::connectivity::Viewpoint;
+use wayword_core::{Image, PlatformError, SceneId, ViewGaze};
+use wayword_render::{CubeFace, CubeMap, sample_view};
+use wayword_world::connectivity::PanoramaViewpoint;
 
 const WIDTH_PX: u32 = 640;
 const HEIGHT_PX: u32 = 480;
@@ -16,26 +16,33 @@ const HEIGHT_PX: u32 = 480;
 const MAX_FOV_RAD: f64 = 2.8;
 
 /// The photographs of a viewpoint, in one of two forms.
-pub(crate) enum Photographs {
+pub(crate) enum ViewpointPhotographs {
     Skybox { cube: Box<CubeMap>, world_from_skybox: DMat3 },
     Views(ThirtySix),
 }
 
-impl Photographs {
+impl ViewpointPhotographs {
     /// Reads a viewpoint's skybox, or else its 36 views; `None` if there are neither.
     ///
     /// # Errors
     /// If a picture of the set is missing or broken.
-    pub(crate) fn read(layout: &Layout, scene: &SceneId, at: &Viewpoint) -> Result<Option<Self>, PlatformError> {
-        if let Some(files) = layout.skybox(scene, &at.id) {
-            return Ok(Some(Self::Skybox { cube: Box::new(cube(&files)?), world_from_skybox: at.world_from_skybox }));
+    pub(crate) fn read_photographs(
+        layout: &MatterportLayout,
+        scene: &SceneId,
+        at: &PanoramaViewpoint,
+    ) -> Result<Option<Self>, PlatformError> {
+        if let Some(files) = layout.skybox_files(scene, &at.id) {
+            return Ok(Some(Self::Skybox {
+                cube: Box::new(read_cube_map(&files)?),
+                world_from_skybox: at.world_from_skybox,
+            }));
         }
-        let views = layout.views(scene, &at.id).map(|folder| ThirtySix::read(&folder)).transpose()?;
+        let views = layout.views_folder(scene, &at.id).map(|folder| ThirtySix::read_views(&folder)).transpose()?;
         Ok(views.map(Self::Views))
     }
 
     /// The picture along a gaze; `None` if the gaze is too wide or too narrow for a flat picture.
-    pub(crate) fn view(&self, gaze: Gaze) -> Option<Image> {
+    pub(crate) fn view_along(&self, gaze: ViewGaze) -> Option<Image> {
         if !(0.01..=MAX_FOV_RAD).contains(&gaze.horizontal_fov_rad) {
             return None;
         }
@@ -46,28 +53,28 @@ impl Photographs {
                 let heading_rad = gaze.heading.rad();
                 sample_view(cube, world_from_skybox, heading_rad, 0.0, vertical_fov_rad, WIDTH_PX, HEIGHT_PX).ok()?
             }
-            Self::Views(views) => views.sample(gaze, WIDTH_PX, HEIGHT_PX),
+            Self::Views(views) => views.sample_gaze(gaze, WIDTH_PX, HEIGHT_PX),
         };
         Image::new(WIDTH_PX, HEIGHT_PX, rgb).ok()
     }
 }
 
-fn cube(files: &SkyboxFiles) -> Result<CubeMap, PlatformError> {
+fn read_cube_map(files: &SkyboxFiles) -> Result<CubeMap, PlatformError> {
     match files {
         SkyboxFiles::Strip(file) => {
-            let strip = read::picture(file)?;
-            CubeMap::from_strip(strip.width_px(), strip.height_px(), strip.rgb())
-                .map_err(|error| read::wrong(file, error.to_string(), PICTURE_HINT))
+            let strip = read::read_picture(file)?;
+            CubeMap::from_strip(strip.width_px(), strip.height_px(), strip.rgb_bytes())
+                .map_err(|error| read::file_error(file, error.to_string(), PICTURE_HINT))
         }
         SkyboxFiles::Faces(files) => {
             let mut faces = Vec::with_capacity(6);
             for file in files {
-                let picture = read::picture(file)?;
-                faces.push(Face { side_px: picture.height_px(), rgb: picture.rgb().to_vec() });
+                let picture = read::read_picture(file)?;
+                faces.push(CubeFace { side_px: picture.height_px(), rgb: picture.rgb_bytes().to_vec() });
             }
-            let faces = <[Face; 6]>::try_from(faces)
-                .map_err(|_| read::wrong(&files[0], "must have six faces", PICTURE_HINT))?;
-            CubeMap::new(faces).map_err(|error| read::wrong(&files[0], error.to_string(), PICTURE_HINT))
+            let faces = <[CubeFace; 6]>::try_from(faces)
+                .map_err(|_| read::file_error(&files[0], "must have six faces", PICTURE_HINT))?;
+            CubeMap::new(faces).map_err(|error| read::file_error(&files[0], error.to_string(), PICTURE_HINT))
         }
     }
 }

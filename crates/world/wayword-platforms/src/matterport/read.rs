@@ -5,8 +5,8 @@ use wayword_core::{Image, PlatformError};
 use wayword_world::files;
 
 pub(crate) use wayword_world::{
-    files::{bytes_if_there, json_if_there, text_if_there, wrong},
-    values::{coordinate, list, number, text},
+    files::{bytes_if_there, file_error, json_if_there, text_if_there},
+    values::{check_coordinate, list_field, read_coordinate, text_field},
 };
 
 /// Largest picture file, bytes.
@@ -18,9 +18,9 @@ pub(crate) const PICTURE_HINT: &str = "get the picture again from Matterport3D, 
 ///
 /// # Errors
 /// If it is missing, too large, or not a picture.
-pub(crate) fn picture(file: &Path) -> Result<Image, PlatformError> {
-    let wrong = |reason: String| wrong(file, reason, PICTURE_HINT);
+pub(crate) fn read_picture(file: &Path) -> Result<Image, PlatformError> {
+    let wrong = |reason: String| file_error(file, reason, PICTURE_HINT);
     let bytes = bytes_if_there(file, MAX_PICTURE_BYTES, PICTURE_HINT)?
         .ok_or_else(|| wrong("is missing from its set of pictures".into()))?;
-    files::picture(&bytes).map_err(wrong)
+    files::decode_picture(&bytes).map_err(wrong)
 }

@@ -8,7 +8,7 @@ use std::{collections::BTreeMap, path::Path};
 use wayword_core::{PlatformError, ViewpointId};
 
 const MAX_BYTES: u64 = 4 << 20;
-const HINT: &str = "get the file again from Matterport3D's house_segmentations";
+const ROOMS_HINT: &str = "get the file again from Matterport3D's house_segmentations";
 
 /// The room of each viewpoint, as a letter.
 pub(crate) type RoomLetters = BTreeMap<ViewpointId, char>;
@@ -17,21 +17,21 @@ pub(crate) type RoomLetters = BTreeMap<ViewpointId, char>;
 ///
 /// # Errors
 /// If a line does not have this format; the message names the line.
-pub(crate) fn read(file: &Path) -> Result<Option<RoomLetters>, PlatformError> {
-    let Some(text) = read::text_if_there(file, MAX_BYTES, HINT)? else {
+pub(crate) fn read_rooms(file: &Path) -> Result<Option<RoomLetters>, PlatformError> {
+    let Some(text) = read::text_if_there(file, MAX_BYTES, ROOMS_HINT)? else {
         return Ok(None);
     };
-    parse(&text).map(Some).map_err(|reason| read::wrong(file, reason, HINT))
+    parse_rooms(&text).map(Some).map_err(|reason| read::file_error(file, reason, ROOMS_HINT))
 }
 
-fn parse(text: &str) -> Result<RoomLetters, String> {
+fn parse_rooms(text: &str) -> Result<RoomLetters, String> {
     let mut rooms = RoomLetters::new();
     for (number, line) in text.lines().enumerate() {
         let words: Vec<&str> = line.split_whitespace().take(5).collect();
         if words.is_empty() {
             continue;
         }
-        let (viewpoint, letter) = entry(&words).map_err(|reason| format!("line {}: {reason}", number + 1))?;
+        let (viewpoint, letter) = parse_room_line(&words).map_err(|reason| format!("line {}: {reason}", number + 1))?;
         if rooms.insert(viewpoint, letter).is_some() {
             return Err(format!("line {}: viewpoint {} is listed twice", number + 1, words[1]));
         }
@@ -39,7 +39,7 @@ fn parse(text: &str) -> Result<RoomLetters, String> {
     Ok(rooms)
 }
 
-fn entry(words: &[&str]) -> Result<(ViewpointId, char), String> {
+fn parse_room_line(words: &[&str]) -> Result<(ViewpointId, char), String> {
     let [_, viewpoint, _, label] = words else {
         return Err("does not have four columns: index, viewpoint, region, letter".into());
     };
@@ -58,19 +58,19 @@ mod tests {
 
     #[test]
     fn a_line_gives_a_viewpoint_its_room() {
-        let rooms = parse("0 aa 3 k\n1 bb 0 Z\n\n").unwrap();
-        let words: Vec<_> = rooms.values().map(|letter| region::room(*letter)).collect();
+        let rooms = parse_rooms("0 aa 3 k\n1 bb 0 Z\n\n").unwrap();
+        let words: Vec<_> = rooms.values().map(|letter| region::room_for_letter(*letter)).collect();
         assert_eq!(words, [Some("kitchen"), None]);
     }
 
     #[test]
     fn errors_name_the_line() {
         assert_eq!(
-            parse("0 a 0 k\n1 b 0").unwrap_err(),
+            parse_rooms("0 a 0 k\n1 b 0").unwrap_err(),
             "line 2: does not have four columns: index, viewpoint, region, letter"
         );
-        assert_eq!(parse("0 a 0 kitchen").unwrap_err(), "line 1: the room is \"kitchen\", not one letter");
-        assert_eq!(parse("0 a 0 k\n1 a 1 b").unwrap_err(), "line 2: viewpoint a is listed twice");
-        assert!(parse("0 ../a 0 k").unwrap_err().contains("path separators"));
+        assert_eq!(parse_rooms("0 a 0 kitchen").unwrap_err(), "line 1: the room is \"kitchen\", not one letter");
+        assert_eq!(parse_rooms("0 a 0 k\n1 a 1 b").unwrap_err(), "line 2: viewpoint a is listed twice");
+        assert!(parse_rooms("0 ../a 0 k").unwrap_err().contains("path separators"));
     }
 }

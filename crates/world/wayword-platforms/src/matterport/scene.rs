@@ -1,8 +1,8 @@
 //! One building of Matterport3D in memory: its graph, cameras, rooms and objects.
 
 use super::{
-    house_file::{self, House},
-    layout::Layout,
+    house_file::{self, MatterportHouseFile},
+    layout::MatterportLayout,
     read, rooms,
 };
 use std::{
@@ -11,49 +11,51 @@ use std::{
 };
 use wayword_core::{ObjectId, PlatformError, SceneId, ViewpointGraph, ViewpointId};
 use wayword_world::{
-    connectivity::{self, Viewpoint},
+    connectivity::{self, PanoramaViewpoint},
     region,
 };
 
 const GRAPH_HINT: &str = "copy the file again from Matterport3DSimulator's folder `connectivity`";
 
 /// A building.
-pub(crate) struct Scene {
+pub(crate) struct MatterportScene {
     pub(crate) graph: Arc<ViewpointGraph>,
-    pub(crate) viewpoints: BTreeMap<ViewpointId, Viewpoint>,
-    pub(crate) house: Option<House>,
+    pub(crate) viewpoints: BTreeMap<ViewpointId, PanoramaViewpoint>,
+    pub(crate) house: Option<MatterportHouseFile>,
     rooms: Option<rooms::RoomLetters>,
     /// All objects that REVERIE lists anywhere in the building; read when first needed.
-    pub(crate) objects: OnceLock<BTreeMap<ObjectId, Everywhere>>,
+    pub(crate) objects: OnceLock<BTreeMap<ObjectId, ObjectListing>>,
 }
 
 /// One object, collected from REVERIE's lists at all viewpoints of a building.
 #[derive(Debug, Default)]
-pub(crate) struct Everywhere {
+pub(crate) struct ObjectListing {
     /// In plain words; `None` if the annotators' name has no plain words.
     pub(crate) name: Option<String>,
     /// The viewpoints that list it with a box.
     pub(crate) visible_from: BTreeSet<ViewpointId>,
 }
 
-impl Scene {
+impl MatterportScene {
     /// Reads a building's graph, rooms and `.house` file.
     ///
     /// # Errors
     /// If it does not exist, or one of its files is broken.
-    pub(crate) fn load(layout: &Layout, scene: &SceneId) -> Result<Self, PlatformError> {
-        let file = layout.connectivity(scene);
-        let read = connectivity::read(&file, GRAPH_HINT)?.ok_or_else(|| PlatformError::UnknownScene {
+    pub(crate) fn load_scene(layout: &MatterportLayout, scene: &SceneId) -> Result<Self, PlatformError> {
+        let file = layout.connectivity_file(scene);
+        let read = connectivity::read_connectivity_file(&file, GRAPH_HINT)?.ok_or_else(|| PlatformError::UnknownScene {
             scene: scene.to_string(),
             hint: format!(
                 "{} does not exist; copy it from Matterport3DSimulator's folder `connectivity`, or leave the items of this scene out",
                 file.display()
             ),
         })?;
-        let house = layout.house(scene).map(|file| house_file::read(&file)).transpose()?.flatten();
-        let rooms = layout.rooms(scene).map(|file| rooms::read(&file)).transpose()?.flatten();
-        let level = |viewpoint: &ViewpointId| house.as_ref().and_then(|house| house.level(viewpoint));
-        let graph = read.graph(level).map_err(|error| read::wrong(&file, error.to_string(), GRAPH_HINT))?;
+        let house =
+            layout.house_segmentation_file(scene).map(|file| house_file::read_house_file(&file)).transpose()?.flatten();
+        let rooms = layout.rooms_file(scene).map(|file| rooms::read_rooms(&file)).transpose()?.flatten();
+        let level = |viewpoint: &ViewpointId| house.as_ref().and_then(|house| house.storey_of_viewpoint(viewpoint));
+        let graph =
+            read.to_viewpoint_graph(level).map_err(|error| read::file_error(&file, error.to_string(), GRAPH_HINT))?;
         let viewpoints = read.viewpoints.into_iter().map(|viewpoint| (viewpoint.id.clone(), viewpoint)).collect();
         Ok(Self { graph: Arc::new(graph), viewpoints, house, rooms, objects: OnceLock::new() })
     }
@@ -64,9 +66,9 @@ impl Scene {
     }
 
     /// The room of a viewpoint, as a person would call it.
-    pub(crate) fn room(&self, viewpoint: &ViewpointId) -> Option<&'static str> {
+    pub(crate) fn room_name(&self, viewpoint: &ViewpointId) -> Option<&'static str> {
         let listed = self.rooms.as_ref().and_then(|rooms| rooms.get(viewpoint)).copied();
         let letter = listed.or_else(|| self.house.as_ref()?.room_letter(viewpoint))?;
-        region::room(letter)
+        region::room_for_letter(letter)
     }
 }

@@ -3,16 +3,16 @@
 //! The pictures look in 12 directions at 3 elevations each. A pixel of a view is taken from the picture that looks most
 //! nearly in the pixel's direction.
 
-use super::{boxes::VIEWS, read};
+use super::{boxes::SIMULATOR_VIEW_COUNT, read};
 use rayon::prelude::*;
 use std::{f64::consts::FRAC_PI_6, path::Path};
-use wayword_core::{Gaze, Image, PlatformError};
+use wayword_core::{Image, PlatformError, ViewGaze};
 
-const HINT: &str = "render the views again, all of the same size and with a vertical field of view of 60 degrees";
+const VIEWS_HINT: &str = "render the views again, all of the same size and with a vertical field of view of 60 degrees";
 /// Half of the views' vertical field of view.
 const HALF_FOV_RAD: f64 = FRAC_PI_6;
-const ROWS: usize = 3;
-const COLUMNS: usize = 12;
+const VIEW_ROWS: usize = 3;
+const VIEW_COLUMNS: usize = 12;
 /// Most pixels of one view; 36 views are in memory at a time.
 const MAX_PIXELS: u64 = 1280 * 960;
 
@@ -22,7 +22,7 @@ pub(crate) struct ThirtySix {
 }
 
 /// Where a ray meets a view: its component along the view's axis, and the pixel (continuous, from the top left corner).
-struct Hit {
+struct ViewHit {
     along: f64,
     x_px: f64,
     y_px: f64,
@@ -33,24 +33,24 @@ impl ThirtySix {
     ///
     /// # Errors
     /// If a view is missing or broken, or the views differ in size.
-    pub(crate) fn read(folder: &Path) -> Result<Self, PlatformError> {
-        let mut views: Vec<Image> = Vec::with_capacity(VIEWS);
-        for index in 0..VIEWS {
+    pub(crate) fn read_views(folder: &Path) -> Result<Self, PlatformError> {
+        let mut views: Vec<Image> = Vec::with_capacity(SIMULATOR_VIEW_COUNT);
+        for index in 0..SIMULATOR_VIEW_COUNT {
             let file = folder.join(format!("{index}.jpg"));
-            let view = read::picture(&file)?;
+            let view = read::read_picture(&file)?;
             let size = (view.width_px(), view.height_px());
             if u64::from(size.0) * u64::from(size.1) > MAX_PIXELS {
-                return Err(read::wrong(
+                return Err(read::file_error(
                     &file,
                     format!("has {} x {} pixels, more than 1280 x 960", size.0, size.1),
-                    HINT,
+                    VIEWS_HINT,
                 ));
             }
             if views.first().is_some_and(|first| (first.width_px(), first.height_px()) != size) {
-                return Err(read::wrong(
+                return Err(read::file_error(
                     &file,
                     format!("has {} x {} pixels, but 0.jpg has another size", size.0, size.1),
-                    HINT,
+                    VIEWS_HINT,
                 ));
             }
             views.push(view);
@@ -60,58 +60,58 @@ impl ThirtySix {
 
     /// The view along a gaze: RGB, from the top left. Each pixel comes from the picture with the nearest axis, with bilinear
     /// interpolation.
-    pub(crate) fn sample(&self, gaze: Gaze, width: u32, height: u32) -> Vec<u8> {
+    pub(crate) fn sample_gaze(&self, gaze: ViewGaze, width: u32, height: u32) -> Vec<u8> {
         let pixel = 2.0 * libm::tan(gaze.horizontal_fov_rad / 2.0) / f64::from(width);
         let columns: Vec<(usize, f64, f64)> = (0..width)
-            .map(|x| column(gaze.heading.rad(), (f64::from(x) + 0.5 - f64::from(width) / 2.0) * pixel))
+            .map(|x| nearest_column(gaze.heading.rad(), (f64::from(x) + 0.5 - f64::from(width) / 2.0) * pixel))
             .collect();
         let mut rgb = vec![0; 3 * width as usize * height as usize];
         rgb.par_chunks_exact_mut(3 * width as usize).enumerate().for_each(|(y, row)| {
             let up = (f64::from(height) / 2.0 - (y as f64 + 0.5)) * pixel;
             for (out, (column, right, ahead)) in row.chunks_exact_mut(3).zip(&columns) {
-                out.copy_from_slice(&self.colour(*column, *right, *ahead, up));
+                out.copy_from_slice(&self.colour_along(*column, *right, *ahead, up));
             }
         });
         rgb
     }
 
-    /// The colour along a ray, given as in [`Self::meet`], from the row with the nearest axis.
-    fn colour(&self, column: usize, right: f64, ahead: f64, up: f64) -> [u8; 3] {
-        let mut best = (0, self.meet(0, right, ahead, up));
-        for row in 1..ROWS {
-            let hit = self.meet(row, right, ahead, up);
+    /// The colour along a ray, given as in [`Self::meet_row`], from the row with the nearest axis.
+    fn colour_along(&self, column: usize, right: f64, ahead: f64, up: f64) -> [u8; 3] {
+        let mut best = (0, self.meet_row(0, right, ahead, up));
+        for row in 1..VIEW_ROWS {
+            let hit = self.meet_row(row, right, ahead, up);
             if hit.along > best.1.along {
                 best = (row, hit);
             }
         }
-        bilinear(&self.views[COLUMNS * best.0 + column], best.1.x_px, best.1.y_px)
+        sample_bilinear(&self.views[VIEW_COLUMNS * best.0 + column], best.1.x_px, best.1.y_px)
     }
 
     /// Where a ray, given as (right, ahead, up) in a column's axes, meets the view in a row of that column.
-    fn meet(&self, row: usize, right: f64, ahead: f64, up: f64) -> Hit {
-        let (sin, cos) = TILTS[row];
+    fn meet_row(&self, row: usize, right: f64, ahead: f64, up: f64) -> ViewHit {
+        let (sin, cos) = ROW_TILTS_SIN_COS[row];
         let (along, above) = (ahead * cos + up * sin, up * cos - ahead * sin);
         let (width, height) = (f64::from(self.views[0].width_px()), f64::from(self.views[0].height_px()));
         let focal_px = height / 2.0 / libm::tan(HALF_FOV_RAD);
-        Hit { along, x_px: width / 2.0 + focal_px * right / along, y_px: height / 2.0 - focal_px * above / along }
+        ViewHit { along, x_px: width / 2.0 + focal_px * right / along, y_px: height / 2.0 - focal_px * above / along }
     }
 }
 
 /// Sine and cosine of the rows' elevations: -30, 0 and 30 degrees.
-const TILTS: [(f64, f64); ROWS] = [(-0.5, COS_30), (0.0, 1.0), (0.5, COS_30)];
+const ROW_TILTS_SIN_COS: [(f64, f64); VIEW_ROWS] = [(-0.5, COS_30), (0.0, 1.0), (0.5, COS_30)];
 const COS_30: f64 = 0.866_025_403_784_438_6;
 
 /// The column with the axis nearest to a direction. The direction lies at the tangent `off` to the right of a heading. The
 /// other two numbers are the components of the ray (off, 1) to the right of that axis and along it.
-fn column(heading_rad: f64, off: f64) -> (usize, f64, f64) {
+fn nearest_column(heading_rad: f64, off: f64) -> (usize, f64, f64) {
     let steps = libm::round((heading_rad + libm::atan(off)) / FRAC_PI_6);
     let turn = heading_rad - steps * FRAC_PI_6;
     let (sin, cos) = (libm::sin(turn), libm::cos(turn));
-    (steps.rem_euclid(COLUMNS as f64) as usize % COLUMNS, sin + cos * off, cos - sin * off)
+    (steps.rem_euclid(VIEW_COLUMNS as f64) as usize % VIEW_COLUMNS, sin + cos * off, cos - sin * off)
 }
 
 /// Bilinear interpolation between pixel centres, clamped at the edges.
-fn bilinear(picture: &Image, x_px: f64, y_px: f64) -> [u8; 3] {
+fn sample_bilinear(picture: &Image, x_px: f64, y_px: f64) -> [u8; 3] {
     let split = |position: f64, side: u32| {
         let position = (position - 0.5).clamp(0.0, f64::from(side - 1));
         let index = position as usize;
@@ -120,7 +120,7 @@ fn bilinear(picture: &Image, x_px: f64, y_px: f64) -> [u8; 3] {
     let (left, right, across) = split(x_px, picture.width_px());
     let (above, below, down) = split(y_px, picture.height_px());
     let at = |x: usize, y: usize, channel: usize| {
-        f64::from(picture.rgb()[3 * (y * picture.width_px() as usize + x) + channel])
+        f64::from(picture.rgb_bytes()[3 * (y * picture.width_px() as usize + x) + channel])
     };
     std::array::from_fn(|channel| {
         let top = at(left, above, channel) * (1.0 - across) + at(right, above, channel) * across;
@@ -165,7 +165,7 @@ mod tests {
 
     fn panorama() -> ThirtySix {
         let view = |index: usize| drawn((index % 12) as f64 * FRAC_PI_6, ((index / 12) as f64 - 1.0) * FRAC_PI_6);
-        ThirtySix { views: (0..VIEWS).map(view).collect() }
+        ThirtySix { views: (0..SIMULATOR_VIEW_COUNT).map(view).collect() }
     }
 
     #[test]
@@ -173,8 +173,8 @@ mod tests {
         let panorama = panorama();
         for step in 0..12 {
             let heading = Heading::new(f64::from(step) * FRAC_PI_6).unwrap();
-            let rgb = panorama.sample(Gaze { heading, horizontal_fov_rad: own_fov_rad() }, WIDTH, HEIGHT);
-            let own = panorama.views[12 + step as usize].rgb();
+            let rgb = panorama.sample_gaze(ViewGaze { heading, horizontal_fov_rad: own_fov_rad() }, WIDTH, HEIGHT);
+            let own = panorama.views[12 + step as usize].rgb_bytes();
             let middle = 3 * ((HEIGHT / 2) * WIDTH + WIDTH / 2) as usize;
             assert_eq!(rgb[middle..middle + 3], own[middle..middle + 3]);
         }
@@ -185,7 +185,7 @@ mod tests {
         #[test]
         fn every_gaze_shows_the_world_without_seams(heading in 0.0..std::f64::consts::TAU) {
             let heading = Heading::new(heading).unwrap();
-            let rgb = panorama().sample(Gaze::quarter(heading), WIDTH, HEIGHT);
+            let rgb = panorama().sample_gaze(ViewGaze::quarter_view(heading), WIDTH, HEIGHT);
             for (index, pixel) in rgb.chunks_exact(3).enumerate() {
                 let (x, y) = ((index as u32 % WIDTH) as f64 + 0.5, (index as u32 / WIDTH) as f64 + 0.5);
                 let pixel_size = 2.0 / f64::from(WIDTH);

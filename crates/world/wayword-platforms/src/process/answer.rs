@@ -1,9 +1,9 @@
 //! Parses the lines that a child answers with.
 
-use super::fault::Fault;
+use super::fault::ChildFault;
 use serde::Deserialize;
 use serde_json::Value;
-use wayword_world::said::plain;
+use wayword_world::said::to_safe_text;
 
 /// Longest line of a child, bytes: an answer with a large picture in base64.
 pub(crate) const MAX_LINE_BYTES: usize = 48 << 20;
@@ -15,14 +15,14 @@ const SHOWN_CHARS: usize = 80;
 
 /// A child's answer to a request.
 #[derive(Debug, PartialEq)]
-pub(crate) struct Answer {
+pub(crate) struct ChildAnswer {
     pub(crate) id: u64,
-    pub(crate) outcome: Result<Value, Refusal>,
+    pub(crate) outcome: Result<Value, ChildRefusal>,
 }
 
 /// An error that the child sent.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
-pub(crate) struct Refusal {
+pub(crate) struct ChildRefusal {
     #[serde(default)]
     pub(crate) code: Option<String>,
     pub(crate) message: String,
@@ -30,36 +30,36 @@ pub(crate) struct Refusal {
 
 /// An answer as it is written in JSON, before it is checked.
 #[derive(Deserialize)]
-struct Wire {
+struct AnswerMessage {
     id: u64,
     #[serde(default)]
     result: Option<Value>,
     #[serde(default)]
-    error: Option<Refusal>,
+    error: Option<ChildRefusal>,
 }
 
 /// Parses an answer.
 ///
 /// # Errors
 /// If the line is not a JSON object with an id and either a result or an error.
-pub(crate) fn answer(line: &[u8]) -> Result<Answer, Fault> {
-    let nonsense = |reason: String| Fault::Nonsense { reason, start: start_of(line) };
+pub(crate) fn parse_answer(line: &[u8]) -> Result<ChildAnswer, ChildFault> {
+    let nonsense = |reason: String| ChildFault::Nonsense { reason, start: start_of(line) };
     if line.iter().filter(|byte| matches!(byte, b',' | b'[' | b'{')).count() > MAX_VALUES {
         return Err(nonsense(format!("more than {MAX_VALUES} JSON values")));
     }
-    let wire: Wire = serde_json::from_slice(line).map_err(|error| nonsense(error.to_string()))?;
+    let wire: AnswerMessage = serde_json::from_slice(line).map_err(|error| nonsense(error.to_string()))?;
     let outcome = match (wire.result, wire.error) {
         (Some(result), None) => Ok(result),
         (None, Some(refusal)) => Err(refusal),
         _ => return Err(nonsense("an answer must have either `result` or `error`".into())),
     };
-    Ok(Answer { id: wire.id, outcome })
+    Ok(ChildAnswer { id: wire.id, outcome })
 }
 
 /// The beginning of a line, in a form that an error may show.
 fn start_of(line: &[u8]) -> String {
     let start = String::from_utf8_lossy(&line[..line.len().min(4 * SHOWN_CHARS)]);
-    plain(&start, SHOWN_CHARS)
+    to_safe_text(&start, SHOWN_CHARS)
 }
 
 #[cfg(test)]
@@ -68,13 +68,13 @@ mod tests {
     use proptest::prelude::*;
     use serde_json::json;
     use std::io::Cursor;
-    use wayword_world::said::{Line, read_line};
+    use wayword_world::said::{OutputLine, read_line};
 
     #[test]
     fn an_answer_has_an_id_and_either_a_result_or_an_error() {
-        let good = answer(br#"{"id": 3, "result": {"scenes": []}, "more": 1}"#).unwrap();
-        assert_eq!(good, Answer { id: 3, outcome: Ok(json!({"scenes": []})) });
-        let refusal = answer(br#"{"id": 3, "error": {"message": "no"}}"#).unwrap();
+        let good = parse_answer(br#"{"id": 3, "result": {"scenes": []}, "more": 1}"#).unwrap();
+        assert_eq!(good, ChildAnswer { id: 3, outcome: Ok(json!({"scenes": []})) });
+        let refusal = parse_answer(br#"{"id": 3, "error": {"message": "no"}}"#).unwrap();
         assert_eq!(refusal.outcome.unwrap_err().message, "no");
         for bad in [
             &br#"{"id": 3}"#[..],
@@ -88,7 +88,7 @@ mod tests {
             b"",
             b"\xff\xfe",
         ] {
-            assert!(matches!(answer(bad), Err(Fault::Nonsense { .. })), "{bad:?} was accepted as an answer");
+            assert!(matches!(parse_answer(bad), Err(ChildFault::Nonsense { .. })), "{bad:?} was accepted as an answer");
         }
     }
 
@@ -97,20 +97,20 @@ mod tests {
         let mut line = br#"{"id":1,"result":["#.to_vec();
         line.extend(b"0,".repeat(MAX_VALUES));
         line.extend(b"0]}");
-        let error = answer(&line).unwrap_err().to_string();
+        let error = parse_answer(&line).unwrap_err().to_string();
         assert!(error.contains("JSON values"), "{error}");
     }
 
     #[test]
     fn errors_repeat_a_line_shortened_and_without_control_characters() {
-        let error = answer("\u{1b}[2J\u{7}".repeat(1000).as_bytes()).unwrap_err().to_string();
+        let error = parse_answer("\u{1b}[2J\u{7}".repeat(1000).as_bytes()).unwrap_err().to_string();
         assert!(error.len() < 300 && !error.contains(char::is_control), "{error}");
     }
 
     proptest! {
         #[test]
         fn no_bytes_make_the_parser_panic(line in prop::collection::vec(any::<u8>(), 0..300)) {
-            let _ = answer(&line);
+            let _ = parse_answer(&line);
         }
 
         #[test]
@@ -120,7 +120,7 @@ mod tests {
             let mut line = br#"{"id": 12, "result": {"viewpoints": [{"id": "a"}]}, "x": null}"#.to_vec();
             line[at] = byte;
             line.truncate(line.len() - cut);
-            match answer(&line) {
+            match parse_answer(&line) {
                 Ok(answer) => prop_assert!(answer.outcome.is_ok(), "one byte cannot turn it into an error"),
                 Err(fault) => prop_assert!(fault.to_string().chars().count() < 500 && !fault.leaves_it_usable()),
             }
@@ -131,9 +131,9 @@ mod tests {
             let line = serde_json::to_vec(&json!({"id": id, "result": {"name": text}})).unwrap();
             let mut pipe = line.clone();
             pipe.push(b'\n');
-            let Line::Whole(read) = read_line(&mut Cursor::new(pipe), MAX_LINE_BYTES) else { panic!("half a line") };
+            let OutputLine::Whole(read) = read_line(&mut Cursor::new(pipe), MAX_LINE_BYTES) else { panic!("half a line") };
             prop_assert_eq!(&read, &line);
-            prop_assert_eq!(answer(&read).unwrap(), Answer { id, outcome: Ok(json!({"name": text})) });
+            prop_assert_eq!(parse_answer(&read).unwrap(), ChildAnswer { id, outcome: Ok(json!({"name": text})) });
         }
     }
 }

@@ -1,11 +1,11 @@
 //! Everything that can go wrong with a child, with the message and the advice for each.
 
-use super::protocol::{FRAME, PROTOCOL};
+use super::protocol::{PROTOCOL_VERSION, WORLD_FRAME};
 use std::io;
 
 /// Why a request was not answered.
 #[derive(Debug, thiserror::Error)]
-pub(crate) enum Fault {
+pub(crate) enum ChildFault {
     #[error("cannot be started: {0}")]
     NotStarted(#[source] io::Error),
     #[error("died ({0})")]
@@ -20,9 +20,9 @@ pub(crate) enum Fault {
     Nonsense { reason: String, start: String },
     #[error("answered request {found} when it was asked request {asked}")]
     WrongId { asked: u64, found: u64 },
-    #[error("speaks version {0} of the protocol; Wayword speaks version {PROTOCOL}")]
+    #[error("speaks version {0} of the protocol; Wayword speaks version {PROTOCOL_VERSION}")]
     Version(u64),
-    #[error("uses the world frame {0:?}; it must be {FRAME:?}")]
+    #[error("uses the world frame {0:?}; it must be {WORLD_FRAME:?}")]
     Frame(String),
     #[error("sent a greeting that cannot be used: {0}")]
     Greeting(String),
@@ -36,7 +36,7 @@ pub(crate) enum Fault {
     Misfit(String),
 }
 
-impl Fault {
+impl ChildFault {
     /// Whether the child can still be used: it understood the request, and answered this request and no other.
     pub(crate) fn leaves_it_usable(&self) -> bool {
         matches!(self, Self::Refused { .. } | Self::Misfit(_))

@@ -2,7 +2,7 @@
 //! places that the child proposes: it is asked for the neighbours of each place, or whether one can walk straight between
 //! two of them.
 
-use super::{keeper::Keeper, labels::place, protocol::Offer};
+use super::{keeper::ChildKeeper, labels::plausible_position, protocol::WorldOffer};
 use serde::Deserialize;
 use serde_json::json;
 use std::collections::BTreeSet;
@@ -15,15 +15,15 @@ const POINTS_ASKED: usize = 1000;
 /// Most places from which a graph is made here.
 const MAX_POINTS: usize = 5000;
 /// Longest walk that the child is asked about, in multiples of the spacing.
-const REACH: f64 = 3.0;
+const REACH_SPACINGS: f64 = 3.0;
 /// Number of nearest places that a walk is tried to from each place.
-const TRIED: usize = 8;
+const MAX_NEIGHBOURS_TRIED: usize = 8;
 /// Most walks in one request.
-const BATCH: usize = 128;
+const MAX_PAIRS_PER_REQUEST: usize = 128;
 
 /// A place in the child's words, where a walker can stand. `level` is its storey, 1 for the lowest.
 #[derive(Debug, Clone, Deserialize)]
-struct Waypoint {
+struct ChildWaypoint {
     #[serde(default)]
     id: Option<ViewpointId>,
     position: [f64; 3],
@@ -33,26 +33,26 @@ struct Waypoint {
 
 /// The answer to `graph`.
 #[derive(Deserialize)]
-struct Whole {
-    viewpoints: Vec<Waypoint>,
+struct GraphAnswer {
+    viewpoints: Vec<ChildWaypoint>,
     edges: Vec<(ViewpointId, ViewpointId)>,
 }
 
 /// The answer to `points`.
 #[derive(Deserialize)]
-struct Points {
-    points: Vec<Waypoint>,
+struct PointsAnswer {
+    points: Vec<ChildWaypoint>,
 }
 
 /// The answer to `neighbours`.
 #[derive(Deserialize)]
-struct Neighbours {
+struct NeighboursAnswer {
     viewpoints: Vec<ViewpointId>,
 }
 
 /// The answer to `walkable`: one value for each pair that was asked about.
 #[derive(Deserialize)]
-struct Walkable {
+struct WalkableAnswer {
     walkable: Vec<bool>,
 }
 
@@ -60,103 +60,112 @@ struct Walkable {
 ///
 /// # Errors
 /// If the child does not answer, or its answers do not make a graph.
-pub(crate) fn of_scene(keeper: &Keeper, scene: &SceneId) -> Result<ViewpointGraph, PlatformError> {
-    if keeper.world().has(Offer::Graph) {
-        return whole(keeper, scene);
+pub(crate) fn of_scene(keeper: &ChildKeeper, scene: &SceneId) -> Result<ViewpointGraph, PlatformError> {
+    if keeper.world().has_offer(WorldOffer::Graph) {
+        return ask_whole_graph(keeper, scene);
     }
     let asked = json!({ "scene": scene, "count": POINTS_ASKED, "seed": 0 });
-    let Points { points } = keeper.ask("points", &asked)?;
+    let PointsAnswer { points } = keeper.ask_and_read("points", &asked)?;
     if points.is_empty() || points.len() > MAX_POINTS {
         let reason = format!("{} points, expected 1 to {MAX_POINTS}", points.len());
-        return Err(keeper.misfit("points", reason));
+        return Err(keeper.misfit_error("points", reason));
     }
-    if keeper.world().has(Offer::Neighbours) {
+    if keeper.world().has_offer(WorldOffer::Neighbours) {
         by_neighbours(keeper, scene, &points)
     } else {
         by_walking(keeper, scene, points)
     }
 }
 
-fn whole(keeper: &Keeper, scene: &SceneId) -> Result<ViewpointGraph, PlatformError> {
-    let Whole { viewpoints, edges } = keeper.ask("graph", &json!({ "scene": scene }))?;
+fn ask_whole_graph(keeper: &ChildKeeper, scene: &SceneId) -> Result<ViewpointGraph, PlatformError> {
+    let GraphAnswer { viewpoints, edges } = keeper.ask_and_read("graph", &json!({ "scene": scene }))?;
     if viewpoints.is_empty() || viewpoints.len() > MAX_VIEWPOINTS || edges.len() > MAX_EDGES {
         let reason = format!(
             "viewpoints: {}, expected 1 to {MAX_VIEWPOINTS}; edges: {}, expected at most {MAX_EDGES}",
             viewpoints.len(),
             edges.len()
         );
-        return Err(keeper.misfit("graph", reason));
+        return Err(keeper.misfit_error("graph", reason));
     }
-    let mut graph = nodes(&viewpoints).map_err(|reason| keeper.misfit("graph", reason))?;
+    let mut graph = graph_without_edges(&viewpoints).map_err(|reason| keeper.misfit_error("graph", reason))?;
     for (a, b) in &edges {
-        graph.join(a, b).map_err(|error| keeper.misfit("graph", error.to_string()))?;
+        graph.join_viewpoints(a, b).map_err(|error| keeper.misfit_error("graph", error.to_string()))?;
     }
     Ok(graph)
 }
 
-fn by_neighbours(keeper: &Keeper, scene: &SceneId, points: &[Waypoint]) -> Result<ViewpointGraph, PlatformError> {
-    let mut graph = nodes(points).map_err(|reason| keeper.misfit("points", reason))?;
+fn by_neighbours(
+    keeper: &ChildKeeper,
+    scene: &SceneId,
+    points: &[ChildWaypoint],
+) -> Result<ViewpointGraph, PlatformError> {
+    let mut graph = graph_without_edges(points).map_err(|reason| keeper.misfit_error("points", reason))?;
     let names: Vec<ViewpointId> = graph.viewpoints().cloned().collect();
     let mut edges = 0;
     for name in &names {
         let asked = json!({ "scene": scene, "viewpoint": name });
-        let Neighbours { viewpoints } = keeper.ask("neighbours", &asked)?;
+        let NeighboursAnswer { viewpoints } = keeper.ask_and_read("neighbours", &asked)?;
         edges += viewpoints.len();
         if edges > MAX_EDGES {
-            return Err(keeper.misfit("neighbours", format!("more than {MAX_EDGES} neighbours in all")));
+            return Err(keeper.misfit_error("neighbours", format!("more than {MAX_EDGES} neighbours in all")));
         }
         for other in &viewpoints {
-            graph.join(name, other).map_err(|error| keeper.misfit("neighbours", error.to_string()))?;
+            graph.join_viewpoints(name, other).map_err(|error| keeper.misfit_error("neighbours", error.to_string()))?;
         }
     }
     Ok(graph)
 }
 
 /// A graph of these places without edges, with the names that the child gave them.
-fn nodes(places: &[Waypoint]) -> Result<ViewpointGraph, String> {
+fn graph_without_edges(places: &[ChildWaypoint]) -> Result<ViewpointGraph, String> {
     let mut graph = ViewpointGraph::default();
     for (index, here) in places.iter().enumerate() {
         let id = here.id.clone().ok_or_else(|| format!("viewpoint {index} has no `id`"))?;
-        let position = place(here.position).map_err(|reason| format!("viewpoint {id}: {reason}"))?;
-        graph.add(id, position, here.level.filter(|level| *level > 0)).map_err(|error| error.to_string())?;
+        let position = plausible_position(here.position).map_err(|reason| format!("viewpoint {id}: {reason}"))?;
+        graph.add_viewpoint(id, position, here.level.filter(|level| *level > 0)).map_err(|error| error.to_string())?;
     }
     Ok(graph)
 }
 
 /// Thins the places out, asks for each near pair whether one can walk straight, and keeps the largest connected part.
-fn by_walking(keeper: &Keeper, scene: &SceneId, points: Vec<Waypoint>) -> Result<ViewpointGraph, PlatformError> {
+fn by_walking(
+    keeper: &ChildKeeper,
+    scene: &SceneId,
+    points: Vec<ChildWaypoint>,
+) -> Result<ViewpointGraph, PlatformError> {
     let spacing_m = keeper.options().spacing_m;
-    let points = thinned(points, spacing_m).map_err(|reason| keeper.misfit("points", reason))?;
-    let tried = near_pairs(&points, REACH * spacing_m);
+    let points = thin_out(points, spacing_m).map_err(|reason| keeper.misfit_error("points", reason))?;
+    let tried = near_pairs(&points, REACH_SPACINGS * spacing_m);
     let mut open = Vec::new();
-    for batch in tried.chunks(BATCH) {
+    for batch in tried.chunks(MAX_PAIRS_PER_REQUEST) {
         let pairs: Vec<_> = batch.iter().map(|(a, b)| [points[*a].position, points[*b].position]).collect();
-        let Walkable { walkable } = keeper.ask("walkable", &json!({ "scene": scene, "pairs": pairs }))?;
+        let WalkableAnswer { walkable } =
+            keeper.ask_and_read("walkable", &json!({ "scene": scene, "pairs": pairs }))?;
         if walkable.len() != batch.len() {
             let reason = format!("`walkable` has length {}, but `pairs` has {}", walkable.len(), batch.len());
-            return Err(keeper.misfit("walkable", reason));
+            return Err(keeper.misfit_error("walkable", reason));
         }
         open.extend(batch.iter().zip(walkable).filter(|(_, open)| *open).map(|(pair, _)| *pair));
     }
-    joined(&points, &open).map_err(|source| PlatformError::Graph { scene: scene.clone(), source })
+    largest_connected_part(&points, &open).map_err(|source| PlatformError::Graph { scene: scene.clone(), source })
 }
 
 /// Drops places that are less than `spacing_m` from an earlier one, and gives the rest names if they have none.
-fn thinned(points: Vec<Waypoint>, spacing_m: f64) -> Result<Vec<Waypoint>, String> {
-    let mut kept: Vec<Waypoint> = Vec::new();
+fn thin_out(points: Vec<ChildWaypoint>, spacing_m: f64) -> Result<Vec<ChildWaypoint>, String> {
+    let mut kept: Vec<ChildWaypoint> = Vec::new();
     for point in points {
-        let here = place(point.position)?;
+        let here = plausible_position(point.position)?;
         if kept.iter().all(|other| DVec3::from_array(other.position).distance(here) >= spacing_m) {
             let name = || ViewpointId::new(format!("p{}", kept.len())).map_err(|error| error.to_string());
             let id = point.id.clone().map_or_else(name, Ok)?;
-            kept.push(Waypoint { id: Some(id), ..point });
+            kept.push(ChildWaypoint { id: Some(id), ..point });
         }
     }
     Ok(kept)
 }
 
 /// Pairs of each place with its nearest ones, sorted, each pair once.
-fn near_pairs(points: &[Waypoint], reach_m: f64) -> Vec<(usize, usize)> {
+fn near_pairs(points: &[ChildWaypoint], reach_m: f64) -> Vec<(usize, usize)> {
     let positions: Vec<DVec3> = points.iter().map(|point| DVec3::from_array(point.position)).collect();
     let mut pairs = BTreeSet::new();
     for (here, from) in positions.iter().enumerate() {
@@ -167,33 +176,37 @@ fn near_pairs(points: &[Waypoint], reach_m: f64) -> Vec<(usize, usize)> {
             .filter(|(far_m, other)| *other != here && *far_m <= reach_m)
             .collect();
         near.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        pairs.extend(near.into_iter().take(TRIED).map(|(_, other)| (here.min(other), here.max(other))));
+        pairs.extend(near.into_iter().take(MAX_NEIGHBOURS_TRIED).map(|(_, other)| (here.min(other), here.max(other))));
     }
     pairs.into_iter().collect()
 }
 
 /// The largest connected part of the graph; of two with the same size, the one with the first place.
-fn joined(points: &[Waypoint], open: &[(usize, usize)]) -> Result<ViewpointGraph, GraphError> {
-    let part = parts(points.len(), open);
+fn largest_connected_part(points: &[ChildWaypoint], open: &[(usize, usize)]) -> Result<ViewpointGraph, GraphError> {
+    let part = label_parts(points.len(), open);
     let size = |number: usize| part.iter().filter(|other| **other == number).count();
     let numbers: BTreeSet<usize> = part.iter().copied().collect();
     let largest = numbers.into_iter().rev().max_by_key(|number| size(*number));
     let mut graph = ViewpointGraph::default();
     for (point, number) in points.iter().zip(&part) {
         if let (Some(id), true) = (&point.id, Some(*number) == largest) {
-            graph.add(id.clone(), DVec3::from_array(point.position), point.level.filter(|level| *level > 0))?;
+            graph.add_viewpoint(
+                id.clone(),
+                DVec3::from_array(point.position),
+                point.level.filter(|level| *level > 0),
+            )?;
         }
     }
     for (a, b) in open {
         if let (Some(from), Some(to), true) = (&points[*a].id, &points[*b].id, Some(part[*a]) == largest) {
-            graph.join(from, to)?;
+            graph.join_viewpoints(from, to)?;
         }
     }
     Ok(graph)
 }
 
 /// For each place, the first place of its connected part.
-fn parts(count: usize, open: &[(usize, usize)]) -> Vec<usize> {
+fn label_parts(count: usize, open: &[(usize, usize)]) -> Vec<usize> {
     let mut beside = vec![Vec::new(); count];
     for (a, b) in open {
         beside[*a].push(*b);
@@ -217,18 +230,18 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn at(x: f64, y: f64) -> Waypoint {
-        Waypoint { id: None, position: [x, y, 1.5], level: None }
+    fn at(x: f64, y: f64) -> ChildWaypoint {
+        ChildWaypoint { id: None, position: [x, y, 1.5], level: None }
     }
 
     #[test]
     fn a_graph_of_walks_is_the_largest_part_and_avoids_walls() {
-        let points: Vec<Waypoint> = (0..8).map(|n| at(f64::from(n), 0.0)).collect();
-        let points = thinned(points, 1.0).unwrap();
+        let points: Vec<ChildWaypoint> = (0..8).map(|n| at(f64::from(n), 0.0)).collect();
+        let points = thin_out(points, 1.0).unwrap();
         // A wall between 4 and 5.
         let open: Vec<_> = near_pairs(&points, 2.0).into_iter().filter(|(a, b)| (*a < 5) == (*b < 5)).collect();
-        let graph = joined(&points, &open).unwrap();
-        assert_eq!((graph.len(), graph.components()), (5, 1));
+        let graph = largest_connected_part(&points, &open).unwrap();
+        assert_eq!((graph.len(), graph.count_components()), (5, 1));
         assert!(graph.viewpoints().all(|id| id.as_str() < "p5"));
     }
 
@@ -237,20 +250,20 @@ mod tests {
         fn thinned_places_lie_apart_and_every_place_has_one_near(
             xs in prop::collection::vec((0.0..8.0f64, 0.0..8.0f64), 1..80),
         ) {
-            let points: Vec<Waypoint> = xs.iter().map(|(x, y)| at(*x, *y)).collect();
-            let kept = thinned(points.clone(), 1.0).unwrap();
-            let far = |a: &Waypoint, b: &Waypoint| DVec3::from_array(a.position).distance(DVec3::from_array(b.position));
+            let points: Vec<ChildWaypoint> = xs.iter().map(|(x, y)| at(*x, *y)).collect();
+            let kept = thin_out(points.clone(), 1.0).unwrap();
+            let far = |a: &ChildWaypoint, b: &ChildWaypoint| DVec3::from_array(a.position).distance(DVec3::from_array(b.position));
             for (n, a) in kept.iter().enumerate() {
                 prop_assert!(kept[..n].iter().all(|b| far(a, b) >= 1.0));
             }
             prop_assert!(points.iter().all(|a| kept.iter().any(|b| far(a, b) < 1.0)));
             let pairs = near_pairs(&kept, 3.0);
             prop_assert!(pairs.iter().all(|(a, b)| a < b && far(&kept[*a], &kept[*b]) <= 3.0));
-            let graph = joined(&kept, &pairs).unwrap();
-            prop_assert_eq!(graph.components(), 1);
-            let inside = |n: usize| graph.position(kept[n].id.as_ref().unwrap()).is_some();
+            let graph = largest_connected_part(&kept, &pairs).unwrap();
+            prop_assert_eq!(graph.count_components(), 1);
+            let inside = |n: usize| graph.position_of(kept[n].id.as_ref().unwrap()).is_some();
             prop_assert!(pairs.iter().all(|(a, b)| inside(*a) == inside(*b)), "a way leads out of the part that was kept");
-            let all = parts(kept.len(), &pairs);
+            let all = label_parts(kept.len(), &pairs);
             let largest = all.iter().map(|part| all.iter().filter(|other| *other == part).count()).max();
             prop_assert_eq!(Some(graph.len()), largest);
         }

@@ -4,10 +4,10 @@
 //! error, and the next request goes to a new child.
 
 use super::{
-    child::Running,
-    fault::Fault,
+    child::RunningChild,
+    fault::ChildFault,
     options::ProcessOptions,
-    protocol::{FRAME, Greeting, PROTOCOL, World},
+    protocol::{ChildGreeting, PROTOCOL_VERSION, WORLD_FRAME, WorldProgram},
 };
 use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
@@ -17,22 +17,22 @@ use std::{
     time::Duration,
 };
 use wayword_core::PlatformError;
-use wayword_world::said::{Hear, plain};
+use wayword_world::said::{OutputListener, to_safe_text};
 
 /// After this many answers the child may be restarted once more.
 const ANSWERS_FOR_A_RESTART: u32 = 200;
 
 /// Keeps one child running. Only one thread uses the child at a time.
-pub(crate) struct Keeper {
+pub(crate) struct ChildKeeper {
     options: ProcessOptions,
-    hear: Hear,
-    world: World,
+    hear: OutputListener,
+    world: WorldProgram,
     state: Mutex<ChildState>,
 }
 
 /// The running child, and the history of earlier ones.
 struct ChildState {
-    running: Option<Running>,
+    running: Option<RunningChild>,
     /// The folder of its pictures, with links resolved.
     images: Option<PathBuf>,
     /// Number of requests so far, to all children; also the id of the last one.
@@ -42,9 +42,9 @@ struct ChildState {
     last_fault: String,
 }
 
-impl Keeper {
+impl ChildKeeper {
     /// Starts the child and reads its greeting.
-    pub(crate) fn start(options: ProcessOptions, hear: Hear) -> Result<Self, PlatformError> {
+    pub(crate) fn start(options: ProcessOptions, hear: OutputListener) -> Result<Self, PlatformError> {
         let mut state = ChildState {
             running: None,
             images: None,
@@ -54,7 +54,7 @@ impl Keeper {
             last_fault: String::new(),
         };
         // No request was lost if the first child does not start: the user has to correct the cause.
-        let world = state.launch(&options, &hear).map_err(|failed| failed.into_wrong(&options))?;
+        let world = state.launch_child(&options, &hear).map_err(|failed| failed.into_wrong(&options))?;
         Ok(Self { options, hear, world, state: Mutex::new(state) })
     }
 
@@ -62,12 +62,16 @@ impl Keeper {
         &self.options
     }
 
-    pub(crate) fn world(&self) -> &World {
+    pub(crate) fn world(&self) -> &WorldProgram {
         &self.world
     }
 
     /// Sends a request, and reads its result from the answer alone, without the child's files.
-    pub(crate) fn ask<T: DeserializeOwned>(&self, method: &'static str, params: &Value) -> Result<T, PlatformError> {
+    pub(crate) fn ask_and_read<T: DeserializeOwned>(
+        &self,
+        method: &'static str,
+        params: &Value,
+    ) -> Result<T, PlatformError> {
         self.ask_and_take(method, params, |result, _| {
             serde_path_to_error::deserialize(result).map_err(|error| error.to_string())
         })
@@ -82,45 +86,47 @@ impl Keeper {
         take: impl FnOnce(Value, Option<&Path>) -> Result<T, String>,
     ) -> Result<T, PlatformError> {
         let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
-        self.revive(&mut state)?;
-        let result = state.ask(&self.options, method, params, self.options.answer_within).map_err(|failed| {
-            match (&failed.fault, params.get("scene").and_then(Value::as_str)) {
-                (Fault::Refused { code: Some(code), message }, Some(scene)) if code == "unknown_scene" => {
+        self.revive_child(&mut state)?;
+        let result = state.ask_running_child(&self.options, method, params, self.options.answer_within).map_err(
+            |failed| match (&failed.fault, params.get("scene").and_then(Value::as_str)) {
+                (ChildFault::Refused { code: Some(code), message }, Some(scene)) if code == "unknown_scene" => {
                     PlatformError::UnknownScene { scene: scene.to_owned(), hint: message.clone() }
                 }
                 _ => failed.into_error(&self.options),
-            }
-        })?;
-        take(result, state.images.as_deref()).map_err(|reason| self.misfit(method, reason))
+            },
+        )?;
+        take(result, state.images.as_deref()).map_err(|reason| self.misfit_error(method, reason))
     }
 
     /// The error for an answer that has the right form but cannot be used.
-    pub(crate) fn misfit(&self, method: &'static str, reason: impl Into<String>) -> PlatformError {
-        Failed::without_request(Fault::Misfit(reason.into()), method).into_error(&self.options)
+    pub(crate) fn misfit_error(&self, method: &'static str, reason: impl Into<String>) -> PlatformError {
+        FailedRequest::without_request(ChildFault::Misfit(reason.into()), method).into_error(&self.options)
     }
 
     /// Starts the child again if it has ended.
-    fn revive(&self, state: &mut ChildState) -> Result<(), PlatformError> {
+    fn revive_child(&self, state: &mut ChildState) -> Result<(), PlatformError> {
         if let Some(running) = state.running.as_ref()
             && running.has_ended()
         {
             // No request was waiting for it, so none is lost.
-            state.last_fault =
-                format!("ended by itself{}", state.running.take().map_or_else(String::new, Running::bury));
+            state.last_fault = format!(
+                "ended by itself{}",
+                state.running.take().map_or_else(String::new, RunningChild::kill_with_last_words)
+            );
         }
         if state.running.is_some() {
             return Ok(());
         }
-        let failed = |fault| Failed::without_request(fault, "hello").into_error(&self.options);
+        let failed = |fault| FailedRequest::without_request(fault, "hello").into_error(&self.options);
         if state.restarts_left == 0 {
-            return Err(failed(Fault::GaveUp(state.last_fault.clone())));
+            return Err(failed(ChildFault::GaveUp(state.last_fault.clone())));
         }
         state.restarts_left -= 1;
-        let world = state.launch(&self.options, &self.hear).map_err(|failed| failed.into_error(&self.options))?;
+        let world = state.launch_child(&self.options, &self.hear).map_err(|failed| failed.into_error(&self.options))?;
         if world != self.world {
             state.running = None;
-            state.last_fault = Fault::Changed.to_string();
-            return Err(failed(Fault::Changed));
+            state.last_fault = ChildFault::Changed.to_string();
+            return Err(failed(ChildFault::Changed));
         }
         Ok(())
     }
@@ -128,87 +134,88 @@ impl Keeper {
 
 impl ChildState {
     /// Starts a child and reads its greeting.
-    fn launch(&mut self, options: &ProcessOptions, hear: &Hear) -> Result<World, Failed> {
-        let started = Running::start(options, hear).map_err(|fault| {
+    fn launch_child(&mut self, options: &ProcessOptions, hear: &OutputListener) -> Result<WorldProgram, FailedRequest> {
+        let started = RunningChild::start(options, hear).map_err(|fault| {
             self.last_fault = fault.to_string();
-            Failed::without_request(fault, "hello")
+            FailedRequest::without_request(fault, "hello")
         })?;
         self.running = Some(started);
-        let params = json!({ "protocol": PROTOCOL, "frame": FRAME });
-        let greeting = self.ask(options, "hello", &params, options.start_within);
-        let world = greeting.and_then(|greeting| self.greeted(greeting).map_err(|fault| self.buried(fault, "hello")));
+        let params = json!({ "protocol": PROTOCOL_VERSION, "frame": WORLD_FRAME });
+        let greeting = self.ask_running_child(options, "hello", &params, options.start_within);
+        let world = greeting
+            .and_then(|greeting| self.accept_greeting(greeting).map_err(|fault| self.failure_after(fault, "hello")));
         world.inspect_err(|_| self.running = None)
     }
 
     /// Checks a greeting, and notes the folder of the child's pictures.
-    fn greeted(&mut self, greeting: Value) -> Result<World, Fault> {
+    fn accept_greeting(&mut self, greeting: Value) -> Result<WorldProgram, ChildFault> {
         // The version is checked first, because another version may have another greeting.
         if let Some(version) = greeting.get("protocol").and_then(Value::as_u64)
-            && version != PROTOCOL
+            && version != PROTOCOL_VERSION
         {
-            return Err(Fault::Version(version));
+            return Err(ChildFault::Version(version));
         }
-        let greeting: Greeting =
-            serde_path_to_error::deserialize(greeting).map_err(|error| Fault::Greeting(error.to_string()))?;
-        if greeting.protocol != PROTOCOL {
-            return Err(Fault::Version(greeting.protocol));
+        let greeting: ChildGreeting =
+            serde_path_to_error::deserialize(greeting).map_err(|error| ChildFault::Greeting(error.to_string()))?;
+        if greeting.protocol != PROTOCOL_VERSION {
+            return Err(ChildFault::Version(greeting.protocol));
         }
-        if greeting.frame != FRAME {
-            return Err(Fault::Frame(greeting.frame.chars().take(80).collect()));
+        if greeting.frame != WORLD_FRAME {
+            return Err(ChildFault::Frame(greeting.frame.chars().take(80).collect()));
         }
         let unusable =
-            |folder: &Path, reason: String| Fault::Greeting(format!("`images` {}: {reason}", folder.display()));
+            |folder: &Path, reason: String| ChildFault::Greeting(format!("`images` {}: {reason}", folder.display()));
         self.images = match &greeting.images {
             Some(folder) if !folder.is_absolute() => return Err(unusable(folder, "is not absolute".into())),
             Some(folder) => Some(folder.canonicalize().map_err(|error| unusable(folder, error.to_string()))?),
             None => None,
         };
-        greeting.world().map_err(Fault::Greeting)
+        greeting.to_world_program().map_err(ChildFault::Greeting)
     }
 
-    fn ask(
+    fn ask_running_child(
         &mut self,
         options: &ProcessOptions,
         method: &'static str,
         params: &Value,
         within: Duration,
-    ) -> Result<Value, Failed> {
+    ) -> Result<Value, FailedRequest> {
         self.asked += 1;
         let Some(running) = self.running.as_mut() else {
-            return Err(self.buried(Fault::Closed, method));
+            return Err(self.failure_after(ChildFault::Closed, method));
         };
-        let result = running.ask(self.asked, method, params, within);
-        if result.as_ref().err().is_none_or(Fault::leaves_it_usable) {
+        let result = running.send_request(self.asked, method, params, within);
+        if result.as_ref().err().is_none_or(ChildFault::leaves_it_usable) {
             self.answered += 1;
             if self.answered.is_multiple_of(ANSWERS_FOR_A_RESTART) && self.restarts_left < options.restarts {
                 self.restarts_left += 1;
             }
         }
-        result.map_err(|fault| self.buried(fault, method))
+        result.map_err(|fault| self.failure_after(fault, method))
     }
 
     /// The failure of a request after a fault. If the child cannot be used any more, it is killed here.
-    fn buried(&mut self, fault: Fault, method: &'static str) -> Failed {
+    fn failure_after(&mut self, fault: ChildFault, method: &'static str) -> FailedRequest {
         let mut last_words = String::new();
         if !fault.leaves_it_usable() {
-            last_words = self.running.take().map_or_else(String::new, Running::bury);
+            last_words = self.running.take().map_or_else(String::new, RunningChild::kill_with_last_words);
             self.last_fault = format!("{fault}, when asked request {} ({method}){last_words}", self.asked);
         }
-        Failed { fault, method, id: Some(self.asked), last_words }
+        FailedRequest { fault, method, id: Some(self.asked), last_words }
     }
 }
 
 /// A request that failed.
-struct Failed {
-    fault: Fault,
+struct FailedRequest {
+    fault: ChildFault,
     method: &'static str,
     id: Option<u64>,
     last_words: String,
 }
 
-impl Failed {
+impl FailedRequest {
     /// A failure that does not belong to one request.
-    fn without_request(fault: Fault, method: &'static str) -> Self {
+    fn without_request(fault: ChildFault, method: &'static str) -> Self {
         Self { fault, method, id: None, last_words: String::new() }
     }
 
@@ -232,14 +239,14 @@ impl Failed {
     fn place_and_reason(&self, options: &ProcessOptions) -> (PathBuf, String) {
         let Self { fault, method, id, last_words } = self;
         match (fault, &options.world_file) {
-            (Fault::NotStarted(_), Some(file)) => {
-                let program = plain(&options.program.to_string_lossy(), 200);
+            (ChildFault::NotStarted(_), Some(file)) => {
+                let program = to_safe_text(&options.program.to_string_lossy(), 200);
                 (file.clone(), format!("field \"command\": the world program {program} {fault}"))
             }
-            (Fault::NotStarted(_), None) => (options.program.clone(), format!("the world program {fault}")),
+            (ChildFault::NotStarted(_), None) => (options.program.clone(), format!("the world program {fault}")),
             _ => {
                 let request = id.map_or_else(|| format!("`{method}`"), |id| format!("request {id} (`{method}`)"));
-                (options.shown(), format!("{request}: the world program {fault}{last_words}"))
+                (options.shown_command(), format!("{request}: the world program {fault}{last_words}"))
             }
         }
     }

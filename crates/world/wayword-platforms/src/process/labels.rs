@@ -1,8 +1,8 @@
 //! Converts the objects that a child reports in a view into labels, and checks every number of them.
 
-use super::{picture::Sent, protocol};
+use super::{picture::SentPicture, protocol};
 use serde::Deserialize;
-use wayword_core::{DVec3, Gaze, Heading, Label, ObjectId};
+use wayword_core::{DVec3, Heading, ObjectId, ObjectLabel, ViewGaze};
 
 /// Most objects in one answer.
 const MAX_LABELS: usize = 5000;
@@ -13,18 +13,18 @@ const BOX_SLACK_PX: f64 = 1.0;
 
 /// The answer to `observe`.
 #[derive(Debug, Deserialize)]
-pub(crate) struct Observed {
+pub(crate) struct ObserveAnswer {
     #[serde(default)]
-    pub(crate) image: Option<Sent>,
+    pub(crate) image: Option<SentPicture>,
     #[serde(default)]
-    pub(crate) labels: Option<Vec<Seen>>,
+    pub(crate) labels: Option<Vec<ObservedObject>>,
     #[serde(default)]
     pub(crate) room: Option<String>,
 }
 
 /// A visible object.
 #[derive(Debug, Deserialize)]
-pub(crate) struct Seen {
+pub(crate) struct ObservedObject {
     object: ObjectId,
     name: String,
     /// Its centre, metres. If there is none, `heading_rad` gives its direction.
@@ -43,51 +43,60 @@ pub(crate) struct Seen {
 }
 
 /// The labels of a view: those of objects that have their centre within its width.
-pub(crate) fn of_view(seen: Vec<Seen>, eye: DVec3, gaze: Gaze, size_px: (u32, u32)) -> Result<Vec<Label>, String> {
+pub(crate) fn of_view(
+    seen: Vec<ObservedObject>,
+    eye: DVec3,
+    gaze: ViewGaze,
+    size_px: (u32, u32),
+) -> Result<Vec<ObjectLabel>, String> {
     if seen.len() > MAX_LABELS {
         return Err(format!("{} labels, expected at most {MAX_LABELS}", seen.len()));
     }
-    let labels: Result<Vec<Label>, String> = seen.into_iter().map(|seen| seen.label(eye, gaze, size_px)).collect();
-    Ok(labels?.into_iter().filter(|label| gaze.holds(label.heading)).collect())
+    let labels: Result<Vec<ObjectLabel>, String> =
+        seen.into_iter().map(|seen| seen.into_label(eye, gaze, size_px)).collect();
+    Ok(labels?.into_iter().filter(|label| gaze.holds_heading(label.heading)).collect())
 }
 
 /// A position, if its coordinates are finite and at most [`MAX_COORDINATE_M`].
-pub(crate) fn place(position: [f64; 3]) -> Result<DVec3, String> {
+pub(crate) fn plausible_position(position: [f64; 3]) -> Result<DVec3, String> {
     let place = DVec3::from_array(position);
     let near = place.is_finite() && place.abs().max_element() <= MAX_COORDINATE_M;
     near.then_some(place).ok_or_else(|| format!("{position:?} is not a plausible position"))
 }
 
-impl Seen {
-    fn label(self, eye: DVec3, gaze: Gaze, size_px: (u32, u32)) -> Result<Label, String> {
+impl ObservedObject {
+    fn into_label(self, eye: DVec3, gaze: ViewGaze, size_px: (u32, u32)) -> Result<ObjectLabel, String> {
         let object = self.object.to_string();
-        self.unchecked(eye, gaze, size_px).map_err(|reason| format!("label of object {object:?}: {reason}"))
+        self.convert_label(eye, gaze, size_px).map_err(|reason| format!("label of object {object:?}: {reason}"))
     }
 
-    fn unchecked(self, eye: DVec3, gaze: Gaze, size_px: (u32, u32)) -> Result<Label, String> {
-        let position = self.position.map(place).transpose()?;
+    fn convert_label(self, eye: DVec3, gaze: ViewGaze, size_px: (u32, u32)) -> Result<ObjectLabel, String> {
+        let position = self.position.map(plausible_position).transpose()?;
         let (heading, elevation_rad) = match (position, self.heading_rad) {
             // An object straight above the eye has no heading, so any will do.
             (Some(centre), _) => (Heading::towards(eye, centre).unwrap_or(gaze.heading), elevation_rad(eye, centre)),
             (None, Some(heading)) => {
                 let heading = Heading::new(heading).map_err(|error| format!("`heading_rad`: {error}"))?;
-                (heading, within("elevation_rad", self.elevation_rad.unwrap_or(0.0), std::f64::consts::FRAC_PI_2)?)
+                (
+                    heading,
+                    bounded_number("elevation_rad", self.elevation_rad.unwrap_or(0.0), std::f64::consts::FRAC_PI_2)?,
+                )
             }
             (None, None) => return Err("has neither `position` nor `heading_rad`".into()),
         };
-        let told_m = self.distance_m.map(|far| within("distance_m", far, MAX_COORDINATE_M)).transpose()?;
+        let told_m = self.distance_m.map(|far| bounded_number("distance_m", far, MAX_COORDINATE_M)).transpose()?;
         if told_m.is_some_and(|far| far < 0.0) {
             return Err("`distance_m` is negative".into());
         }
-        Ok(Label {
+        Ok(ObjectLabel {
             object: self.object,
-            name: protocol::name("`name`", &self.name)?,
+            name: protocol::checked_name("`name`", &self.name)?,
             heading,
             elevation_rad,
             box_px: self.box_px.map(|corners| box_px(corners, size_px)).transpose()?,
             distance_m: told_m.or_else(|| position.map(|centre| eye.distance(centre))),
             position,
-            colour: self.colour.map(|colour| protocol::name("`colour`", &colour)).transpose()?,
+            colour: self.colour.map(|colour| protocol::checked_name("`colour`", &colour)).transpose()?,
         })
     }
 }
@@ -97,7 +106,7 @@ fn elevation_rad(eye: DVec3, centre: DVec3) -> f64 {
     libm::atan2(up, across)
 }
 
-fn within(field: &str, number: f64, most: f64) -> Result<f64, String> {
+fn bounded_number(field: &str, number: f64, most: f64) -> Result<f64, String> {
     let fits = number.is_finite() && number.abs() <= most;
     fits.then_some(number).ok_or_else(|| format!("`{field}` is {number}, which is more than {most} in size"))
 }
@@ -126,9 +135,9 @@ mod tests {
 
     const SIZE_PX: (u32, u32) = (640, 480);
 
-    fn labels(seen: Value) -> Result<Vec<Label>, String> {
-        let seen: Vec<Seen> = serde_json::from_value(seen).map_err(|error| error.to_string())?;
-        of_view(seen, DVec3::new(1.0, 2.0, 1.5), Gaze::quarter(Heading::NORTH), SIZE_PX)
+    fn labels(seen: Value) -> Result<Vec<ObjectLabel>, String> {
+        let seen: Vec<ObservedObject> = serde_json::from_value(seen).map_err(|error| error.to_string())?;
+        of_view(seen, DVec3::new(1.0, 2.0, 1.5), ViewGaze::quarter_view(Heading::NORTH), SIZE_PX)
     }
 
     #[test]
@@ -172,7 +181,7 @@ mod tests {
         ) {
             let seen = json!([{"object": "7", "name": "lamp", "position": position, "box_px": corners}]);
             for label in labels(seen).into_iter().flatten() {
-                prop_assert!(Gaze::quarter(Heading::NORTH).holds(label.heading));
+                prop_assert!(ViewGaze::quarter_view(Heading::NORTH).holds_heading(label.heading));
                 let [x, y, width, height] = label.box_px.unwrap();
                 prop_assert!(x >= 0.0 && y >= 0.0 && width >= 0.0 && height >= 0.0);
                 prop_assert!(x + width <= 640.0 + 1e-9 && y + height <= 480.0 + 1e-9);

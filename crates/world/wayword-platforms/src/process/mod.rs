@@ -2,7 +2,7 @@
 //!
 //! Wayword writes one request per line to the child's standard input and reads one answer per line from its standard
 //! output. `docs/PROCESS.md` describes requests and answers, and `python/wayword/platform.py` implements the child's
-//! side in Python. A world within this process ([`Inside`]) gets the same lines. The child converts to Wayword's frame
+//! side in Python. A world within this process ([`InsideWorld`]) gets the same lines. The child converts to Wayword's frame
 //! (z up, metres, radians clockwise from +y) and names that frame in its greeting.
 //!
 //! The child is not trusted: lines, pictures, counts and times are bounded. If it dies, hangs, floods its output or
@@ -29,7 +29,7 @@ mod protocol;
 mod stderr;
 
 pub use group::{end_all, start_again};
-pub use guard::{Guardian, stand_guard_if_asked, this_program, this_program_is};
-pub use options::{Inside, ProcessOptions};
+pub use guard::{GuardProgram, stand_guard_if_asked, this_program, this_program_is};
+pub use options::{InsideWorld, ProcessOptions};
 pub use platform::ProcessPlatform;
-pub use protocol::{Offer, PROTOCOL, World};
+pub use protocol::{PROTOCOL_VERSION, WorldOffer, WorldProgram};

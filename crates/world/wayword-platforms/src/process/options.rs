@@ -1,7 +1,7 @@
 //! The settings of a world program: its command, the size of its pictures and the time limits. They come from a world
 //! file or from the caller.
 
-use super::{answer::MAX_LINE_BYTES, guard::Guardian};
+use super::{answer::MAX_LINE_BYTES, guard::GuardProgram};
 use crate::matterport::read;
 use serde::Deserialize;
 use std::{
@@ -11,10 +11,11 @@ use std::{
     time::Duration,
 };
 use wayword_core::PlatformError;
-use wayword_world::said::{Line, plain};
+use wayword_world::said::{OutputLine, to_safe_text};
 
 const MAX_FILE_BYTES: u64 = 1 << 20;
-const HINT: &str = "a world file holds a JSON object with \"command\": [PROGRAM, ARGUMENT, ...], see docs/PROCESS.md";
+const WORLD_FILE_HINT: &str =
+    "a world file holds a JSON object with \"command\": [PROGRAM, ARGUMENT, ...], see docs/PROCESS.md";
 /// Longest time limit that can be set, seconds.
 const MAX_WAIT_S: f64 = 86_400.0;
 /// Longest side of a picture, pixels.
@@ -44,7 +45,7 @@ pub struct ProcessOptions {
     /// How often the child may be restarted. Each 200 answers allow one more restart, but never more than this number.
     pub restarts: u32,
     /// A world within this process, which answers in place of a program. `program` is then the name that errors give it.
-    pub inside: Option<Inside>,
+    pub inside: Option<InsideWorld>,
     /// A program that calls [`stand_guard_if_asked`](super::stand_guard_if_asked) at its very start:
     /// [`this_program`](super::this_program), if it does so. It runs next to the child. If this program is killed,
     /// or exits without dropping the platform, the guard ends the child and the processes that the child started.
@@ -52,17 +53,17 @@ pub struct ProcessOptions {
     /// Without a guard, and on systems other than Unix, only the end of its input asks the child to end in this case,
     /// and a child that hangs continues to run. A process that leaves the child's group (`setsid`, a daemon) is never
     /// ended.
-    pub guard: Option<Guardian>,
+    pub guard: Option<GuardProgram>,
 }
 
 /// A world within this process: an object of the interpreter that this program runs in.
 #[derive(Clone)]
-pub struct Inside(Arc<Mutex<Box<Answers>>>);
+pub struct InsideWorld(Arc<Mutex<Box<AnswerFunction>>>);
 
 /// Gives the answer to a request, each a line without its end.
-type Answers = dyn FnMut(&[u8]) -> Vec<u8> + Send;
+type AnswerFunction = dyn FnMut(&[u8]) -> Vec<u8> + Send;
 
-impl Inside {
+impl InsideWorld {
     /// A world that answers each request with a line, as `docs/PROCESS.md` describes, both without the end of the line.
     /// It gets one request at a time, also after a request that took too long.
     pub fn new(answers: impl FnMut(&[u8]) -> Vec<u8> + Send + 'static) -> Self {
@@ -70,20 +71,20 @@ impl Inside {
     }
 
     /// The answer to a line that was sent.
-    pub(crate) fn answer(&self, request: &[u8]) -> Line {
+    pub(crate) fn answer_line(&self, request: &[u8]) -> OutputLine {
         let mut answers = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let answer = answers(request.trim_ascii_end());
-        if answer.len() > MAX_LINE_BYTES { Line::TooLong } else { Line::Whole(answer) }
+        if answer.len() > MAX_LINE_BYTES { OutputLine::TooLong } else { OutputLine::Whole(answer) }
     }
 }
 
-impl fmt::Debug for Inside {
+impl fmt::Debug for InsideWorld {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("Inside")
     }
 }
 
-impl PartialEq for Inside {
+impl PartialEq for InsideWorld {
     fn eq(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.0, &other.0)
     }
@@ -111,7 +112,7 @@ struct WorldFile {
 impl ProcessOptions {
     /// A world within this process, with the default settings. Errors give it this name.
     #[must_use]
-    pub fn inside(name: &str, world: Inside) -> Self {
+    pub fn for_inside_world(name: &str, world: InsideWorld) -> Self {
         Self { inside: Some(world), ..Self::new(name) }
     }
 
@@ -120,11 +121,16 @@ impl ProcessOptions {
     ///
     /// # Errors
     /// Names the first value that is out of range.
-    pub fn sized(self, width_px: Option<u32>, height_px: Option<u32>, spacing_m: Option<f64>) -> Result<Self, String> {
+    pub fn with_sizes(
+        self,
+        width_px: Option<u32>,
+        height_px: Option<u32>,
+        spacing_m: Option<f64>,
+    ) -> Result<Self, String> {
         Ok(Self {
-            width_px: side(width_px, self.width_px, "width_px")?,
-            height_px: side(height_px, self.height_px, "height_px")?,
-            spacing_m: within(spacing_m, self.spacing_m, 0.2..=10.0, "spacing_m")?,
+            width_px: checked_side(width_px, self.width_px, "width_px")?,
+            height_px: checked_side(height_px, self.height_px, "height_px")?,
+            spacing_m: checked_within(spacing_m, self.spacing_m, 0.2..=10.0, "spacing_m")?,
             ..self
         })
     }
@@ -150,9 +156,9 @@ impl ProcessOptions {
     }
 
     /// The command as errors name it: the script if there is one, because the interpreter's name would not help.
-    pub(crate) fn shown(&self) -> PathBuf {
+    pub(crate) fn shown_command(&self) -> PathBuf {
         let script = self.arguments.first().filter(|first| Path::new(first).extension().is_some());
-        script.map_or_else(|| self.program.clone(), |script| PathBuf::from(plain(script, 200)))
+        script.map_or_else(|| self.program.clone(), |script| PathBuf::from(to_safe_text(script, 200)))
     }
 
     /// Reads a file: a world file if its name ends in `.json`, else the file is the program itself. A world file's
@@ -160,49 +166,49 @@ impl ProcessOptions {
     ///
     /// # Errors
     /// If the file is missing, or is not a valid world file.
-    pub fn read(file: &Path) -> Result<Self, PlatformError> {
-        let wrong = |reason: String| read::wrong(file, reason, HINT);
+    pub fn read_world_file(file: &Path) -> Result<Self, PlatformError> {
+        let wrong = |reason: String| read::file_error(file, reason, WORLD_FILE_HINT);
         if file.extension().is_none_or(|end| end != "json") {
             let program = file.canonicalize().map_err(|error| wrong(error.to_string()))?;
             return Ok(Self::new(program));
         }
-        let text =
-            read::text_if_there(file, MAX_FILE_BYTES, HINT)?.ok_or_else(|| wrong("there is no such file".into()))?;
+        let text = read::text_if_there(file, MAX_FILE_BYTES, WORLD_FILE_HINT)?
+            .ok_or_else(|| wrong("there is no such file".into()))?;
         let world: WorldFile = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
         let resolved = file.canonicalize().map_err(|error| wrong(error.to_string()))?;
-        let options = world.resolved(resolved.parent().unwrap_or(Path::new("."))).map_err(wrong)?;
+        let options = world.into_options(resolved.parent().unwrap_or(Path::new("."))).map_err(wrong)?;
         Ok(Self { world_file: Some(file.to_owned()), ..options })
     }
 }
 
 impl WorldFile {
-    fn resolved(self, folder: &Path) -> Result<ProcessOptions, String> {
+    fn into_options(self, folder: &Path) -> Result<ProcessOptions, String> {
         let mut command = self.command.into_iter();
         let program = PathBuf::from(command.next().ok_or("\"command\" is empty")?);
         // A bare name is searched in PATH; a path is relative to the world file's folder.
         let program = if program.components().count() > 1 { folder.join(program) } else { program };
-        let default = ProcessOptions::new(program).sized(self.width_px, self.height_px, self.spacing_m)?;
+        let default = ProcessOptions::new(program).with_sizes(self.width_px, self.height_px, self.spacing_m)?;
         Ok(ProcessOptions {
             arguments: command.collect(),
             folder: Some(folder.to_owned()),
-            start_within: wait(self.start_within_s, default.start_within, "start_within_s")?,
-            answer_within: wait(self.answer_within_s, default.answer_within, "answer_within_s")?,
+            start_within: checked_wait(self.start_within_s, default.start_within, "start_within_s")?,
+            answer_within: checked_wait(self.answer_within_s, default.answer_within, "answer_within_s")?,
             restarts: self.restarts.unwrap_or(default.restarts),
             ..default
         })
     }
 }
 
-fn side(given: Option<u32>, default: u32, name: &str) -> Result<u32, String> {
-    within(given, default, 16..=MAX_SIDE_PX, name)
+fn checked_side(given: Option<u32>, default: u32, name: &str) -> Result<u32, String> {
+    checked_within(given, default, 16..=MAX_SIDE_PX, name)
 }
 
-fn wait(given_s: Option<f64>, default: Duration, name: &str) -> Result<Duration, String> {
-    within(given_s, default.as_secs_f64(), 0.01..=MAX_WAIT_S, name).map(Duration::from_secs_f64)
+fn checked_wait(given_s: Option<f64>, default: Duration, name: &str) -> Result<Duration, String> {
+    checked_within(given_s, default.as_secs_f64(), 0.01..=MAX_WAIT_S, name).map(Duration::from_secs_f64)
 }
 
 /// A setting if it is within a range, or the default; the error names the setting and the range.
-fn within<T: PartialOrd + std::fmt::Display>(
+fn checked_within<T: PartialOrd + std::fmt::Display>(
     given: Option<T>,
     default: T,
     range: std::ops::RangeInclusive<T>,
@@ -225,7 +231,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("world.json");
         fs::write(&file, text).unwrap();
-        ProcessOptions::read(&file)
+        ProcessOptions::read_world_file(&file)
     }
 
     #[test]
@@ -262,6 +268,6 @@ mod tests {
             let error = read(bad).unwrap_err().to_string();
             assert!(error.contains("world.json") && error.contains("docs/PROCESS.md"), "{bad}: {error}");
         }
-        assert!(ProcessOptions::read(Path::new("/nowhere/world.py")).is_err());
+        assert!(ProcessOptions::read_world_file(Path::new("/nowhere/world.py")).is_err());
     }
 }

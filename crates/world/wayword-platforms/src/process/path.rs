@@ -1,11 +1,11 @@
 //! Asks a child for a random path, if it offers to choose paths itself, and checks the path.
 
-use super::{keeper::Keeper, labels::place};
+use super::{keeper::ChildKeeper, labels::plausible_position};
 use serde::Deserialize;
 use serde_json::json;
 use wayword_core::{
-    Heading, Motion, ObjectId, Path, PathRequest, Platform, PlatformError, SceneId, ViewpointGraph, ViewpointId,
-    path::Stop,
+    Heading, ObjectId, Path, PathMotion, PathRequest, Platform, PlatformError, SceneId, ViewpointGraph, ViewpointId,
+    path::PathStop,
 };
 use wayword_world::{episode_path, graph_walk};
 
@@ -16,14 +16,14 @@ const SLACK_M: f64 = 1e-3;
 
 /// The answer to `sample_path`; `path` is missing if the child found none.
 #[derive(Deserialize)]
-struct Drawn {
-    path: Option<Walk>,
+struct SamplePathAnswer {
+    path: Option<ChildPath>,
 }
 
 /// A path in the child's words.
 #[derive(Deserialize)]
-struct Walk {
-    stops: Vec<Given>,
+struct ChildPath {
+    stops: Vec<ChildStop>,
     #[serde(default)]
     heading_rad: Option<f64>,
     #[serde(default)]
@@ -32,7 +32,7 @@ struct Walk {
 
 /// A stop: a viewpoint of the graph, or any position.
 #[derive(Deserialize)]
-struct Given {
+struct ChildStop {
     #[serde(default)]
     viewpoint: Option<ViewpointId>,
     #[serde(default)]
@@ -43,8 +43,8 @@ struct Given {
 
 /// Asks the child for a path, and checks it against the request. `platform` is the child's platform, for the target's
 /// name.
-pub(crate) fn drawn(
-    keeper: &Keeper,
+pub(crate) fn ask_random_path(
+    keeper: &ChildKeeper,
     platform: &dyn Platform,
     scene: &SceneId,
     request: &PathRequest,
@@ -55,9 +55,9 @@ pub(crate) fn drawn(
         "hops": [request.hops.start(), request.hops.end()],
         "length_m": [request.length_m.start(), request.length_m.end()],
         // Some languages cannot represent whole numbers beyond 2^53.
-        "seed": wayword_core::seed::derive(seed, &["process path", scene.as_str()]) >> 11,
+        "seed": wayword_core::seed::derive_seed(seed, &["process path", scene.as_str()]) >> 11,
     });
-    let Drawn { path } = keeper.ask("sample_path", &asked)?;
+    let SamplePathAnswer { path } = keeper.ask_and_read("sample_path", &asked)?;
     let Some(walk) = path else {
         return Err(PlatformError::NoSuchPath {
             scene: scene.clone(),
@@ -65,35 +65,36 @@ pub(crate) fn drawn(
             hint: "widen --hops or --metres",
         });
     };
-    let misfit = |reason: String| keeper.misfit("sample_path", reason);
+    let misfit = |reason: String| keeper.misfit_error("sample_path", reason);
     if !(2..=MAX_STOPS).contains(&walk.stops.len()) {
         return Err(misfit(format!("`stops` has length {}, expected 2 to {MAX_STOPS}", walk.stops.len())));
     }
     let on_graph = walk.stops.iter().any(|stop| stop.viewpoint.is_some());
-    let graph = if on_graph { Some(platform.graph(scene)?) } else { None };
-    let stops: Result<Vec<Stop>, String> = walk.stops.into_iter().map(|given| given.stop(graph.as_deref())).collect();
+    let graph = if on_graph { Some(platform.graph_for_scene(scene)?) } else { None };
+    let stops: Result<Vec<PathStop>, String> =
+        walk.stops.into_iter().map(|given| given.into_stop(graph.as_deref())).collect();
     let heading = walk.heading_rad.map(Heading::new).transpose().map_err(|error| misfit(error.to_string()))?;
     let frames = Path::frames_along(stops.map_err(misfit)?, heading);
     let mut path =
-        Path { id: format!("{scene}_{seed}"), scene: scene.clone(), frames, motion: Motion::Known, target: None };
-    fits(&path, request).map_err(misfit)?;
+        Path { id: format!("{scene}_{seed}"), scene: scene.clone(), frames, motion: PathMotion::Known, target: None };
+    check_fit(&path, request).map_err(misfit)?;
     if let (Some(object), Some(last)) = (&walk.target, path.frames.last()) {
-        path.target = episode_path::target(platform, scene, last, object)?;
+        path.target = episode_path::target_for_object(platform, scene, last, object)?;
     }
     Ok(path)
 }
 
-impl Given {
-    fn stop(self, graph: Option<&ViewpointGraph>) -> Result<Stop, String> {
+impl ChildStop {
+    fn into_stop(self, graph: Option<&ViewpointGraph>) -> Result<PathStop, String> {
         match (self.viewpoint, self.position, graph) {
             (Some(id), _, Some(graph)) => {
-                let position = graph.position(&id).ok_or_else(|| format!("viewpoint {id} is not in the graph"))?;
-                let level = graph.level(&id);
-                Ok(Stop { position, viewpoint: Some(id), level })
+                let position = graph.position_of(&id).ok_or_else(|| format!("viewpoint {id} is not in the graph"))?;
+                let level = graph.level_of(&id);
+                Ok(PathStop { position, viewpoint: Some(id), level })
             }
             (_, Some(position), _) => {
                 let level = self.level.filter(|level| *level > 0);
-                Ok(Stop { position: place(position)?, viewpoint: None, level })
+                Ok(PathStop { position: plausible_position(position)?, viewpoint: None, level })
             }
             _ => Err("a stop must have a `viewpoint` or a `position`".into()),
         }
@@ -101,7 +102,7 @@ impl Given {
 }
 
 /// Checks a path against the request: its length, and its hops if all its stops are viewpoints.
-fn fits(path: &Path, request: &PathRequest) -> Result<(), String> {
+fn check_fit(path: &Path, request: &PathRequest) -> Result<(), String> {
     let Some(length_m) = path.length_m() else { return Err("a path of unknown length".into()) };
     let hops = path.frames.len() - 1;
     let (least, most) = (request.length_m.start() - SLACK_M, request.length_m.end() + SLACK_M);

@@ -19,28 +19,28 @@ const MAX_DECODED_BYTES: u64 = 256 << 20;
 /// A picture as the child sends it.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "snake_case")]
-pub(crate) enum Sent {
+pub(crate) enum SentPicture {
     /// A PNG or JPEG file in base64.
     Base64(String),
     /// A PNG or JPEG file, as a path relative to the child's folder.
     File(PathBuf),
 }
 
-impl Sent {
+impl SentPicture {
     /// The bytes of the PNG or JPEG file.
-    pub(crate) fn bytes(self, folder: Option<&Path>) -> Result<Vec<u8>, String> {
+    pub(crate) fn into_bytes(self, folder: Option<&Path>) -> Result<Vec<u8>, String> {
         match self {
             Self::Base64(text) => STANDARD.decode(text).map_err(|error| format!("`image` is not base64: {error}")),
             Self::File(file) => {
                 let folder = folder.ok_or("`image` is a file, but the greeting named no folder `images`")?;
-                confined(folder, &file).map_err(|reason| format!("`image` {}: {reason}", file.display()))
+                read_confined(folder, &file).map_err(|reason| format!("`image` {}: {reason}", file.display()))
             }
         }
     }
 }
 
 /// The bytes of a file, which must lie in the folder after all links are resolved. The folder's own path has no links.
-fn confined(folder: &Path, file: &Path) -> Result<Vec<u8>, String> {
+fn read_confined(folder: &Path, file: &Path) -> Result<Vec<u8>, String> {
     if !file.components().all(|part| matches!(part, Component::Normal(_))) {
         return Err("is not a plain path within the folder `images`".into());
     }
@@ -63,7 +63,7 @@ fn confined(folder: &Path, file: &Path) -> Result<Vec<u8>, String> {
 
 /// Decodes a picture, which must have the requested size. The size is read first, so a picture of another size is not
 /// decoded.
-pub(crate) fn decode(bytes: &[u8], (width_px, height_px): (u32, u32)) -> Result<Image, String> {
+pub(crate) fn decode_child_picture(bytes: &[u8], (width_px, height_px): (u32, u32)) -> Result<Image, String> {
     // Only these two formats are allowed, even if the build contains decoders for others.
     let format =
         image::guess_format(bytes).ok().filter(|format| matches!(format, ImageFormat::Png | ImageFormat::Jpeg));
@@ -101,11 +101,11 @@ mod tests {
         let root = folder.path().canonicalize().unwrap();
         fs::create_dir(root.join("sub")).unwrap();
         fs::write(root.join("sub/view.png"), png(4, 3)).unwrap();
-        let from_file = Sent::File("sub/view.png".into()).bytes(Some(&root)).unwrap();
-        let from_text = Sent::Base64(STANDARD.encode(png(4, 3))).bytes(None).unwrap();
+        let from_file = SentPicture::File("sub/view.png".into()).into_bytes(Some(&root)).unwrap();
+        let from_text = SentPicture::Base64(STANDARD.encode(png(4, 3))).into_bytes(None).unwrap();
         assert_eq!(from_file, from_text);
-        let image = decode(&from_file, (4, 3)).unwrap();
-        assert_eq!(&image.rgb()[3 * 5..3 * 6], [1, 1, 7]);
+        let image = decode_child_picture(&from_file, (4, 3)).unwrap();
+        assert_eq!(&image.rgb_bytes()[3 * 5..3 * 6], [1, 1, 7]);
     }
 
     #[cfg(unix)]
@@ -121,9 +121,9 @@ mod tests {
         for bad in
             ["link/secret.png", "view.png", "../secret.png", "a/../../x", "./..", "", ".", &absolute, "link", "none"]
         {
-            assert!(Sent::File(bad.into()).bytes(Some(&root)).is_err(), "{bad} was read");
+            assert!(SentPicture::File(bad.into()).into_bytes(Some(&root)).is_err(), "{bad} was read");
         }
-        assert!(Sent::File("view.png".into()).bytes(None).unwrap_err().contains("images"));
+        assert!(SentPicture::File("view.png".into()).into_bytes(None).unwrap_err().contains("images"));
     }
 
     #[test]
@@ -133,7 +133,7 @@ mod tests {
         bomb[16..24].copy_from_slice(&[0, 0, 0xff, 0xff, 0, 0, 0xff, 0xff]);
         let sum = crc(&bomb[12..29]).to_be_bytes();
         bomb[29..33].copy_from_slice(&sum);
-        let error = decode(&bomb, (640, 480)).unwrap_err();
+        let error = decode_child_picture(&bomb, (640, 480)).unwrap_err();
         assert!(error.contains("65535 x 65535") && error.contains("640 x 480"), "{error}");
     }
 
@@ -151,8 +151,8 @@ mod tests {
             let last = bytes.len() - 1;
             bytes[at.min(last)] = byte;
             bytes.truncate(bytes.len().saturating_sub(cut));
-            if let Ok(image) = decode(&bytes, (4, 3)) {
-                prop_assert_eq!(image.rgb().len(), 36);
+            if let Ok(image) = decode_child_picture(&bytes, (4, 3)) {
+                prop_assert_eq!(image.rgb_bytes().len(), 36);
             }
         }
     }

@@ -5,7 +5,7 @@ use std::{
     io::{BufRead, BufReader, Read},
     sync::{Arc, Mutex, PoisonError},
 };
-use wayword_world::said::{Hear, plain};
+use wayword_world::said::{OutputListener, to_safe_text};
 
 /// Number of last lines that are stored for error messages.
 const KEPT_LINES: usize = 12;
@@ -20,7 +20,7 @@ pub(crate) struct LastWords(Arc<Mutex<VecDeque<String>>>);
 
 impl LastWords {
     /// Reads until the pipe ends.
-    pub(crate) fn listen(&self, pipe: impl Read, hear: &Hear) {
+    pub(crate) fn listen(&self, pipe: impl Read, hear: &OutputListener) {
         let mut pipe = BufReader::new(pipe);
         let mut heard = 0;
         loop {
@@ -30,18 +30,18 @@ impl LastWords {
             if !matches!(read, Ok(1..)) {
                 return;
             }
-            let line = plain(&String::from_utf8_lossy(&line), MAX_LINE_CHARS);
+            let line = to_safe_text(&String::from_utf8_lossy(&line), MAX_LINE_CHARS);
             heard += 1;
             if heard <= MAX_HEARD_LINES {
                 hear(&line);
             } else if heard == MAX_HEARD_LINES + 1 {
                 hear("(further lines of this program are not shown)");
             }
-            self.keep(line);
+            self.keep_line(line);
         }
     }
 
-    fn keep(&self, line: String) {
+    fn keep_line(&self, line: String) {
         if line.trim().is_empty() {
             return;
         }
@@ -70,7 +70,7 @@ mod tests {
     #[test]
     fn stderr_passes_on_the_first_lines_and_stores_the_last() {
         let (words, heard) = (LastWords::default(), Arc::new(Mutex::new(Vec::new())));
-        let hear: Hear = {
+        let hear: OutputListener = {
             let heard = Arc::clone(&heard);
             Arc::new(move |line: &str| heard.lock().unwrap().push(line.to_owned()))
         };

@@ -4,15 +4,15 @@
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 use tempfile::TempDir;
-use wayword_core::{Frame, Gaze, Heading, ObjectId, PathRequest, Platform, PlatformError, SceneId, ViewpointId};
-use wayword_platforms::Matterport;
+use wayword_core::{Frame, Heading, ObjectId, PathRequest, Platform, PlatformError, SceneId, ViewGaze, ViewpointId};
+use wayword_platforms::MatterportPlatform;
 use wayword_testkit::{SCAN, viewpoint_id, wall_colour, write_building, write_skyboxes};
 use wayword_world::{labels_around, path_of};
 
-fn building() -> (TempDir, Matterport) {
+fn building() -> (TempDir, MatterportPlatform) {
     let folder = tempfile::tempdir().unwrap();
     write_building(folder.path()).unwrap();
-    let platform = Matterport::open(folder.path()).unwrap();
+    let platform = MatterportPlatform::open(folder.path()).unwrap();
     (folder, platform)
 }
 
@@ -24,8 +24,8 @@ fn viewpoint(index: usize) -> ViewpointId {
     ViewpointId::new(viewpoint_id(index)).unwrap()
 }
 
-fn frame(platform: &Matterport, index: usize) -> Frame {
-    platform.graph(&scene()).unwrap().walk(&[viewpoint(index)], None).unwrap().remove(0)
+fn frame(platform: &MatterportPlatform, index: usize) -> Frame {
+    platform.graph_for_scene(&scene()).unwrap().path_frames(&[viewpoint(index)], None).unwrap().remove(0)
 }
 
 fn heading(deg: f64) -> Heading {
@@ -35,10 +35,10 @@ fn heading(deg: f64) -> Heading {
 #[test]
 fn the_graph_has_the_included_viewpoints_and_their_levels() {
     let (_folder, platform) = building();
-    assert_eq!(platform.scenes().unwrap(), [scene()]);
-    let graph = platform.graph(&scene()).unwrap();
-    assert_eq!((graph.len(), graph.components()), (14, 1));
-    let levels: Vec<_> = (0..14).map(|index| graph.level(&viewpoint(index)).unwrap()).collect();
+    assert_eq!(platform.list_scenes().unwrap(), [scene()]);
+    let graph = platform.graph_for_scene(&scene()).unwrap();
+    assert_eq!((graph.len(), graph.count_components()), (14, 1));
+    let levels: Vec<_> = (0..14).map(|index| graph.level_of(&viewpoint(index)).unwrap()).collect();
     assert_eq!(levels, [1, 1, 1, 1, 1, 1, 1, 1, 2, 2, 2, 2, 2, 2]);
 }
 
@@ -47,8 +47,8 @@ fn without_a_house_file_levels_come_from_the_floors() {
     let (folder, _) = building();
     let segmentations = folder.path().join(format!("matterport/v1/scans/{SCAN}/house_segmentations"));
     std::fs::remove_file(segmentations.join(format!("{SCAN}.house"))).unwrap();
-    let graph = Matterport::open(folder.path()).unwrap().graph(&scene()).unwrap();
-    let levels: Vec<_> = (0..14).map(|index| graph.level(&viewpoint(index)).unwrap()).collect();
+    let graph = MatterportPlatform::open(folder.path()).unwrap().graph_for_scene(&scene()).unwrap();
+    let levels: Vec<_> = (0..14).map(|index| graph.level_of(&viewpoint(index)).unwrap()).collect();
     assert_eq!(levels, [1, 1, 1, 1, 1, 1, 1, 1, 2, 2, 2, 2, 2, 2]);
 }
 
@@ -56,14 +56,14 @@ fn without_a_house_file_levels_come_from_the_floors() {
 fn a_look_gives_labels_and_the_room() {
     let (_folder, platform) = building();
     // Viewpoint 3 is in the living room, which has a television on its north wall.
-    let view = platform.look(&scene(), &frame(&platform, 3), Gaze::quarter(Heading::NORTH)).unwrap();
+    let view = platform.look_from(&scene(), &frame(&platform, 3), ViewGaze::quarter_view(Heading::NORTH)).unwrap();
     assert!(view.image.is_none());
     let truth = view.ground_truth().unwrap();
     assert_eq!(truth.room.as_deref(), Some("living room"));
     let tv = truth.labels.iter().find(|label| label.name == "tv").unwrap();
     assert!(tv.heading.turn_to(Heading::NORTH).abs() < 0.02);
     assert!((tv.distance_m.unwrap() - 1.456).abs() < 0.01);
-    let behind = platform.look(&scene(), &frame(&platform, 3), Gaze::quarter(heading(180.0))).unwrap();
+    let behind = platform.look_from(&scene(), &frame(&platform, 3), ViewGaze::quarter_view(heading(180.0))).unwrap();
     assert!(behind.ground_truth().unwrap().labels.iter().all(|label| label.name != "tv"));
 }
 
@@ -89,9 +89,9 @@ fn every_label_is_in_exactly_one_view_of_a_panorama() {
     let frame = frame(&platform, 10);
     let all = labels_around(&platform, &scene(), &frame).unwrap().len();
     for step in 0..40 {
-        let around = Gaze::around(heading(f64::from(step) * 9.0));
+        let around = ViewGaze::around_heading(heading(f64::from(step) * 9.0));
         let counts = around.map(|gaze| {
-            let view = platform.look(&scene(), &frame, gaze).unwrap();
+            let view = platform.look_from(&scene(), &frame, gaze).unwrap();
             view.ground_truth().unwrap().labels.len()
         });
         assert_eq!(counts.iter().sum::<usize>(), all, "{counts:?}");
@@ -102,8 +102,8 @@ fn every_label_is_in_exactly_one_view_of_a_panorama() {
 fn without_boxes_labels_come_from_the_house_file() {
     let (folder, with_boxes) = building();
     std::fs::remove_dir_all(folder.path().join("reverie")).unwrap();
-    let platform = Matterport::open(folder.path()).unwrap();
-    let names = |platform: &Matterport| {
+    let platform = MatterportPlatform::open(folder.path()).unwrap();
+    let names = |platform: &MatterportPlatform| {
         let labels = labels_around(platform, &scene(), &frame(platform, 13)).unwrap();
         labels.into_iter().map(|label| label.name).collect::<std::collections::BTreeSet<_>>()
     };
@@ -116,8 +116,8 @@ fn a_look_without_data_has_no_ground_truth() {
     let (folder, _) = building();
     std::fs::remove_dir_all(folder.path().join("reverie")).unwrap();
     std::fs::remove_dir_all(folder.path().join("matterport/v1")).unwrap();
-    let platform = Matterport::open(folder.path()).unwrap();
-    let view = platform.look(&scene(), &frame(&platform, 0), Gaze::quarter(Heading::NORTH)).unwrap();
+    let platform = MatterportPlatform::open(folder.path()).unwrap();
+    let view = platform.look_from(&scene(), &frame(&platform, 0), ViewGaze::quarter_view(Heading::NORTH)).unwrap();
     assert_eq!(view.ground_truth(), None);
     let path = platform.sample_path(&scene(), &PathRequest::default(), 3).unwrap();
     assert_eq!(path.target, None);
@@ -144,10 +144,10 @@ fn an_episode_names_its_target_and_notes_namesakes() {
 #[test]
 fn visible_from_lists_viewpoints_with_a_box_of_the_object() {
     let (folder, platform) = building();
-    let agree = |platform: &Matterport| {
+    let agree = |platform: &MatterportPlatform| {
         let desk = ObjectId::new("38").unwrap();
         let from = platform.visible_from(&scene(), &desk).unwrap().unwrap();
-        let graph = platform.graph(&scene()).unwrap();
+        let graph = platform.graph_for_scene(&scene()).unwrap();
         for (number, viewpoint) in graph.viewpoints().enumerate() {
             let labels = labels_around(platform, &scene(), &frame(platform, number)).unwrap();
             assert_eq!(from.contains(viewpoint), labels.iter().any(|label| label.object == desk), "{viewpoint}");
@@ -158,24 +158,24 @@ fn visible_from_lists_viewpoints_with_a_box_of_the_object() {
     let nothing = ObjectId::new("999").unwrap();
     assert!(platform.visible_from(&scene(), &nothing).unwrap().unwrap().is_empty());
     std::fs::remove_dir_all(folder.path().join("reverie")).unwrap();
-    agree(&Matterport::open(folder.path()).unwrap());
+    agree(&MatterportPlatform::open(folder.path()).unwrap());
     std::fs::remove_dir_all(folder.path().join("matterport/v1")).unwrap();
-    assert_eq!(Matterport::open(folder.path()).unwrap().visible_from(&scene(), &nothing).unwrap(), None);
+    assert_eq!(MatterportPlatform::open(folder.path()).unwrap().visible_from(&scene(), &nothing).unwrap(), None);
 }
 
 #[test]
 fn errors_name_missing_scenes_and_viewpoints() {
     let (_folder, platform) = building();
     let elsewhere = SceneId::new("elsewhere").unwrap();
-    assert!(matches!(platform.graph(&elsewhere), Err(PlatformError::UnknownScene { .. })));
+    assert!(matches!(platform.graph_for_scene(&elsewhere), Err(PlatformError::UnknownScene { .. })));
     let apart = path_of(&platform, "a", &scene(), &[viewpoint(0), viewpoint(13)], None, None).unwrap_err();
     assert!(apart.to_string().contains("no edge"), "{apart}");
     let mut between = frame(&platform, 0);
     between.viewpoint = None;
-    let gaze = Gaze::quarter(Heading::NORTH);
-    assert!(matches!(platform.look(&scene(), &between, gaze), Err(PlatformError::NotAViewpoint { .. })));
+    let gaze = ViewGaze::quarter_view(Heading::NORTH);
+    assert!(matches!(platform.look_from(&scene(), &between, gaze), Err(PlatformError::NotAViewpoint { .. })));
     between.viewpoint = Some(viewpoint(14));
-    assert!(matches!(platform.look(&scene(), &between, gaze), Err(PlatformError::UnknownViewpoint { .. })));
+    assert!(matches!(platform.look_from(&scene(), &between, gaze), Err(PlatformError::UnknownViewpoint { .. })));
 }
 
 #[test]
@@ -199,19 +199,19 @@ fn random_paths_keep_to_the_request_and_the_seed() {
 fn a_skybox_is_shown_the_right_way_round() {
     let (folder, _) = building();
     write_skyboxes(folder.path()).unwrap();
-    let platform = Matterport::open(folder.path()).unwrap();
-    for (quarter, gaze) in Gaze::compass().into_iter().enumerate() {
-        let view = platform.look(&scene(), &frame(&platform, 0), gaze).unwrap();
+    let platform = MatterportPlatform::open(folder.path()).unwrap();
+    for (quarter, gaze) in ViewGaze::compass_views().into_iter().enumerate() {
+        let view = platform.look_from(&scene(), &frame(&platform, 0), gaze).unwrap();
         let image = view.image.unwrap();
         assert_eq!((image.width_px(), image.height_px()), (640, 480));
         let middle = 3 * (240 * 640 + 320);
-        let shown = &image.rgb()[middle..middle + 3];
+        let shown = &image.rgb_bytes()[middle..middle + 3];
         let close = shown.iter().zip(wall_colour(quarter)).all(|(a, b)| a.abs_diff(b) <= 6);
         assert!(close, "quarter {quarter}: {shown:?}");
     }
     // The gaze is wider than any flat picture, so the view has only labels.
-    let all_round = Gaze { heading: Heading::NORTH, horizontal_fov_rad: TAU };
-    assert!(platform.look(&scene(), &frame(&platform, 0), all_round).unwrap().image.is_none());
+    let all_round = ViewGaze { heading: Heading::NORTH, horizontal_fov_rad: TAU };
+    assert!(platform.look_from(&scene(), &frame(&platform, 0), all_round).unwrap().image.is_none());
 }
 
 #[test]
@@ -224,16 +224,17 @@ fn a_folder_of_36_views_serves_where_there_is_no_skybox() {
         let colour = image::Rgb([20 * (index % 12), 100 * (index / 12), 0]);
         image::RgbImage::from_pixel(64, 48, colour).save(views.join(format!("{index}.jpg"))).unwrap();
     }
-    let platform = Matterport::open(folder.path()).unwrap();
-    let gaze = Gaze { heading: heading(90.0), horizontal_fov_rad: FRAC_PI_2 };
-    let image = platform.look(&scene(), &frame(&platform, 0), gaze).unwrap().image.unwrap();
-    let at = |x: usize, y: usize| &image.rgb()[3 * (640 * y + x)..][..2];
+    let platform = MatterportPlatform::open(folder.path()).unwrap();
+    let gaze = ViewGaze { heading: heading(90.0), horizontal_fov_rad: FRAC_PI_2 };
+    let image = platform.look_from(&scene(), &frame(&platform, 0), gaze).unwrap().image.unwrap();
+    let at = |x: usize, y: usize| &image.rgb_bytes()[3 * (640 * y + x)..][..2];
     let close = |shown: &[u8], expected: [u8; 2]| shown.iter().zip(expected).all(|(a, b)| a.abs_diff(b) <= 6);
     assert!(close(at(320, 240), [60, 100]), "{:?}", at(320, 240));
     assert!(close(at(320, 2), [60, 200]), "the top comes from the upper row: {:?}", at(320, 2));
     assert!(close(at(2, 240), [40, 100]) || close(at(2, 240), [20, 100]), "{:?}", at(2, 240));
     std::fs::remove_file(views.join("17.jpg")).unwrap();
-    let error = Matterport::open(folder.path()).unwrap().look(&scene(), &frame(&platform, 0), gaze).unwrap_err();
+    let error =
+        MatterportPlatform::open(folder.path()).unwrap().look_from(&scene(), &frame(&platform, 0), gaze).unwrap_err();
     assert!(error.to_string().contains("17.jpg"), "{error}");
 }
 

@@ -10,8 +10,8 @@
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::{fs, path::Path};
-use wayword_core::{Gaze, Heading, Platform, PlatformError, SceneId};
-use wayword_platforms::Matterport;
+use wayword_core::{Heading, Platform, PlatformError, SceneId, ViewGaze};
+use wayword_platforms::MatterportPlatform;
 use wayword_testkit::{SCAN, viewpoint_id, write_building};
 use wayword_world::labels_around;
 
@@ -75,17 +75,17 @@ fn replace_token(bytes: &mut Vec<u8>, at: usize, with: &str) {
 
 /// Makes all the requests that a run makes to a platform.
 fn use_it_all(data: &Path) -> Result<(), PlatformError> {
-    let platform = Matterport::open(data)?;
+    let platform = MatterportPlatform::open(data)?;
     let scene = SceneId::new(SCAN).unwrap();
-    let graph = platform.graph(&scene)?;
+    let graph = platform.graph_for_scene(&scene)?;
     for viewpoint in graph.viewpoints().take(3) {
-        assert!(graph.position(viewpoint).unwrap().is_finite());
-        let frame = graph.walk(std::slice::from_ref(viewpoint), None).unwrap().remove(0);
+        assert!(graph.position_of(viewpoint).unwrap().is_finite());
+        let frame = graph.path_frames(std::slice::from_ref(viewpoint), None).unwrap().remove(0);
         for label in labels_around(&platform, &scene, &frame)? {
             assert!(!label.name.is_empty() && label.elevation_rad.is_finite());
             assert!(label.distance_m.is_none_or(f64::is_finite));
         }
-        platform.look(&scene, &frame, Gaze::quarter(Heading::NORTH))?;
+        platform.look_from(&scene, &frame, ViewGaze::quarter_view(Heading::NORTH))?;
     }
     match platform.sample_path(&scene, &wayword_core::PathRequest::default(), 1) {
         Ok(path) => assert!(path.frames.len() >= 5),
@@ -165,9 +165,9 @@ fn a_graph_in_pieces_still_gives_paths_within_a_piece() {
     // Cut the stairs.
     items[7]["included"] = false.into();
     fs::write(&path, items.to_string()).unwrap();
-    let platform = Matterport::open(folder.path()).unwrap();
+    let platform = MatterportPlatform::open(folder.path()).unwrap();
     let scene = SceneId::new(SCAN).unwrap();
-    assert_eq!(platform.graph(&scene).unwrap().components(), 2);
+    assert_eq!(platform.graph_for_scene(&scene).unwrap().count_components(), 2);
     for seed in 0..10 {
         let request = wayword_core::PathRequest { hops: 3..=7, length_m: 2.0..=30.0 };
         let path = platform.sample_path(&scene, &request, seed).unwrap();

@@ -9,8 +9,8 @@
 
 use serde_json::Value;
 use std::path::PathBuf;
-use wayword_core::{Gaze, Heading, ObjectId, Path, PathRequest, Platform, SceneId, Side, ViewpointId};
-use wayword_platforms::Matterport;
+use wayword_core::{Heading, ObjectId, Path, PathRequest, Platform, SceneId, Side, ViewGaze, ViewpointId};
+use wayword_platforms::MatterportPlatform;
 use wayword_world::{labels_around, path_of};
 
 fn data() -> Option<PathBuf> {
@@ -23,17 +23,17 @@ fn data() -> Option<PathBuf> {
     there.then_some(folder)
 }
 
-fn items(split: &str) -> Option<(Matterport, Vec<Value>)> {
+fn items(split: &str) -> Option<(MatterportPlatform, Vec<Value>)> {
     let folder = data()?;
     let bytes = std::fs::read(folder.join(format!("reverie/REVERIE_{split}.json"))).unwrap();
-    Some((Matterport::open(&folder).unwrap(), serde_json::from_slice(&bytes).unwrap()))
+    Some((MatterportPlatform::open(&folder).unwrap(), serde_json::from_slice(&bytes).unwrap()))
 }
 
 fn scene_of(item: &Value) -> SceneId {
     SceneId::new(item["scan"].as_str().unwrap()).unwrap()
 }
 
-fn path(platform: &Matterport, item: &Value) -> Path {
+fn path(platform: &MatterportPlatform, item: &Value) -> Path {
     let viewpoints: Vec<ViewpointId> =
         item["path"].as_array().unwrap().iter().map(|id| ViewpointId::new(id.as_str().unwrap()).unwrap()).collect();
     let heading = Heading::new(item["heading"].as_f64().unwrap()).unwrap();
@@ -45,10 +45,10 @@ fn path(platform: &Matterport, item: &Value) -> Path {
 #[test]
 fn all_buildings_load() {
     let Some(folder) = data() else { return };
-    let platform = Matterport::open(&folder).unwrap();
-    let scenes = platform.scenes().unwrap();
+    let platform = MatterportPlatform::open(&folder).unwrap();
+    let scenes = platform.list_scenes().unwrap();
     assert_eq!(scenes.len(), 60);
-    let viewpoints: usize = scenes.iter().map(|scene| platform.graph(scene).unwrap().len()).sum();
+    let viewpoints: usize = scenes.iter().map(|scene| platform.graph_for_scene(scene).unwrap().len()).sum();
     assert_eq!(viewpoints, 7633, "as many as REVERIE has files of boxes");
 }
 
@@ -60,20 +60,20 @@ fn every_episode_gives_a_path_with_a_named_target_which_is_nearly_always_visible
         let path = path(&platform, item);
         let target = path.target.as_ref().unwrap();
         let last = path.frames.last().unwrap();
-        let sees = |gaze: Gaze| {
-            let view = platform.look(&path.scene, last, gaze).unwrap();
+        let sees = |gaze: ViewGaze| {
+            let view = platform.look_from(&path.scene, last, gaze).unwrap();
             view.ground_truth()
                 .unwrap()
                 .labels
                 .iter()
                 .any(|label| label.object == target.object && label.name == target.name)
         };
-        let views = Gaze::around(last.pose.heading).map(sees);
+        let views = ViewGaze::around_heading(last.pose.heading).map(sees);
         assert!(views.iter().filter(|sees| **sees).count() <= 1, "a label belongs to one view");
         visible += usize::from(views.contains(&true));
         ahead += usize::from(views[Side::Ahead as usize]);
         namesakes += usize::from(target.has_namesake);
-        let view = platform.look(&path.scene, last, Gaze::quarter(last.pose.heading)).unwrap();
+        let view = platform.look_from(&path.scene, last, ViewGaze::quarter_view(last.pose.heading)).unwrap();
         rooms += usize::from(view.ground_truth().unwrap().room.is_some());
     }
     println!(
@@ -91,7 +91,8 @@ fn levels_agree_with_what_people_wrote() {
         let Some((platform, items)) = items(split) else { return };
         for item in &items {
             let goal = item["path"].as_array().unwrap().last().unwrap().as_str().unwrap();
-            let level = platform.graph(&scene_of(item)).unwrap().level(&ViewpointId::new(goal).unwrap()).unwrap();
+            let level =
+                platform.graph_for_scene(&scene_of(item)).unwrap().level_of(&ViewpointId::new(goal).unwrap()).unwrap();
             for text in item["instructions"].as_array().unwrap() {
                 if let Some(written) = written_level(text.as_str().unwrap()) {
                     said += 1;
@@ -131,12 +132,12 @@ fn written_level(text: &str) -> Option<u32> {
 #[test]
 fn directions_of_boxes_agree_with_object_centres() {
     let Some(folder) = data() else { return };
-    let platform = Matterport::open(&folder).unwrap();
+    let platform = MatterportPlatform::open(&folder).unwrap();
     let (mut labels, mut within_10, mut within_45) = (0, 0, 0);
-    for scene in platform.scenes().unwrap() {
-        let graph = platform.graph(&scene).unwrap();
+    for scene in platform.list_scenes().unwrap() {
+        let graph = platform.graph_for_scene(&scene).unwrap();
         for viewpoint in graph.viewpoints() {
-            let frame = graph.walk(std::slice::from_ref(viewpoint), None).unwrap().remove(0);
+            let frame = graph.path_frames(std::slice::from_ref(viewpoint), None).unwrap().remove(0);
             for label in labels_around(&platform, &scene, &frame).unwrap() {
                 let centre = Heading::towards(frame.pose.position, label.position.unwrap()).unwrap();
                 let off_deg = label.heading.turn_to(centre).abs().to_degrees();
@@ -154,9 +155,9 @@ fn directions_of_boxes_agree_with_object_centres() {
 #[test]
 fn random_paths_end_at_a_visible_target() {
     let Some(folder) = data() else { return };
-    let platform = Matterport::open(&folder).unwrap();
+    let platform = MatterportPlatform::open(&folder).unwrap();
     let mut targets = 0;
-    let scenes = platform.scenes().unwrap();
+    let scenes = platform.list_scenes().unwrap();
     for (seed, scene) in scenes.iter().enumerate() {
         let path = match platform.sample_path(scene, &PathRequest::default(), seed as u64) {
             Ok(path) => path,

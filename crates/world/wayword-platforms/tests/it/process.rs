@@ -14,7 +14,7 @@ mod lives;
 mod worlds;
 
 use std::{path::Path, sync::Arc, time::Duration};
-use wayword_core::{Frame, Gaze, Heading, Platform, PlatformError, Pose, SceneId, View, ViewpointId};
+use wayword_core::{Frame, Heading, Platform, PlatformError, Pose, SceneId, View, ViewGaze, ViewpointId};
 use wayword_platforms::{ProcessPlatform, process::ProcessOptions};
 
 /// Plays a child if the environment names a role, and is an empty test otherwise.
@@ -52,9 +52,9 @@ pub(crate) fn scene(name: &str) -> SceneId {
 
 /// A look to the north from viewpoint `a`.
 pub(crate) fn look(platform: &ProcessPlatform, name: &str) -> Result<View, PlatformError> {
-    let pose = Pose::level(wayword_core::DVec3::new(0.0, 0.0, 1.5), Heading::NORTH);
+    let pose = Pose::looking_level(wayword_core::DVec3::new(0.0, 0.0, 1.5), Heading::NORTH);
     let frame = Frame { pose, viewpoint: Some(ViewpointId::new("a").unwrap()), level: None };
-    platform.look(&scene(name), &frame, Gaze::quarter(Heading::NORTH))
+    platform.look_from(&scene(name), &frame, ViewGaze::quarter_view(Heading::NORTH))
 }
 
 /// The process id of the child that answered a look: the actor sends it as the name of the room.

@@ -18,7 +18,7 @@ use std::{
     process::Command,
     sync::Arc,
 };
-use wayword_core::{Frame, Gaze, Image, PathRequest, Platform, SceneId};
+use wayword_core::{Frame, Image, PathRequest, Platform, SceneId, ViewGaze};
 use wayword_platforms::{ProcessPlatform, process::ProcessOptions};
 use wayword_world::labels_around;
 
@@ -79,12 +79,12 @@ fn a_world_of_a_few_lines_of_python_is_walked_and_seen() {
     assert_eq!(path.target.as_ref().unwrap().name, "pillar");
     // The child draws north red, east green, south blue and west white.
     let last = path.frames.last().unwrap();
-    let colours = Gaze::compass().map(|gaze| {
-        let view = platform.look(&scene, last, gaze).unwrap();
-        view.image.unwrap().rgb()[..3].to_vec()
+    let colours = ViewGaze::compass_views().map(|gaze| {
+        let view = platform.look_from(&scene, last, gaze).unwrap();
+        view.image.unwrap().rgb_bytes()[..3].to_vec()
     });
     assert_eq!(colours, [[255, 0, 0], [0, 255, 0], [0, 0, 255], [255, 255, 255]]);
-    let gone = platform.graph(&SceneId::new("attic").unwrap()).unwrap_err().to_string();
+    let gone = platform.graph_for_scene(&SceneId::new("attic").unwrap()).unwrap_err().to_string();
     assert!(gone.contains("there is no scene attic: there is one, yard"), "{gone}");
 }
 
@@ -103,8 +103,8 @@ fn mujoco_is_walked_and_seen() {
 }
 
 fn walk(platform: &ProcessPlatform, scene: &SceneId) -> wayword_core::Path {
-    let graph = platform.graph(scene).unwrap();
-    assert_eq!(graph.components(), 1);
+    let graph = platform.graph_for_scene(scene).unwrap();
+    assert_eq!(graph.count_components(), 1);
     let request = PathRequest::default();
     let path = platform.sample_path(scene, &request, 1).unwrap();
     assert!(request.allows_length_of(&path));
@@ -116,9 +116,9 @@ fn walk(platform: &ProcessPlatform, scene: &SceneId) -> wayword_core::Path {
 /// viewpoint.
 fn explore(platform: &ProcessPlatform, name: &str, things: &[&str]) {
     let scene = SceneId::new(name).unwrap();
-    assert!(platform.scenes().unwrap().contains(&scene));
+    assert!(platform.list_scenes().unwrap().contains(&scene));
     let path = walk(platform, &scene);
-    let graph = platform.graph(&scene).unwrap();
+    let graph = platform.graph_for_scene(&scene).unwrap();
     println!(
         "{name}: {} viewpoints, {} edges; a path of {:.1} m",
         graph.len(),
@@ -126,7 +126,8 @@ fn explore(platform: &ProcessPlatform, name: &str, things: &[&str]) {
         path.length_m().unwrap()
     );
     for (number, frame) in path.frames.iter().enumerate() {
-        let looked = Gaze::around(frame.pose.heading).map(|gaze| platform.look(&scene, frame, gaze).unwrap());
+        let looked =
+            ViewGaze::around_heading(frame.pose.heading).map(|gaze| platform.look_from(&scene, frame, gaze).unwrap());
         let images = looked.map(|view| view.image.unwrap());
         keep(name, number, &images);
         assert!(images.iter().all(|image| (image.width_px(), image.height_px()) == (640, 480)));
@@ -138,7 +139,7 @@ fn explore(platform: &ProcessPlatform, name: &str, things: &[&str]) {
     }
     let mut seen = BTreeSet::new();
     for id in graph.viewpoints() {
-        let frame: Frame = graph.walk(std::slice::from_ref(id), None).unwrap().remove(0);
+        let frame: Frame = graph.path_frames(std::slice::from_ref(id), None).unwrap().remove(0);
         seen.extend(labels_around(platform, &scene, &frame).unwrap().into_iter().map(|label| label.name));
     }
     assert_eq!(seen.iter().map(String::as_str).collect::<Vec<_>>(), things);
@@ -147,7 +148,7 @@ fn explore(platform: &ProcessPlatform, name: &str, things: &[&str]) {
 /// Mean difference, from 0 to 255, between the last column of a picture and the first of another.
 fn seam(left: &Image, right: &Image) -> f64 {
     let (width, height) = (left.width_px() as usize, left.height_px() as usize);
-    let row = |image: &Image, y: usize, x: usize| image.rgb()[(y * width + x) * 3..][..3].to_vec();
+    let row = |image: &Image, y: usize, x: usize| image.rgb_bytes()[(y * width + x) * 3..][..3].to_vec();
     let off = (0..height).flat_map(|y| row(left, y, width - 1).into_iter().zip(row(right, y, 0)));
     off.map(|(a, b)| f64::from(a.abs_diff(b))).sum::<f64>() / (height * 3) as f64
 }
@@ -157,7 +158,7 @@ fn keep(name: &str, number: usize, images: &[Arc<Image>; 4]) {
     let Some(folder) = std::env::var_os("WAYWORD_PICTURES") else { return };
     let mut all = image::RgbImage::new(4 * 640, 480);
     for (place, picture) in images.iter().enumerate() {
-        let part = image::RgbImage::from_raw(640, 480, picture.rgb().to_vec()).unwrap();
+        let part = image::RgbImage::from_raw(640, 480, picture.rgb_bytes().to_vec()).unwrap();
         image::imageops::replace(&mut all, &part, 640 * place as i64, 0);
     }
     all.save(Path::new(&folder).join(format!("{name}-{number}.png"))).unwrap();

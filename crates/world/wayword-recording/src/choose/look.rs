@@ -3,41 +3,41 @@
 use wayword_core::Image;
 
 /// Size of the small grey copies that are compared, pixels.
-const WIDE: usize = 32;
-const HIGH: usize = 24;
+const SMALL_WIDTH_PX: usize = 32;
+const SMALL_HEIGHT_PX: usize = 24;
 /// Least width at which sharpness is measured, pixels: motion blur is wide, and noise of single pixels is not
 /// sharpness.
 const MEASURED_PX: usize = 320;
 /// Variance that a picture of one colour gets from its noise, levels squared.
-const NOISE: f64 = 25.0;
+const NOISE_VARIANCE: f64 = 25.0;
 
 /// Measurements of a picture.
 #[derive(Debug, Clone)]
-pub(super) struct Look {
+pub(super) struct PictureMeasure {
     /// Variance of the Laplacian over that of the picture: the share of edges in what the picture shows.
     pub(super) sharpness: f64,
     small: Vec<f32>,
 }
 
-impl Look {
+impl PictureMeasure {
     /// Measures a picture.
-    pub(super) fn at(image: &Image) -> Self {
+    pub(super) fn from_image(image: &Image) -> Self {
         let (width, height) = (image.width_px() as usize, image.height_px() as usize);
         let step = (width / MEASURED_PX).max(1);
-        let grey = shrunk(image, (width / step).max(1), (height / step).max(1));
-        let sharpness = variance(&laplacian(&grey, (width / step).max(1))) / (variance(&grey) + NOISE);
-        Self { sharpness, small: shrunk(image, WIDE, HIGH) }
+        let grey = shrink_to_grey(image, (width / step).max(1), (height / step).max(1));
+        let sharpness = variance(&laplacian(&grey, (width / step).max(1))) / (variance(&grey) + NOISE_VARIANCE);
+        Self { sharpness, small: shrink_to_grey(image, SMALL_WIDTH_PX, SMALL_HEIGHT_PX) }
     }
 
     /// Mean absolute difference, levels of 255.
-    pub(super) fn difference(&self, other: &Self) -> f64 {
+    pub(super) fn mean_difference(&self, other: &Self) -> f64 {
         let sum: f32 = self.small.iter().zip(&other.small).map(|(a, b)| (a - b).abs()).sum();
         f64::from(sum) / self.small.len() as f64
     }
 }
 
 /// The picture in grey at another size: each pixel is the mean of those that it covers.
-fn shrunk(image: &Image, wide: usize, high: usize) -> Vec<f32> {
+fn shrink_to_grey(image: &Image, wide: usize, high: usize) -> Vec<f32> {
     let (width, height) = (image.width_px() as usize, image.height_px() as usize);
     let span =
         |at: usize, of: usize, from: usize| (at * from / of, ((at + 1) * from / of).max(at * from / of + 1).min(from));
@@ -48,7 +48,7 @@ fn shrunk(image: &Image, wide: usize, high: usize) -> Vec<f32> {
             let (left, right) = span(x, wide, width);
             let mut sum = 0_u32;
             for row in top..bottom {
-                let pixels = &image.rgb()[3 * (row * width + left)..3 * (row * width + right)];
+                let pixels = &image.rgb_bytes()[3 * (row * width + left)..3 * (row * width + right)];
                 // Green counts twice, because eyes see it better than red and blue.
                 sum += pixels
                     .chunks_exact(3)

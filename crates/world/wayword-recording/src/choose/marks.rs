@@ -1,13 +1,13 @@
 //! Sets marks along a recording, at equal distances or times: each of them should become a frame.
 
 use super::{INTERVAL_M, INTERVAL_S, MOST_LEFT_OUT};
-use crate::{platform::WHOLE, reel::Recording};
+use crate::{platform::MAX_WHOLE_FRAMES, reel::Recording};
 use wayword_core::DVec3;
 
 /// Most candidates for one mark.
 const MOST_CANDIDATES: usize = 5;
 /// Greatest distance of a candidate from its mark, as a share of the interval.
-const NEAR: f64 = 0.2;
+const NEAR_INTERVAL_SHARE: f64 = 0.2;
 /// An interval that is shorter than any time between pictures, seconds.
 const LEAST_S: f64 = 1e-6;
 /// Least mean time between the pictures of a slide show, seconds; those of a video are closer.
@@ -18,7 +18,7 @@ const LEFT_OVER: f64 = 0.5;
 
 /// A place or time at which there should be a frame.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Mark {
+pub(super) struct FrameMark {
     /// Number of the picture at the mark.
     pub(super) at: usize,
     /// Pictures that may be its frame, ascending; `at` is one of them.
@@ -28,21 +28,22 @@ pub(super) struct Mark {
 }
 
 /// The marks of a recording, and the number of pictures without a pose where others have one.
-pub(super) fn of(recording: &Recording) -> (Vec<Mark>, usize) {
+pub(super) fn marks_for_recording(recording: &Recording) -> (Vec<FrameMark>, usize) {
     let times_s = recording.reel.times_s();
     let Some(track) = &recording.track else {
         let usual_s = if is_slide_show(times_s) { LEAST_S } else { INTERVAL_S };
         let interval_s = recording.described.interval_s.unwrap_or(usual_s);
         let all: Vec<usize> = (0..times_s.len()).collect();
         let off = |a: usize, b: usize| (times_s[a] - times_s[b]).abs();
-        return (spread(&all, interval_s, &off), 0);
+        return (spread_marks(&all, interval_s, &off), 0);
     };
-    let places: Vec<Option<DVec3>> = times_s.iter().map(|time_s| track.at(*time_s).map(|fix| fix.position)).collect();
+    let places: Vec<Option<DVec3>> =
+        times_s.iter().map(|time_s| track.fix_at(*time_s).map(|fix| fix.position)).collect();
     let posed: Vec<usize> = (0..times_s.len()).filter(|at| places[*at].is_some()).collect();
     let place = |at: usize| places[at].unwrap_or_default();
     let interval_m = recording.described.interval_m.unwrap_or(INTERVAL_M);
     let off = |a: usize, b: usize| place(a).distance(place(b));
-    let mut marks = spread(&posed, interval_m, &off);
+    let mut marks = spread_marks(&posed, interval_m, &off);
     // The tracker lost its place here and found it again far away.
     let leap_m = (MOST_LEFT_OUT + 1) as f64 * interval_m;
     let leaps = posed.windows(2).filter(|pair| pair[1] - pair[0] > 1 && off(pair[0], pair[1]) > leap_m);
@@ -59,12 +60,12 @@ pub(super) fn of(recording: &Recording) -> (Vec<Mark>, usize) {
 /// Whether these are a few single pictures, each of which its photographer meant to be a frame, and no clip of a video.
 fn is_slide_show(times_s: &[f64]) -> bool {
     let span_s = times_s.last().zip(times_s.first()).map_or(0.0, |(last, first)| last - first);
-    times_s.len() <= WHOLE && span_s >= LEAST_APART_S * times_s.len().saturating_sub(1) as f64
+    times_s.len() <= MAX_WHOLE_FRAMES && span_s >= LEAST_APART_S * times_s.len().saturating_sub(1) as f64
 }
 
 /// Marks about one interval apart. The distance from the last mark counts, not the length of the track, because a
 /// tracker's positions jitter while a robot rests.
-fn spread(pictures: &[usize], interval: f64, off: &dyn Fn(usize, usize) -> f64) -> Vec<Mark> {
+fn spread_marks(pictures: &[usize], interval: f64, off: &dyn Fn(usize, usize) -> f64) -> Vec<FrameMark> {
     let (Some(first), Some(last)) = (pictures.first(), pictures.last()) else { return Vec::new() };
     // Indices into `pictures`, not numbers of pictures.
     let mut marks = vec![0];
@@ -96,17 +97,17 @@ fn spread(pictures: &[usize], interval: f64, off: &dyn Fn(usize, usize) -> f64) 
         }
     }
     let candidates = |mark: usize| {
-        let near = |at: &usize| off(pictures[*at], pictures[mark]) <= NEAR * interval;
+        let near = |at: &usize| off(pictures[*at], pictures[mark]) <= NEAR_INTERVAL_SHARE * interval;
         let before = (0..mark).rev().take_while(near).count();
         let after = (mark + 1..pictures.len()).take_while(near).count();
-        thinned(mark - before..=mark + after, mark).map(|at| pictures[at]).collect()
+        thin_out(mark - before..=mark + after, mark).map(|at| pictures[at]).collect()
     };
-    let mark = |at: &usize| Mark { at: pictures[*at], candidates: candidates(*at), after_gap: false };
+    let mark = |at: &usize| FrameMark { at: pictures[*at], candidates: candidates(*at), after_gap: false };
     marks.iter().map(mark).collect()
 }
 
 /// At most [`MOST_CANDIDATES`] of a range, evenly spread; `kept` is one of them.
-fn thinned(range: std::ops::RangeInclusive<usize>, kept: usize) -> impl Iterator<Item = usize> {
+fn thin_out(range: std::ops::RangeInclusive<usize>, kept: usize) -> impl Iterator<Item = usize> {
     let length = range.end() - range.start() + 1;
     let step = length.div_ceil(MOST_CANDIDATES).max(1);
     let phase = kept % step;

@@ -8,26 +8,26 @@ mod look;
 mod marks;
 
 use crate::reel::Recording;
-use look::Look;
-use marks::Mark;
+use look::PictureMeasure;
+use marks::FrameMark;
 use std::collections::BTreeSet;
-use wayword_core::{Gaze, Heading, Image, PlatformError};
+use wayword_core::{Heading, Image, PlatformError, ViewGaze};
 
 /// Default distance between frames, metres.
 pub(crate) const INTERVAL_M: f64 = 1.0;
 /// Default time between frames, seconds: at a walking speed of 0.7 m/s a bit more than a metre.
 pub(crate) const INTERVAL_S: f64 = 2.0;
 /// A picture with less than this share of the recording's usual sharpness is blurred.
-const BLURRED: f64 = 0.3;
+const BLURRED_SHARPNESS_SHARE: f64 = 0.3;
 /// A picture that differs from the one before by less than this shows the same, levels of 255 on average.
-const ALIKE: f64 = 2.0;
+const ALIKE_DIFFERENCE_LEVELS: f64 = 2.0;
 /// Most marks in a row that may be left out. After more of them, the straight line between two frames may not be the way
 /// that the camera took.
 const MOST_LEFT_OUT: usize = 2;
 
 /// The frames of a recording, and what was left out.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub(crate) struct Choice {
+pub(crate) struct FrameChoice {
     /// Numbers of pictures, ascending.
     pub(crate) stops: Vec<usize>,
     /// Indices into `stops`: the way to these stops from the one before is not known, although the poses are.
@@ -46,24 +46,27 @@ pub(crate) struct Choice {
 ///
 /// # Errors
 /// When a picture cannot be read.
-pub(crate) fn choose(recording: &Recording, each: &mut dyn FnMut(usize, &Image)) -> Result<Choice, PlatformError> {
-    let (marks, without_pose) = marks::of(recording);
-    let wanted = candidates(&marks);
+pub(crate) fn choose_frames(
+    recording: &Recording,
+    each: &mut dyn FnMut(usize, &Image),
+) -> Result<FrameChoice, PlatformError> {
+    let (marks, without_pose) = marks::marks_for_recording(recording);
+    let wanted = all_candidates(&marks);
     let mut looks = Vec::with_capacity(wanted.len());
-    recording.reel.pictures(&wanted, &mut |number, image| {
+    recording.reel.hand_out_pictures(&wanted, &mut |number, image| {
         each(number, &image);
-        looks.push((number, Look::at(&image)));
+        looks.push((number, PictureMeasure::from_image(&image)));
         Ok(())
     })?;
-    Ok(Choice { without_pose, ..among(recording, &marks, &looks) })
+    Ok(FrameChoice { without_pose, ..choose_among(recording, &marks, &looks) })
 }
 
 /// The pictures that are examined in order to choose among them, ascending.
-pub(crate) fn wanted(recording: &Recording) -> Vec<usize> {
-    candidates(&marks::of(recording).0)
+pub(crate) fn candidate_pictures(recording: &Recording) -> Vec<usize> {
+    all_candidates(&marks::marks_for_recording(recording).0)
 }
 
-fn candidates(marks: &[Mark]) -> Vec<usize> {
+fn all_candidates(marks: &[FrameMark]) -> Vec<usize> {
     let mut wanted: Vec<usize> = marks.iter().flat_map(|mark| mark.candidates.iter().copied()).collect();
     wanted.sort_unstable();
     wanted.dedup();
@@ -71,15 +74,15 @@ fn candidates(marks: &[Mark]) -> Vec<usize> {
 }
 
 /// Chooses the frames after every candidate was examined.
-fn among(recording: &Recording, marks: &[Mark], looks: &[(usize, Look)]) -> Choice {
+fn choose_among(recording: &Recording, marks: &[FrameMark], looks: &[(usize, PictureMeasure)]) -> FrameChoice {
     let look = |number: usize| {
         let found = looks.binary_search_by_key(&number, |(number, _)| *number).ok();
         found.map(|at| &looks[at].1)
     };
-    let least = BLURRED * usual_sharpness(looks);
-    let mut choice = Choice::default();
+    let least = BLURRED_SHARPNESS_SHARE * usual_sharpness(looks);
+    let mut choice = FrameChoice::default();
     // The mark of the last stop, and its picture's measures.
-    let mut last: Option<(usize, &Look)> = None;
+    let mut last: Option<(usize, &PictureMeasure)> = None;
     for (at, mark) in marks.iter().enumerate() {
         // The first and the last mark stay: without them the path would be another one.
         let is_end = at == 0 || at + 1 == marks.len();
@@ -96,14 +99,15 @@ fn among(recording: &Recording, marks: &[Mark], looks: &[(usize, Look)]) -> Choi
         }
         let is_sharp = |number: &&usize| look(**number).is_some_and(|look| look.sharpness >= least);
         let nearest = |number: &&usize| number.abs_diff(mark.at);
-        let sharpest = || facing.iter().max_by(|a, b| sharpness(look(**a)).total_cmp(&sharpness(look(**b))));
+        let sharpest =
+            || facing.iter().max_by(|a, b| sharpness_or_zero(look(**a)).total_cmp(&sharpness_or_zero(look(**b))));
         let sharp = facing.iter().filter(is_sharp).min_by_key(nearest);
         let Some(number) = sharp.or_else(|| if is_end { sharpest() } else { None }) else {
             choice.blurred += 1;
             continue;
         };
         let Some(seen) = look(*number) else { continue };
-        if last.is_some_and(|(_, last)| last.difference(seen) < ALIKE) {
+        if last.is_some_and(|(_, last)| last.mean_difference(seen) < ALIKE_DIFFERENCE_LEVELS) {
             choice.alike += 1;
             if at + 1 < marks.len() || choice.stops.len() < 2 {
                 continue;
@@ -119,30 +123,30 @@ fn among(recording: &Recording, marks: &[Mark], looks: &[(usize, Look)]) -> Choi
     choice
 }
 
-fn sharpness(look: Option<&Look>) -> f64 {
+fn sharpness_or_zero(look: Option<&PictureMeasure>) -> f64 {
     look.map_or(0.0, |look| look.sharpness)
 }
 
 /// The median sharpness.
-fn usual_sharpness(looks: &[(usize, Look)]) -> f64 {
+fn usual_sharpness(looks: &[(usize, PictureMeasure)]) -> f64 {
     let mut all: Vec<f64> = looks.iter().map(|(_, look)| look.sharpness).collect();
     all.sort_by(f64::total_cmp);
     all.get(all.len() / 2).copied().unwrap_or(0.0)
 }
 
 /// Whether the way over these marks is unknown. The last of them would be the next stop.
-fn is_lost(marks: &[Mark]) -> bool {
+fn is_lost(marks: &[FrameMark]) -> bool {
     marks.len() > MOST_LEFT_OUT + 1 || marks.iter().any(|mark| mark.after_gap)
 }
 
 /// Whether a picture shows the view of an agent that comes from the stop `before` and looks ahead; true if this is
 /// unknown.
 fn faces_the_way(recording: &Recording, before: usize, number: usize) -> bool {
-    let fix = |number: usize| recording.track.as_ref()?.at(recording.reel.times_s()[number]);
+    let fix = |number: usize| recording.track.as_ref()?.fix_at(recording.reel.times_s()[number]);
     let faces = || {
         let (from, to) = (fix(before)?, fix(number)?);
         let walked = Heading::towards(from.position, to.position)?;
-        Some(Gaze::quarter(walked).holds(to.heading?))
+        Some(ViewGaze::quarter_view(walked).holds_heading(to.heading?))
     };
     faces().unwrap_or(true)
 }

@@ -2,9 +2,9 @@
 
 use super::*;
 use crate::{
-    describe::Description,
-    reel::{Reel, Take},
-    track::{Fix, Track},
+    describe::RecordingDescription,
+    reel::{PictureReel, TakePicture},
+    track::{CameraTrack, TrackFix},
 };
 use proptest::prelude::*;
 use wayword_core::DVec3;
@@ -15,16 +15,16 @@ struct Painted {
     paint: fn(usize) -> Image,
 }
 
-impl Reel for Painted {
+impl PictureReel for Painted {
     fn times_s(&self) -> &[f64] {
         &self.times_s
     }
 
-    fn name(&self, number: usize) -> String {
+    fn picture_name(&self, number: usize) -> String {
         number.to_string()
     }
 
-    fn pictures(&self, wanted: &[usize], take: &mut Take<'_>) -> Result<(), PlatformError> {
+    fn hand_out_pictures(&self, wanted: &[usize], take: &mut TakePicture<'_>) -> Result<(), PlatformError> {
         wanted.iter().try_for_each(|number| take(*number, (self.paint)(*number)))
     }
 }
@@ -43,19 +43,23 @@ fn stripes(number: usize, blur: usize) -> Image {
     Image::new(width as u32, height, pixels.repeat(height as usize)).unwrap()
 }
 
-fn recording(count: usize, paint: fn(usize) -> Image, track: Option<Vec<Fix>>) -> Recording {
+fn recording(count: usize, paint: fn(usize) -> Image, track: Option<Vec<TrackFix>>) -> Recording {
     let times_s = (0..count).map(|at| at as f64 / 10.0).collect();
     let reel = Box::new(Painted { times_s, paint });
-    let track = track.and_then(Track::new);
-    Recording { reel, track, horizontal_fov_rad: None, described: Description::default() }
+    let track = track.and_then(CameraTrack::new);
+    Recording { reel, track, horizontal_fov_rad: None, described: RecordingDescription::default() }
 }
 
-fn fix(at: usize, x_m: f64, deg: f64) -> Fix {
-    Fix { time_s: at as f64 / 10.0, position: DVec3::new(x_m, 0.0, 1.5), heading: Heading::new(deg.to_radians()).ok() }
+fn fix(at: usize, x_m: f64, deg: f64) -> TrackFix {
+    TrackFix {
+        time_s: at as f64 / 10.0,
+        position: DVec3::new(x_m, 0.0, 1.5),
+        heading: Heading::new(deg.to_radians()).ok(),
+    }
 }
 
-fn chosen(recording: &Recording) -> Choice {
-    choose(recording, &mut |_, _| {}).unwrap()
+fn chosen(recording: &Recording) -> FrameChoice {
+    choose_frames(recording, &mut |_, _| {}).unwrap()
 }
 
 #[test]
@@ -161,7 +165,7 @@ fn pictures_without_a_pose_are_counted_and_left_out() {
 
 #[test]
 fn a_recording_without_pictures_has_no_frames() {
-    assert_eq!(chosen(&recording(0, |number| stripes(number, 0), None)), Choice::default());
+    assert_eq!(chosen(&recording(0, |number| stripes(number, 0), None)), FrameChoice::default());
     assert_eq!(chosen(&recording(1, |number| stripes(number, 0), None)).stops, [0]);
 }
 
@@ -175,7 +179,7 @@ proptest! {
             (x_m, deg) = (x_m + step_m, deg + turn);
             fix(at, x_m, deg)
         });
-        let fixes: Vec<Fix> = fixes.collect();
+        let fixes: Vec<TrackFix> = fixes.collect();
         let choice = chosen(&recording(steps.len(), |number| stripes(number, number % 5), posed.then_some(fixes)));
         prop_assert!(!choice.stops.is_empty());
         prop_assert!(choice.stops.windows(2).all(|pair| pair[0] < pair[1]));

@@ -10,13 +10,13 @@ use wayword_core::PlatformError;
 use wayword_world::files;
 
 const MAX_FILE_BYTES: u64 = 16 << 20;
-const HINT: &str = "give a dataset of LeRobot, versions 2.0, 2.1 or 3.0, as its library writes it";
+const INFO_HINT: &str = "give a dataset of LeRobot, versions 2.0, 2.1 or 3.0, as its library writes it";
 /// Most numbers of a feature that can hold poses.
 const MAX_WIDTH: u64 = 4096;
 
 /// How a dataset's files are laid out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Layout {
+pub(super) enum DatasetLayout {
     /// Version 2: a file for each episode.
     Episodes,
     /// Version 3: many episodes in a file.
@@ -25,7 +25,7 @@ pub(super) enum Layout {
 
 /// The content of `meta/info.json`.
 #[derive(Debug, Deserialize)]
-pub(super) struct Info {
+pub(super) struct DatasetInfo {
     codebase_version: String,
     fps: f64,
     #[serde(default = "usual_chunk")]
@@ -33,12 +33,12 @@ pub(super) struct Info {
     pub(super) data_path: String,
     #[serde(default)]
     pub(super) video_path: Option<String>,
-    pub(super) features: BTreeMap<String, Feature>,
+    pub(super) features: BTreeMap<String, DatasetFeature>,
 }
 
 /// A column, or a camera.
 #[derive(Debug, Clone, Deserialize)]
-pub(super) struct Feature {
+pub(super) struct DatasetFeature {
     pub(super) dtype: String,
     #[serde(default)]
     shape: Vec<u64>,
@@ -52,9 +52,9 @@ fn usual_chunk() -> u64 {
     1000
 }
 
-impl Info {
+impl DatasetInfo {
     /// The path of the file in a dataset.
-    pub(super) fn file(root: &Path) -> PathBuf {
+    pub(super) fn info_file(root: &Path) -> PathBuf {
         root.join("meta").join("info.json")
     }
 
@@ -63,10 +63,10 @@ impl Info {
     /// # Errors
     /// When it does not exist, is not as the library writes it, or has a version that cannot be read.
     pub(super) fn read(root: &Path) -> Result<Self, PlatformError> {
-        let file = Self::file(root);
-        let wrong = |reason: String| files::wrong(&file, reason, HINT);
-        let text =
-            files::text_if_there(&file, MAX_FILE_BYTES, HINT)?.ok_or_else(|| wrong("there is no such file".into()))?;
+        let file = Self::info_file(root);
+        let wrong = |reason: String| files::file_error(&file, reason, INFO_HINT);
+        let text = files::text_if_there(&file, MAX_FILE_BYTES, INFO_HINT)?
+            .ok_or_else(|| wrong("there is no such file".into()))?;
         let info: Self = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
         if info.chunks_size == 0 {
             return Err(wrong("chunks_size is 0".into()));
@@ -80,10 +80,10 @@ impl Info {
     }
 
     /// The layout of the dataset's files; `None` for an unknown version.
-    pub(super) fn layout(&self) -> Option<Layout> {
+    pub(super) fn layout(&self) -> Option<DatasetLayout> {
         match self.codebase_version.strip_prefix('v')?.split('.').next()? {
-            "2" => Some(Layout::Episodes),
-            "3" => Some(Layout::Files),
+            "2" => Some(DatasetLayout::Episodes),
+            "3" => Some(DatasetLayout::Files),
             _ => None,
         }
     }
@@ -94,7 +94,7 @@ impl Info {
     }
 }
 
-impl Feature {
+impl DatasetFeature {
     /// Whether it holds pictures of a camera, and not depths.
     pub(super) fn is_camera(&self) -> bool {
         let depths =
@@ -111,21 +111,21 @@ impl Feature {
     }
 
     /// The names of its elements, in lists or in groups (`{"motors": ["x", "y"]}`); `None` if an element has no name.
-    pub(super) fn names(&self) -> Option<Vec<&str>> {
+    pub(super) fn element_names(&self) -> Option<Vec<&str>> {
         let mut names = Vec::new();
-        collect(&self.names, &mut names);
+        collect_texts(&self.names, &mut names);
         (self.width() == Some(names.len())).then_some(names)
     }
 }
 
 /// Collects all texts in a value, in order.
-fn collect<'a>(value: &'a Value, into: &mut Vec<&'a str>) {
+fn collect_texts<'a>(value: &'a Value, into: &mut Vec<&'a str>) {
     match value {
         Value::String(name) => into.push(name),
-        Value::Array(values) => values.iter().for_each(|value| collect(value, into)),
+        Value::Array(values) => values.iter().for_each(|value| collect_texts(value, into)),
         Value::Object(groups) => groups.iter().for_each(|(key, value)| {
             // Some datasets number their names: {"x": 0, "y": 1}.
-            if value.as_u64() == Some(into.len() as u64) { into.push(key) } else { collect(value, into) }
+            if value.as_u64() == Some(into.len() as u64) { into.push(key) } else { collect_texts(value, into) }
         }),
         _ => {}
     }
@@ -135,21 +135,21 @@ fn collect<'a>(value: &'a Value, into: &mut Vec<&'a str>) {
 mod tests {
     use super::*;
 
-    fn feature(json: &str) -> Feature {
+    fn feature(json: &str) -> DatasetFeature {
         serde_json::from_str(json).unwrap()
     }
 
     #[test]
     fn names_are_found_in_lists_and_groups() {
         let list = feature(r#"{"dtype": "float32", "shape": [2], "names": ["x", "y"]}"#);
-        assert_eq!(list.names(), Some(vec!["x", "y"]));
+        assert_eq!(list.element_names(), Some(vec!["x", "y"]));
         let grouped = feature(r#"{"dtype": "float32", "shape": [3], "names": {"b": ["x", "y"], "a": ["yaw"]}}"#);
-        assert_eq!(grouped.names(), Some(vec!["x", "y", "yaw"]));
+        assert_eq!(grouped.element_names(), Some(vec!["x", "y", "yaw"]));
         let numbered = feature(r#"{"dtype": "float32", "shape": [2], "names": {"x": 0, "y": 1}}"#);
-        assert_eq!(numbered.names(), Some(vec!["x", "y"]));
+        assert_eq!(numbered.element_names(), Some(vec!["x", "y"]));
         for unnamed in [r#"null"#, r#"["state"]"#] {
             let json = format!(r#"{{"dtype": "float32", "shape": [2], "names": {unnamed}}}"#);
-            assert_eq!(feature(&json).names(), None);
+            assert_eq!(feature(&json).element_names(), None);
         }
     }
 
@@ -168,10 +168,10 @@ mod tests {
         let read = |version: &str| {
             std::fs::create_dir_all(folder.path().join("meta")).unwrap();
             let text = format!(r#"{{"codebase_version": "{version}", "fps": 5, "data_path": "x", "features": {{}}}}"#);
-            std::fs::write(Info::file(folder.path()), text).unwrap();
-            Info::read(folder.path()).map(|info| info.layout().unwrap()).map_err(|error| error.to_string())
+            std::fs::write(DatasetInfo::info_file(folder.path()), text).unwrap();
+            DatasetInfo::read(folder.path()).map(|info| info.layout().unwrap()).map_err(|error| error.to_string())
         };
-        assert_eq!((read("v2.1"), read("v3.0")), (Ok(Layout::Episodes), Ok(Layout::Files)));
+        assert_eq!((read("v2.1"), read("v3.0")), (Ok(DatasetLayout::Episodes), Ok(DatasetLayout::Files)));
         assert!(read("v1.6").unwrap_err().contains("\"v1.6\""));
     }
 }

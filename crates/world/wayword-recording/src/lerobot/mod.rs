@@ -13,18 +13,18 @@ mod pose_feature;
 mod template;
 
 use crate::{
-    axes::{Axes, Body},
-    describe::{self, Description},
-    names::{entries, plain, scene_of, unknown},
-    plausible::doubt,
-    reel::{Recording, Reel, Source},
-    track::{Fix, Track},
+    axes::{PoseAxes, PoseBody},
+    describe::{self, RecordingDescription},
+    names::{plain_files, scene_of, sorted_entries, unknown_scene},
+    plausible::find_doubt,
+    reel::{PictureReel, Recording, RecordingSource},
+    track::{CameraTrack, TrackFix},
 };
-use camera::Camera;
-use episodes::Episode;
-use info::{Info, Layout};
-use parquet::Table;
-use pictures::{Stills, Stretch};
+use camera::DatasetCamera;
+use episodes::DatasetEpisode;
+use info::{DatasetInfo, DatasetLayout};
+use parquet::ParquetTable;
+use pictures::{RowReel, VideoStretch};
 use pose_feature::PoseFeature;
 use std::{
     ops::Range,
@@ -33,68 +33,79 @@ use std::{
 use wayword_core::{PlatformError, SceneId};
 use wayword_world::files;
 
-const HINT: &str = "download the dataset again, or write it again with LeRobot's library";
+const DATASET_HINT: &str = "download the dataset again, or write it again with LeRobot's library";
 
 /// Depth of the folders below `meta` that hold its files: `meta/episodes/chunk-000`.
 const META_DEPTH: usize = 2;
 
 /// A dataset.
-pub(crate) struct Dataset {
+pub(crate) struct LeRobotDataset {
     root: PathBuf,
-    described: Description,
-    info: Info,
-    camera: Camera,
+    described: RecordingDescription,
+    info: DatasetInfo,
+    camera: DatasetCamera,
     pose_feature: Option<PoseFeature>,
     /// Sorted by name, which is also the order of their numbers.
-    episodes: Vec<(SceneId, Episode)>,
+    episodes: Vec<(SceneId, DatasetEpisode)>,
 }
 
-impl Dataset {
+impl LeRobotDataset {
     /// Opens the dataset in a folder; reads its description and the list of its episodes.
     ///
     /// # Errors
     /// When its folder `meta` cannot be read, or it has several cameras and the user named none.
-    pub(crate) fn open(root: &Path, described: Description) -> Result<Self, PlatformError> {
-        let info = Info::read(root)?;
-        let camera = camera::choose(root, &info, described.camera.as_deref())?;
-        let pose_feature = PoseFeature::find(root, &info, &described)?;
+    pub(crate) fn open(root: &Path, described: RecordingDescription) -> Result<Self, PlatformError> {
+        let info = DatasetInfo::read(root)?;
+        let camera = camera::choose_camera(root, &info, described.camera.as_deref())?;
+        let pose_feature = PoseFeature::find_feature(root, &info, &described)?;
         let name = scene_of(root)?;
-        let named = |episode: Episode| {
+        let named = |episode: DatasetEpisode| {
             let scene = SceneId::new(format!("{name}_{:06}", episode.number));
             let scene =
-                scene.map_err(|error| files::wrong(root, error.to_string(), "give the folder a shorter name"))?;
+                scene.map_err(|error| files::file_error(root, error.to_string(), "give the folder a shorter name"))?;
             Ok((scene, episode))
         };
-        let episodes =
-            episodes::read(root, &info, &camera)?.into_iter().map(named).collect::<Result<Vec<_>, PlatformError>>()?;
+        let episodes = episodes::read_episodes(root, &info, &camera)?
+            .into_iter()
+            .map(named)
+            .collect::<Result<Vec<_>, PlatformError>>()?;
         if episodes.is_empty() {
-            return Err(files::wrong(&root.join("meta"), "lists no episodes", HINT));
+            return Err(files::file_error(&root.join("meta"), "lists no episodes", DATASET_HINT));
         }
         Ok(Self { root: root.to_owned(), described, info, camera, pose_feature, episodes })
     }
 
-    fn episode(&self, scene: &SceneId) -> Result<&Episode, PlatformError> {
+    fn find_episode(&self, scene: &SceneId) -> Result<&DatasetEpisode, PlatformError> {
         let known = self.episodes.iter().find(|(known, _)| known == scene);
-        known.map(|(_, episode)| episode).ok_or_else(|| unknown(scene, &self.scenes()))
+        known.map(|(_, episode)| episode).ok_or_else(|| unknown_scene(scene, &self.scenes()))
     }
 
     /// The poses of the robot in each row.
-    fn track(&self, table: &Table, rows: Range<u64>, times_s: &[f64]) -> Result<Option<Track>, PlatformError> {
+    fn read_track(
+        &self,
+        table: &ParquetTable,
+        rows: Range<u64>,
+        times_s: &[f64],
+    ) -> Result<Option<CameraTrack>, PlatformError> {
         let Some(feature) = &self.pose_feature else { return Ok(None) };
         let elements = feature.elements();
-        let numbers = table.lists(&feature.feature, rows, feature.width, &elements)?;
+        let numbers = table.read_lists(&feature.feature, rows, feature.width, &elements)?;
         let fixes = times_s.iter().zip(numbers.chunks_exact(elements.len()));
-        let fixes: Vec<Fix> =
-            fixes.filter_map(|(time_s, numbers)| feature.fix(*time_s, numbers, &self.described)).collect();
-        let samples = numbers.chunks_exact(elements.len()).filter_map(|numbers| feature.sample(numbers));
-        let doubt = doubt(&samples.collect::<Vec<_>>(), self.described.axes(Axes::of(Body::Robot)), &self.described);
-        let in_doubt = |track: Track| match doubt {
+        let fixes: Vec<TrackFix> =
+            fixes.filter_map(|(time_s, numbers)| feature.fix_from_numbers(*time_s, numbers, &self.described)).collect();
+        let samples = numbers.chunks_exact(elements.len()).filter_map(|numbers| feature.sample_from_numbers(numbers));
+        let doubt = find_doubt(
+            &samples.collect::<Vec<_>>(),
+            self.described.axes_or_usual(PoseAxes::for_body(PoseBody::Robot)),
+            &self.described,
+        );
+        let in_doubt = |track: CameraTrack| match doubt {
             Some(doubt) => track.in_doubt(format!("{}: {}", table.path().display(), doubt.into_words())),
             None => track,
         };
-        Track::new(fixes).map(in_doubt).map(Some).ok_or_else(|| {
+        CameraTrack::new(fixes).map(in_doubt).map(Some).ok_or_else(|| {
             let reason = format!("column {:?}: no row holds a valid position in metres", feature.feature);
-            files::wrong(
+            files::file_error(
                 table.path(),
                 reason,
                 "name another feature: poses = \"NAME\" in a recording.toml (docs/RECORDINGS.md)",
@@ -103,55 +114,59 @@ impl Dataset {
     }
 }
 
-impl Source for Dataset {
+impl RecordingSource for LeRobotDataset {
     fn scenes(&self) -> Vec<SceneId> {
         self.episodes.iter().map(|(scene, _)| scene.clone()).collect()
     }
 
     fn open(&self, scene: &SceneId) -> Result<Recording, PlatformError> {
-        let episode = self.episode(scene)?;
-        let table = Table::open(&episode.data)?;
+        let episode = self.find_episode(scene)?;
+        let table = ParquetTable::open(&episode.data)?;
         let rows = rows_of(&table, episode, self.info.layout())?;
         let times_s = times_s(&table, rows.clone())?;
-        let track = self.track(&table, rows.clone(), &times_s)?;
-        let reel: Box<dyn Reel> = match &episode.clip {
-            Some(clip) => Box::new(Stretch::open(clip, times_s, self.info.step_s())?),
-            None => Box::new(Stills::new(table, self.camera.key.clone(), rows.start, times_s)),
+        let track = self.read_track(&table, rows.clone(), &times_s)?;
+        let reel: Box<dyn PictureReel> = match &episode.clip {
+            Some(clip) => Box::new(VideoStretch::open(clip, times_s, self.info.step_s())?),
+            None => Box::new(RowReel::new(table, self.camera.key.clone(), rows.start, times_s)),
         };
         Ok(Recording { reel, track, horizontal_fov_rad: None, described: self.described.clone() })
     }
 
     fn files(&self, scene: &SceneId) -> Result<Vec<PathBuf>, PlatformError> {
-        let episode = self.episode(scene)?;
-        let mut files = below(&self.root.join("meta"), META_DEPTH)?;
-        files.extend([self.root.join(describe::FILE), episode.data.clone()]);
+        let episode = self.find_episode(scene)?;
+        let mut files = files_below(&self.root.join("meta"), META_DEPTH)?;
+        files.extend([self.root.join(describe::FOLDER_FILE), episode.data.clone()]);
         files.extend(episode.clip.iter().map(|clip| clip.file.clone()));
-        Ok(plain(files))
+        Ok(plain_files(files))
     }
 }
 
 /// The files in a folder and in the folders below it, without hidden ones.
-fn below(folder: &Path, depth: usize) -> Result<Vec<PathBuf>, PlatformError> {
+fn files_below(folder: &Path, depth: usize) -> Result<Vec<PathBuf>, PlatformError> {
     let mut files = Vec::new();
-    for name in entries(folder)?.iter().filter(|name| !name.starts_with('.')) {
+    for name in sorted_entries(folder)?.iter().filter(|name| !name.starts_with('.')) {
         let path = folder.join(name);
         if !path.is_dir() {
             files.push(path);
         } else if depth > 0 {
-            files.extend(below(&path, depth - 1)?);
+            files.extend(files_below(&path, depth - 1)?);
         }
     }
     Ok(files)
 }
 
 /// The rows of an episode in its file; they must be contiguous.
-fn rows_of(table: &Table, episode: &Episode, layout: Option<Layout>) -> Result<Range<u64>, PlatformError> {
-    const COLUMN: &str = "episode_index";
+fn rows_of(
+    table: &ParquetTable,
+    episode: &DatasetEpisode,
+    layout: Option<DatasetLayout>,
+) -> Result<Range<u64>, PlatformError> {
+    const EPISODE_COLUMN: &str = "episode_index";
     let mut rows: Option<Range<u64>> = None;
-    if layout == Some(Layout::Episodes) && !table.has(COLUMN) {
-        rows = Some(0..table.rows());
+    if layout == Some(DatasetLayout::Episodes) && !table.has_column(EPISODE_COLUMN) {
+        rows = Some(0..table.row_count());
     } else {
-        table.numbers(COLUMN, 0..table.rows(), &mut |row, number| {
+        table.read_numbers(EPISODE_COLUMN, 0..table.row_count(), &mut |row, number| {
             if number != episode.number as f64 {
                 return Ok(());
             }
@@ -167,15 +182,15 @@ fn rows_of(table: &Table, episode: &Episode, layout: Option<Layout>) -> Result<R
     if rows.end - rows.start != episode.length || rows.is_empty() {
         let count = rows.end - rows.start;
         let reason = format!("the number of rows of episode {} is {count}, not {}", episode.number, episode.length);
-        return Err(files::wrong(table.path(), reason, HINT));
+        return Err(files::file_error(table.path(), reason, DATASET_HINT));
     }
     Ok(rows)
 }
 
 /// The times of the rows, seconds from the beginning of the episode.
-fn times_s(table: &Table, rows: Range<u64>) -> Result<Vec<f64>, PlatformError> {
+fn times_s(table: &ParquetTable, rows: Range<u64>) -> Result<Vec<f64>, PlatformError> {
     let mut times_s: Vec<f64> = Vec::new();
-    table.numbers("timestamp", rows, &mut |row, time_s| {
+    table.read_numbers("timestamp", rows, &mut |row, time_s| {
         let last_s = times_s.last().copied().unwrap_or(f64::MIN);
         if !time_s.is_finite() || time_s < last_s {
             return Err(format!("row {row}: the time {time_s} s follows {last_s} s; times must not decrease"));

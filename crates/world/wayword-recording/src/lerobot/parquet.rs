@@ -25,7 +25,7 @@ mod footer;
 mod pages;
 mod thrift;
 
-use column::{Cells, Column};
+use column::{ColumnCells, ParquetColumn};
 use parquet::{
     basic::Type,
     file::metadata::ParquetMetaData,
@@ -40,7 +40,7 @@ use std::{
 use wayword_core::PlatformError;
 use wayword_world::files;
 
-const HINT: &str =
+const PARQUET_HINT: &str =
     "download the file again; if it is complete, write it again with pyarrow and Snappy, as LeRobot does";
 /// Rows that are read at a time.
 const STEP_ROWS: u64 = 1024;
@@ -50,19 +50,22 @@ pub(super) type TakeBytes<'a> = dyn FnMut(u64, Option<&[u8]>) -> Result<(), Plat
 
 /// A Parquet file: rows with named columns.
 #[derive(Debug)]
-pub(super) struct Table {
+pub(super) struct ParquetTable {
     path: PathBuf,
     about: ParquetMetaData,
 }
 
-impl Table {
+impl ParquetTable {
     /// Opens a file and reads its footer.
     ///
     /// # Errors
     /// When it is not a Parquet file.
     pub(super) fn open(path: &Path) -> Result<Self, PlatformError> {
-        let about = footer::read(&files::open(path, HINT)?);
-        Ok(Self { path: path.to_owned(), about: about.map_err(|reason| files::wrong(path, reason, HINT))? })
+        let about = footer::read_footer(&files::open_plain_file(path, PARQUET_HINT)?);
+        Ok(Self {
+            path: path.to_owned(),
+            about: about.map_err(|reason| files::file_error(path, reason, PARQUET_HINT))?,
+        })
     }
 
     /// The path of the file.
@@ -71,32 +74,33 @@ impl Table {
     }
 
     /// Number of rows.
-    pub(super) fn rows(&self) -> u64 {
+    pub(super) fn row_count(&self) -> u64 {
         self.about.row_groups().iter().map(|group| group.num_rows() as u64).sum()
     }
 
     /// Whether there is a column of this name.
-    pub(super) fn has(&self, name: &str) -> bool {
-        self.leaves().iter().any(|leaf| is_named(leaf, name))
+    pub(super) fn has_column(&self, name: &str) -> bool {
+        self.leaf_columns().iter().any(|leaf| is_named(leaf, name))
     }
 
     /// Hands out a column of numbers, row by row.
     ///
     /// # Errors
     /// When the column does not exist, a number is missing, the file is broken, or `take` refuses a number.
-    pub(super) fn numbers(
+    pub(super) fn read_numbers(
         &self,
         name: &str,
         rows: Range<u64>,
         take: &mut dyn FnMut(u64, f64) -> Result<(), String>,
     ) -> Result<(), PlatformError> {
-        let leaf =
-            self.leaf(name, |leaf| is_number(leaf) && leaf.path().parts().len() == 1 && leaf.max_rep_level() == 0)?;
-        self.each(leaf, rows, |column, group, rows| {
-            column.pass(rows.start - group.start).map_err(|reason| near(rows.start, &reason))?;
+        let leaf = self
+            .find_leaf(name, |leaf| is_number(leaf) && leaf.path().parts().len() == 1 && leaf.max_rep_level() == 0)?;
+        self.each_row_group(leaf, rows, |column, group, rows| {
+            column.skip_rows(rows.start - group.start).map_err(|reason| near_row(rows.start, &reason))?;
             let mut row = rows.start;
             while row < rows.end {
-                let cells = column.numbers(STEP_ROWS.min(rows.end - row)).map_err(|reason| near(row, &reason))?;
+                let cells =
+                    column.next_numbers(STEP_ROWS.min(rows.end - row)).map_err(|reason| near_row(row, &reason))?;
                 let before = row;
                 for (_, number) in cells {
                     take(row, number.ok_or_else(|| format!("row {row} holds no number"))?)?;
@@ -114,19 +118,20 @@ impl Table {
     ///
     /// # Errors
     /// When the column does not exist, a list has another length, or the file is broken.
-    pub(super) fn lists(
+    pub(super) fn read_lists(
         &self,
         name: &str,
         rows: Range<u64>,
         width: usize,
         kept: &[usize],
     ) -> Result<Vec<f64>, PlatformError> {
-        let leaf = self.leaf(name, |leaf| is_number(leaf) && leaf.max_rep_level() == 1)?;
+        let leaf = self.find_leaf(name, |leaf| is_number(leaf) && leaf.max_rep_level() == 1)?;
         let mut numbers = Vec::new();
-        self.each(leaf, rows, |column, group, rows| {
+        self.each_row_group(leaf, rows, |column, group, rows| {
             let mut row = group.start;
             while row < rows.end {
-                let cells = column.numbers(STEP_ROWS.min(rows.end - row)).map_err(|reason| near(row, &reason))?;
+                let cells =
+                    column.next_numbers(STEP_ROWS.min(rows.end - row)).map_err(|reason| near_row(row, &reason))?;
                 let mut cells = cells.peekable();
                 if cells.peek().is_none() {
                     return Err(format!("ends before row {row}"));
@@ -149,17 +154,17 @@ impl Table {
     ///
     /// # Errors
     /// When the column does not exist, the file is broken, or `take` fails.
-    pub(super) fn bytes(&self, name: &str, wanted: &[u64], take: &mut TakeBytes<'_>) -> Result<(), PlatformError> {
+    pub(super) fn read_bytes(&self, name: &str, wanted: &[u64], take: &mut TakeBytes<'_>) -> Result<(), PlatformError> {
         let flat = |leaf: &ColumnDescriptor| leaf.max_rep_level() == 0 && leaf.physical_type() == Type::BYTE_ARRAY;
         let leaf =
-            self.leaf(name, |leaf| flat(leaf) && leaf.path().parts().get(1).is_none_or(|part| part == "bytes"))?;
+            self.find_leaf(name, |leaf| flat(leaf) && leaf.path().parts().get(1).is_none_or(|part| part == "bytes"))?;
         let mut wanted = wanted.iter().copied().peekable();
         let mut refused = None;
-        let read = self.each(leaf, 0..self.rows(), |column, _, rows| {
+        let read = self.each_row_group(leaf, 0..self.row_count(), |column, _, rows| {
             let mut at = rows.start;
             while let Some(row) = wanted.next_if(|row| rows.contains(row)) {
-                column.pass(row.saturating_sub(at)).map_err(|reason| near(row, &reason))?;
-                let bytes = column.bytes().map_err(|reason| near(row, &reason))?;
+                column.skip_rows(row.saturating_sub(at)).map_err(|reason| near_row(row, &reason))?;
+                let bytes = column.next_bytes().map_err(|reason| near_row(row, &reason))?;
                 let bytes = bytes.ok_or_else(|| format!("ends before row {row}"))?;
                 if let Err(error) = take(row, bytes.as_ref().map(|bytes| bytes.data())) {
                     refused = Some(error);
@@ -172,33 +177,33 @@ impl Table {
         refused.map_or(read, Err)
     }
 
-    fn leaves(&self) -> &[ColumnDescPtr] {
+    fn leaf_columns(&self) -> &[ColumnDescPtr] {
         self.about.file_metadata().schema_descr().columns()
     }
 
     /// The only column with this name that fits.
-    fn leaf(&self, name: &str, fits: impl Fn(&ColumnDescriptor) -> bool) -> Result<usize, PlatformError> {
-        let leaves = self.leaves().iter().enumerate();
+    fn find_leaf(&self, name: &str, fits: impl Fn(&ColumnDescriptor) -> bool) -> Result<usize, PlatformError> {
+        let leaves = self.leaf_columns().iter().enumerate();
         let mut found = leaves.filter(|(_, leaf)| is_named(leaf, name) && fits(leaf)).map(|(at, _)| at);
         match (found.next(), found.next()) {
             (Some(leaf), None) => Ok(leaf),
-            _ if self.has(name) => {
-                Err(files::wrong(&self.path, format!("column {name:?} is not of the expected type"), HINT))
+            _ if self.has_column(name) => {
+                Err(files::file_error(&self.path, format!("column {name:?} is not of the expected type"), PARQUET_HINT))
             }
-            _ => Err(files::wrong(&self.path, format!("has no column {name:?}"), HINT)),
+            _ => Err(files::file_error(&self.path, format!("has no column {name:?}"), PARQUET_HINT)),
         }
     }
 
     /// Reads a column, row group by row group. `read` gets the rows of the group in the file, and which of these are
     /// wanted.
-    fn each(
+    fn each_row_group(
         &self,
         leaf: usize,
         wanted: Range<u64>,
-        mut read: impl FnMut(&mut Column, Range<u64>, Range<u64>) -> Result<(), String>,
+        mut read: impl FnMut(&mut ParquetColumn, Range<u64>, Range<u64>) -> Result<(), String>,
     ) -> Result<(), PlatformError> {
-        let name = self.leaves()[leaf].path().string();
-        let wrong = |reason: String| files::wrong(&self.path, format!("column {name:?}: {reason}"), HINT);
+        let name = self.leaf_columns()[leaf].path().string();
+        let wrong = |reason: String| files::file_error(&self.path, format!("column {name:?}: {reason}"), PARQUET_HINT);
         let mut first = 0;
         for group in self.about.row_groups() {
             let rows = first..first + group.num_rows() as u64;
@@ -206,7 +211,9 @@ impl Table {
             let within = wanted.start.max(rows.start)..wanted.end.min(rows.end);
             if !within.is_empty() {
                 let file = File::open(&self.path).map_err(|error| wrong(error.to_string()))?;
-                Column::new(file, group, leaf).and_then(|mut column| read(&mut column, rows, within)).map_err(wrong)?;
+                ParquetColumn::new(file, group, leaf)
+                    .and_then(|mut column| read(&mut column, rows, within))
+                    .map_err(wrong)?;
             }
         }
         Ok(())
@@ -222,7 +229,7 @@ fn is_number(leaf: &ColumnDescriptor) -> bool {
 }
 
 /// The list of the next row. Only whole rows are handed out, so the list ends within the same cells.
-fn next_list(cells: &mut Peekable<Cells<f64>>, width: usize) -> Result<Vec<f64>, String> {
+fn next_list(cells: &mut Peekable<ColumnCells<f64>>, width: usize) -> Result<Vec<f64>, String> {
     let mut list = Vec::with_capacity(width);
     let mut next = cells.next();
     while let Some((_, number)) = next {
@@ -232,7 +239,7 @@ fn next_list(cells: &mut Peekable<Cells<f64>>, width: usize) -> Result<Vec<f64>,
     if list.len() == width { Ok(list) } else { Err(format!("is not a list of {width} numbers")) }
 }
 
-fn near(row: u64, reason: &str) -> String {
+fn near_row(row: u64, reason: &str) -> String {
     format!("at row {row} or soon after it: {reason}")
 }
 

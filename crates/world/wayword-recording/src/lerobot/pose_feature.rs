@@ -1,17 +1,17 @@
 //! Finds the numbers in a dataset's rows that are the robot's pose, by the names of features and their elements.
 
-use super::info::{Feature, Info};
+use super::info::{DatasetFeature, DatasetInfo};
 use crate::{
-    axes::{Axes, Body, World, columns},
-    describe::Description,
-    plausible::Sample,
-    track::Fix,
+    axes::{PoseAxes, PoseBody, WorldUpAxis, rotation_columns},
+    describe::RecordingDescription,
+    plausible::PoseSample,
+    track::TrackFix,
 };
 use std::path::Path;
 use wayword_core::{DVec3, PlatformError};
 use wayword_world::files;
 
-const HINT: &str = "docs/RECORDINGS.md lists the names in meta/info.json that elements of a pose need";
+const POSE_NAMES_HINT: &str = "docs/RECORDINGS.md lists the names in meta/info.json that elements of a pose need";
 /// Words in the name of an element that exclude it as a position in the world.
 const NO_PLACE: [&str; 18] = [
     "vel", "velocity", "speed", "acc", "accel", "linear", "angular", "force", "torque", "effort", "current", "delta",
@@ -30,11 +30,11 @@ pub(super) struct PoseFeature {
     x: usize,
     y: usize,
     z: Option<usize>,
-    facing: Facing,
+    facing: FeatureFacing,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Facing {
+enum FeatureFacing {
     Unknown,
     /// Index of an angle counter-clockwise from +x, and the factor that turns it into radians.
     Yaw(usize, f64),
@@ -44,7 +44,7 @@ enum Facing {
 
 /// The meaning of an element of a feature.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Role {
+enum ElementRole {
     X,
     Y,
     Z,
@@ -60,13 +60,17 @@ impl PoseFeature {
     ///
     /// # Errors
     /// When the user names a feature that does not exist or holds no position.
-    pub(super) fn find(root: &Path, info: &Info, described: &Description) -> Result<Option<Self>, PlatformError> {
+    pub(super) fn find_feature(
+        root: &Path,
+        info: &DatasetInfo,
+        described: &RecordingDescription,
+    ) -> Result<Option<Self>, PlatformError> {
         let Some(named) = &described.poses else {
-            let mut plain = info.features.iter().filter_map(|(key, feature)| Self::plain(key, feature));
+            let mut plain = info.features.iter().filter_map(|(key, feature)| Self::unnamed_pose(key, feature));
             let first = plain.next();
             return Ok(first.filter(|_| plain.next().is_none()));
         };
-        let wrong = |reason: String| files::wrong(&Info::file(root), reason, HINT);
+        let wrong = |reason: String| files::file_error(&DatasetInfo::info_file(root), reason, POSE_NAMES_HINT);
         let listed = || {
             let lists = info.features.iter().filter(|(_, feature)| feature.width().is_some());
             lists.map(|(key, _)| key.as_str()).collect::<Vec<_>>().join(", ")
@@ -75,8 +79,11 @@ impl PoseFeature {
         let feature = feature.ok_or_else(|| {
             wrong(format!("poses = {named:?} is not a list of floating-point numbers; such lists: {}", listed()))
         })?;
-        let place = Self::within(named, feature).map_err(|reason| wrong(format!("poses = {named:?}: {reason}")))?;
-        if matches!(place.facing, Facing::Yaw(..)) && described.world.is_some_and(|world| world != World::ZUp) {
+        let place =
+            Self::pose_in_feature(named, feature).map_err(|reason| wrong(format!("poses = {named:?}: {reason}")))?;
+        if matches!(place.facing, FeatureFacing::Yaw(..))
+            && described.world.is_some_and(|world| world != WorldUpAxis::ZUp)
+        {
             return Err(wrong(format!("poses = {named:?}: a yaw turns about z, so `world` must be z-up")));
         }
         Ok(Some(place))
@@ -84,17 +91,17 @@ impl PoseFeature {
 
     /// The pose of a feature that the user did not name. `None` unless its elements are x, y, perhaps z, and a yaw, and
     /// its name is not that of a command or of a part of the robot.
-    fn plain(key: &str, feature: &Feature) -> Option<Self> {
-        let place = Self::within(key, feature).ok()?;
+    fn unnamed_pose(key: &str, feature: &DatasetFeature) -> Option<Self> {
+        let place = Self::pose_in_feature(key, feature).ok()?;
         let elements = 3 + usize::from(place.z.is_some());
-        let robot = !words(key).any(|word| NO_ROBOT.contains(&word.as_str()) || NO_PLACE.contains(&word.as_str()));
-        (robot && matches!(place.facing, Facing::Yaw(..)) && place.width == elements).then_some(place)
+        let robot = !name_words(key).any(|word| NO_ROBOT.contains(&word.as_str()) || NO_PLACE.contains(&word.as_str()));
+        (robot && matches!(place.facing, FeatureFacing::Yaw(..)) && place.width == elements).then_some(place)
     }
 
-    fn within(key: &str, feature: &Feature) -> Result<Self, String> {
-        let names = feature.names().ok_or("its elements have no names")?;
-        let roles: Vec<Option<Role>> = names.iter().map(|name| role(name)).collect();
-        let at = |wanted: Role| {
+    fn pose_in_feature(key: &str, feature: &DatasetFeature) -> Result<Self, String> {
+        let names = feature.element_names().ok_or("its elements have no names")?;
+        let roles: Vec<Option<ElementRole>> = names.iter().map(|name| element_role(name)).collect();
+        let at = |wanted: ElementRole| {
             let mut found = roles.iter().enumerate().filter(|(_, role)| **role == Some(wanted)).map(|(at, _)| at);
             match (found.next(), found.next()) {
                 (Some(first), Some(second)) => {
@@ -103,67 +110,73 @@ impl PoseFeature {
                 (first, _) => Ok(first),
             }
         };
-        let (Some(x), Some(y)) = (at(Role::X)?, at(Role::Y)?) else {
+        let (Some(x), Some(y)) = (at(ElementRole::X)?, at(ElementRole::Y)?) else {
             return Err(format!("has no elements x and y; its elements: {}", names.join(", ")));
         };
-        let quaternion = [at(Role::Q(0))?, at(Role::Q(1))?, at(Role::Q(2))?, at(Role::Q(3))?];
-        let facing = match (at(Role::Yaw)?, at(Role::YawDeg)?, quaternion) {
-            (None, None, [Some(x), Some(y), Some(z), Some(w)]) => Facing::Quaternion([x, y, z, w]),
-            (Some(yaw), None, [None, None, None, None]) => Facing::Yaw(yaw, 1.0),
-            (None, Some(yaw), [None, None, None, None]) => Facing::Yaw(yaw, 1_f64.to_radians()),
-            (None, None, [None, None, None, None]) => Facing::Unknown,
+        let quaternion =
+            [at(ElementRole::Q(0))?, at(ElementRole::Q(1))?, at(ElementRole::Q(2))?, at(ElementRole::Q(3))?];
+        let facing = match (at(ElementRole::Yaw)?, at(ElementRole::YawDeg)?, quaternion) {
+            (None, None, [Some(x), Some(y), Some(z), Some(w)]) => FeatureFacing::Quaternion([x, y, z, w]),
+            (Some(yaw), None, [None, None, None, None]) => FeatureFacing::Yaw(yaw, 1.0),
+            (None, Some(yaw), [None, None, None, None]) => FeatureFacing::Yaw(yaw, 1_f64.to_radians()),
+            (None, None, [None, None, None, None]) => FeatureFacing::Unknown,
             _ => return Err(format!("the direction is given twice, or only in part: {}", names.join(", "))),
         };
-        Ok(Self { feature: key.to_owned(), width: names.len(), x, y, z: at(Role::Z)?, facing })
+        Ok(Self { feature: key.to_owned(), width: names.len(), x, y, z: at(ElementRole::Z)?, facing })
     }
 
-    /// Indices of the needed elements, in the order in which [`PoseFeature::fix`] takes them.
+    /// Indices of the needed elements, in the order in which [`PoseFeature::fix_from_numbers`] takes them.
     pub(super) fn elements(&self) -> Vec<usize> {
         let facing = match self.facing {
-            Facing::Unknown => Vec::new(),
-            Facing::Yaw(at, _) => vec![at],
-            Facing::Quaternion(at) => at.to_vec(),
+            FeatureFacing::Unknown => Vec::new(),
+            FeatureFacing::Yaw(at, _) => vec![at],
+            FeatureFacing::Quaternion(at) => at.to_vec(),
         };
         // Without a z the floor is at 0.
         [self.x, self.y].into_iter().chain(self.z).chain(facing).collect()
     }
 
     /// The fix of the robot, from the numbers of [`PoseFeature::elements`].
-    pub(super) fn fix(&self, time_s: f64, numbers: &[f64], described: &Description) -> Option<Fix> {
-        let axes = described.axes(Axes::of(Body::Robot));
-        let (recorded, facing) = self.split(numbers)?;
+    pub(super) fn fix_from_numbers(
+        &self,
+        time_s: f64,
+        numbers: &[f64],
+        described: &RecordingDescription,
+    ) -> Option<TrackFix> {
+        let axes = described.axes_or_usual(PoseAxes::for_body(PoseBody::Robot));
+        let (recorded, facing) = self.split_numbers(numbers)?;
         let heading = match (self.facing, facing) {
-            (Facing::Yaw(_, rad), [yaw]) => axes.heading_by_yaw(yaw * rad),
-            (Facing::Quaternion(_), [x, y, z, w]) => axes.heading([*x, *y, *z, *w]),
+            (FeatureFacing::Yaw(_, rad), [yaw]) => axes.heading_by_yaw(yaw * rad),
+            (FeatureFacing::Quaternion(_), [x, y, z, w]) => axes.heading_by_quaternion([*x, *y, *z, *w]),
             _ => None,
         };
-        Some(Fix { time_s, position: axes.wayword_from_recorded(recorded), heading })
+        Some(TrackFix { time_s, position: axes.wayword_from_recorded(recorded), heading })
     }
 
     /// The pose as it was recorded, from the same numbers.
-    pub(super) fn sample(&self, numbers: &[f64]) -> Option<Sample> {
-        let (position, facing) = self.split(numbers)?;
+    pub(super) fn sample_from_numbers(&self, numbers: &[f64]) -> Option<PoseSample> {
+        let (position, facing) = self.split_numbers(numbers)?;
         let held = match (self.facing, facing) {
-            (Facing::Quaternion(_), [x, y, z, w]) => columns([*x, *y, *z, *w]),
+            (FeatureFacing::Quaternion(_), [x, y, z, w]) => rotation_columns([*x, *y, *z, *w]),
             _ => None,
         };
-        Some(Sample { position, held })
+        Some(PoseSample { position, held })
     }
 
-    fn split<'a>(&self, numbers: &'a [f64]) -> Option<(DVec3, &'a [f64])> {
+    fn split_numbers<'a>(&self, numbers: &'a [f64]) -> Option<(DVec3, &'a [f64])> {
         let (place, facing) = numbers.split_at_checked(2 + usize::from(self.z.is_some()))?;
         Some((DVec3::new(*place.first()?, *place.get(1)?, place.get(2).copied().unwrap_or(0.0)), facing))
     }
 }
 
 /// The words of a name: `observation.base_x` has three, `robotYaw` one.
-fn words(name: &str) -> impl Iterator<Item = String> {
+fn name_words(name: &str) -> impl Iterator<Item = String> {
     name.split(|letter: char| !letter.is_alphanumeric()).filter(|word| !word.is_empty()).map(str::to_lowercase)
 }
 
 /// The meaning of an element by its name (`x`, `base.x`, `pose_x_m`); `None` for others, such as `x.vel`.
-fn role(name: &str) -> Option<Role> {
-    let words: Vec<String> = words(name).collect();
+fn element_role(name: &str) -> Option<ElementRole> {
+    let words: Vec<String> = name_words(name).collect();
     if words.iter().any(|word| NO_PLACE.contains(&word.as_str())) {
         return None;
     }
@@ -171,19 +184,19 @@ fn role(name: &str) -> Option<Role> {
     let quaternion = has(&["q", "quat", "quaternion", "orientation", "rotation", "rot"]);
     let roles = words.iter().filter_map(|word| {
         Some(match (word.as_str(), quaternion) {
-            ("x", false) => Role::X,
-            ("y", false) => Role::Y,
-            ("z", false) => Role::Z,
-            ("qx", _) | ("x", true) => Role::Q(0),
-            ("qy", _) | ("y", true) => Role::Q(1),
-            ("qz", _) | ("z", true) => Role::Q(2),
-            ("qw", _) | ("w", true) => Role::Q(3),
-            ("yaw" | "theta", _) if has(&["deg", "degree", "degrees"]) => Role::YawDeg,
-            ("yaw" | "theta", _) => Role::Yaw,
+            ("x", false) => ElementRole::X,
+            ("y", false) => ElementRole::Y,
+            ("z", false) => ElementRole::Z,
+            ("qx", _) | ("x", true) => ElementRole::Q(0),
+            ("qy", _) | ("y", true) => ElementRole::Q(1),
+            ("qz", _) | ("z", true) => ElementRole::Q(2),
+            ("qw", _) | ("w", true) => ElementRole::Q(3),
+            ("yaw" | "theta", _) if has(&["deg", "degree", "degrees"]) => ElementRole::YawDeg,
+            ("yaw" | "theta", _) => ElementRole::Yaw,
             _ => return None,
         })
     });
-    let roles: Vec<Role> = roles.collect();
+    let roles: Vec<ElementRole> = roles.collect();
     match roles.as_slice() {
         [role] => Some(*role),
         _ => None,
@@ -195,7 +208,7 @@ mod tests {
     use super::*;
     use std::collections::BTreeMap;
 
-    fn info(features: &[(&str, &[&str])]) -> Info {
+    fn info(features: &[(&str, &[&str])]) -> DatasetInfo {
         let features: BTreeMap<_, _> = features
             .iter()
             .map(|(key, names)| (*key, serde_json::json!({"dtype": "float32", "shape": [names.len()], "names": names})))
@@ -205,8 +218,8 @@ mod tests {
     }
 
     fn find(features: &[(&str, &[&str])], poses: Option<&str>) -> Result<Option<PoseFeature>, String> {
-        let described = Description { poses: poses.map(str::to_owned), ..Description::default() };
-        PoseFeature::find(Path::new("d"), &info(features), &described).map_err(|error| error.to_string())
+        let described = RecordingDescription { poses: poses.map(str::to_owned), ..RecordingDescription::default() };
+        PoseFeature::find_feature(Path::new("d"), &info(features), &described).map_err(|error| error.to_string())
     }
 
     #[test]
@@ -232,7 +245,7 @@ mod tests {
         assert_eq!(place.elements(), [1, 2, 3, 4, 5, 6, 7]);
         let turned = state(&["quat.x", "quat.y", "quat.z", "quat.w", "pos.x", "pos.y"]).unwrap().unwrap();
         assert_eq!(turned.elements(), [4, 5, 0, 1, 2, 3]);
-        assert_eq!(state(&["x", "y"]).unwrap().unwrap().facing, Facing::Unknown);
+        assert_eq!(state(&["x", "y"]).unwrap().unwrap().facing, FeatureFacing::Unknown);
         assert!(state(&["left_x", "right_x", "y"]).unwrap_err().contains("left_x"));
         assert!(state(&["x", "y", "yaw", "qx"]).unwrap_err().contains("twice, or only in part"));
         assert!(state(&["a", "b"]).unwrap_err().contains("no elements x and y; its elements: a, b"));
@@ -243,7 +256,7 @@ mod tests {
     fn yaw_is_counter_clockwise_from_x_which_is_east() {
         let deg = |names: &[&str], yaw: f64| {
             let place = find(&[("state", names)], Some("state")).unwrap().unwrap();
-            let fix = place.fix(0.0, &[3.0, 4.0, yaw], &Description::default()).unwrap();
+            let fix = place.fix_from_numbers(0.0, &[3.0, 4.0, yaw], &RecordingDescription::default()).unwrap();
             assert_eq!(fix.position, DVec3::new(3.0, 4.0, 0.0));
             fix.heading.unwrap().deg().round()
         };
@@ -254,9 +267,12 @@ mod tests {
 
     #[test]
     fn a_yaw_needs_a_world_with_z_up() {
-        let described =
-            Description { poses: Some("state".to_owned()), world: Some(World::YUp), ..Description::default() };
+        let described = RecordingDescription {
+            poses: Some("state".to_owned()),
+            world: Some(WorldUpAxis::YUp),
+            ..RecordingDescription::default()
+        };
         let info = info(&[("state", &["x", "y", "yaw"])]);
-        assert!(PoseFeature::find(Path::new("d"), &info, &described).unwrap_err().to_string().contains("z-up"));
+        assert!(PoseFeature::find_feature(Path::new("d"), &info, &described).unwrap_err().to_string().contains("z-up"));
     }
 }

@@ -8,7 +8,7 @@ const MAX_DIGITS: usize = 20;
 
 /// The value of a placeholder.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Value<'a> {
+pub(super) enum TemplateValue<'a> {
     Number(u64),
     Text(&'a str),
 }
@@ -17,14 +17,14 @@ pub(super) enum Value<'a> {
 ///
 /// # Errors
 /// A reason in words, if the template is malformed, needs another value, or leads out of the folder.
-pub(super) fn fill(template: &str, values: &[(&str, Value<'_>)]) -> Result<PathBuf, String> {
+pub(super) fn fill_template(template: &str, values: &[(&str, TemplateValue<'_>)]) -> Result<PathBuf, String> {
     let wrong = |reason: String| format!("the path {template:?} {reason}");
     let mut filled = String::new();
     let mut rest = template;
     while let Some((before, from)) = rest.split_once('{') {
         let (placeholder, after) = from.split_once('}').ok_or_else(|| wrong("has a { without a }".to_owned()))?;
         filled.push_str(before);
-        filled.push_str(&written(placeholder, values).map_err(wrong)?);
+        filled.push_str(&fill_placeholder(placeholder, values).map_err(wrong)?);
         rest = after;
     }
     filled.push_str(rest);
@@ -40,7 +40,7 @@ fn is_below(path: &Path) -> bool {
 }
 
 /// Fills one placeholder: `{name}`, `{name:d}` or `{name:03d}`.
-fn written(placeholder: &str, values: &[(&str, Value<'_>)]) -> Result<String, String> {
+fn fill_placeholder(placeholder: &str, values: &[(&str, TemplateValue<'_>)]) -> Result<String, String> {
     let (name, format) = placeholder.split_once(':').unwrap_or((placeholder, ""));
     let value = values.iter().find(|(known, _)| *known == name).map(|(_, value)| *value);
     let value = value.ok_or_else(|| {
@@ -49,9 +49,9 @@ fn written(placeholder: &str, values: &[(&str, Value<'_>)]) -> Result<String, St
     })?;
     let unknown = || format!("wants {name:?} in the format {format:?}, which is not known");
     match value {
-        Value::Text(text) if format.is_empty() || format == "s" => Ok(text.to_owned()),
-        Value::Text(_) => Err(unknown()),
-        Value::Number(number) => {
+        TemplateValue::Text(text) if format.is_empty() || format == "s" => Ok(text.to_owned()),
+        TemplateValue::Text(_) => Err(unknown()),
+        TemplateValue::Number(number) => {
             let digits = format.strip_suffix('d').unwrap_or(format);
             let width: usize = if digits.is_empty() { 0 } else { digits.parse().map_err(|_| unknown())? };
             // Without the zero Python pads with spaces, which file names in datasets do not have.
@@ -68,12 +68,12 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    const VALUES: [(&str, Value<'_>); 2] =
-        [("episode_index", Value::Number(12)), ("video_key", Value::Text("images.front"))];
+    const VALUES: [(&str, TemplateValue<'_>); 2] =
+        [("episode_index", TemplateValue::Number(12)), ("video_key", TemplateValue::Text("images.front"))];
 
     #[test]
     fn templates_of_the_library_are_filled_as_python_does() {
-        let fill = |template| fill(template, &VALUES).unwrap();
+        let fill = |template| fill_template(template, &VALUES).unwrap();
         assert_eq!(
             fill("videos/{video_key}/episode_{episode_index:06d}.mp4"),
             Path::new("videos/images.front/episode_000012.mp4")
@@ -94,16 +94,16 @@ mod tests {
             ("/etc/{video_key}", "does not lie"),
             ("", "does not lie"),
         ] {
-            let error = fill(template, &VALUES).unwrap_err();
+            let error = fill_template(template, &VALUES).unwrap_err();
             assert!(error.contains(said), "{template}: {error}");
         }
-        assert!(fill("{k}", &[("k", Value::Text("a/../../b"))]).unwrap_err().contains("does not lie"));
+        assert!(fill_template("{k}", &[("k", TemplateValue::Text("a/../../b"))]).unwrap_err().contains("does not lie"));
     }
 
     proptest! {
         #[test]
         fn no_template_leads_out(template in "[a./{}:0-9d_]{0,30}|([a./]|\\{video_key\\}|\\{episode_index:02d\\}){0,8}", key in "[a./]{0,5}") {
-            if let Ok(path) = fill(&template, &[("video_key", Value::Text(&key)), ("episode_index", Value::Number(3))]) {
+            if let Ok(path) = fill_template(&template, &[("video_key", TemplateValue::Text(&key)), ("episode_index", TemplateValue::Number(3))]) {
                 prop_assert!(is_below(&path));
             }
         }

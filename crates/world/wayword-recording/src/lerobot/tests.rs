@@ -34,8 +34,8 @@ fn unpack(from: &Path, to: &Path) {
     }
 }
 
-fn open(root: &Path) -> Result<Dataset, String> {
-    Dataset::open(root, Description::default()).map_err(|error| error.to_string())
+fn open(root: &Path) -> Result<LeRobotDataset, String> {
+    LeRobotDataset::open(root, RecordingDescription::default()).map_err(|error| error.to_string())
 }
 
 fn recording(root: &Path, episode: usize) -> Result<Recording, String> {
@@ -45,7 +45,7 @@ fn recording(root: &Path, episode: usize) -> Result<Recording, String> {
 
 fn pictures(recording: &Recording, wanted: &[usize]) -> Result<Vec<(usize, Image)>, String> {
     let mut pictures = Vec::new();
-    let read = recording.reel.pictures(wanted, &mut |number, image| {
+    let read = recording.reel.hand_out_pictures(wanted, &mut |number, image| {
         pictures.push((number, image));
         Ok(())
     });
@@ -55,12 +55,12 @@ fn pictures(recording: &Recording, wanted: &[usize]) -> Result<Vec<(usize, Image
 /// The grey level in the middle of a picture's upper left quarter.
 fn level(image: &Image) -> i32 {
     let at = (16 * image.width_px() as usize + 20) * 3;
-    i32::from(image.rgb()[at])
+    i32::from(image.rgb_bytes()[at])
 }
 
 /// Changes a text in a dataset's `meta/info.json`.
 fn edit(root: &Path, from: &str, to: &str) {
-    let file = Info::file(root);
+    let file = DatasetInfo::info_file(root);
     let text = fs::read_to_string(&file).unwrap();
     assert!(text.contains(from), "{from}");
     fs::write(&file, text.replace(from, to)).unwrap();
@@ -80,7 +80,7 @@ fn episodes_of_the_genuine_library_are_scenes() {
                 times_s.iter().enumerate().all(|(at, time_s)| (time_s - at as f64 / 5.0).abs() < 1e-6),
                 "{times_s:?}"
             );
-            assert_eq!(recording.reel.name(2), "000002");
+            assert_eq!(recording.reel.picture_name(2), "000002");
         }
     }
 }
@@ -98,7 +98,10 @@ fn an_episode_is_read_from_its_own_files_and_those_of_meta() {
         let files = dataset.files(&dataset.scenes()[0]).unwrap();
         let episode = &dataset.episodes[0].1;
         let clips = episode.clip.iter().map(|clip| &clip.file);
-        assert!(clips.chain([&episode.data, &Info::file(&root)]).all(|file| files.contains(file)), "{files:?}");
+        assert!(
+            clips.chain([&episode.data, &DatasetInfo::info_file(&root)]).all(|file| files.contains(file)),
+            "{files:?}"
+        );
         assert!(files.iter().all(|file| file.is_file()), "{files:?}");
         let told: Vec<String> = files.iter().map(|file| file.display().to_string()).collect();
         for other in ["DS_Store", "dialogs", "notes", "episode_000001"] {
@@ -138,7 +141,7 @@ fn poses_are_those_of_the_state() {
     for name in DATASETS {
         let (_folder, root) = dataset(name);
         let recording = recording(&root, 1).unwrap();
-        let fix = recording.track.unwrap().at(0.6).unwrap();
+        let fix = recording.track.unwrap().fix_at(0.6).unwrap();
         assert!(fix.position.distance(DVec3::new(1.5, 1.75, 0.0)) < 1e-5, "{name}: {fix:?}");
         // theta = 90 + 30 degrees counter-clockwise from +x, which is east.
         assert!((fix.heading.unwrap().deg() - 330.0).abs() < 1e-4, "{name}: {fix:?}");
@@ -156,8 +159,8 @@ fn of_several_cameras_one_has_to_be_named() {
     let error = open(&root).err().unwrap();
     assert!(error.contains(&format!("several cameras: {CAMERA}, {CAMERA}2")) && error.contains("camera = "), "{error}");
     let named = |name: &str| {
-        let described = Description { camera: Some(name.to_owned()), ..Description::default() };
-        Dataset::open(&root, described).map(|dataset| dataset.episodes.len()).map_err(|error| error.to_string())
+        let described = RecordingDescription { camera: Some(name.to_owned()), ..RecordingDescription::default() };
+        LeRobotDataset::open(&root, described).map(|dataset| dataset.episodes.len()).map_err(|error| error.to_string())
     };
     assert_eq!(named(CAMERA), Ok(2));
     assert!(named("wrist").unwrap_err().contains("no camera \"wrist\"; its cameras: "));
@@ -206,9 +209,10 @@ fn a_dataset_without_places_has_no_track() {
     let (_folder, root) = dataset("v30_images");
     edit(&root, "\"theta\"", "\"shoulder\"");
     assert!(recording(&root, 0).unwrap().track.is_none());
-    let described = Description { poses: Some("observation.state".to_owned()), ..Description::default() };
-    let dataset = Dataset::open(&root, described).unwrap();
-    let fix = dataset.open(&dataset.scenes()[0]).unwrap().track.unwrap().at(0.2).unwrap();
+    let described =
+        RecordingDescription { poses: Some("observation.state".to_owned()), ..RecordingDescription::default() };
+    let dataset = LeRobotDataset::open(&root, described).unwrap();
+    let fix = dataset.open(&dataset.scenes()[0]).unwrap().track.unwrap().fix_at(0.2).unwrap();
     assert!((fix.position.x - 0.5).abs() < 1e-6 && fix.heading.is_none(), "{fix:?}");
 }
 

@@ -2,7 +2,7 @@
 
 use mcap::records::{Record, op};
 use std::fmt;
-use wayword_core::contain::decoded;
+use wayword_core::contain::run_decoder;
 
 /// The place at which a record begins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -24,23 +24,23 @@ impl fmt::Display for RecordPlace {
 
 /// A record as it was read, before it is parsed.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Found<'a> {
+pub(crate) struct McapRecord<'a> {
     pub(crate) opcode: u8,
     pub(crate) place: RecordPlace,
     /// The bytes of its body; for a message perhaps only the first of them.
     pub(crate) bytes: &'a [u8],
 }
 
-impl<'a> Found<'a> {
+impl<'a> McapRecord<'a> {
     /// Parses the bytes.
     ///
     /// # Errors
     /// When it is broken; the error includes its place.
-    pub(crate) fn record(&self) -> Result<Record<'a>, String> {
+    pub(crate) fn parse_record(&self) -> Result<Record<'a>, String> {
         let parsed = texts_fit(self.opcode, self.bytes)
             .ok_or_else(|| "a length in the record is larger than the record".to_owned());
         let parse = || mcap::parse_record(self.opcode, self.bytes).map_err(|error| error.to_string());
-        parsed.and_then(|()| decoded(parse)).map_err(|why| format!("{}: {why}", self.place))
+        parsed.and_then(|()| run_decoder(parse)).map_err(|why| format!("{}: {why}", self.place))
     }
 }
 
@@ -49,12 +49,13 @@ impl<'a> Found<'a> {
 fn texts_fit(opcode: u8, body: &[u8]) -> Option<()> {
     let mut rest = body;
     match opcode {
-        op::SCHEMA => drop((text(&mut rest, 2)?, text(&mut rest, 0)?)),
-        op::CHUNK_INDEX => drop((text(&mut rest, 32)?, text(&mut rest, 8)?)),
+        op::SCHEMA => drop((next_text(&mut rest, 2)?, next_text(&mut rest, 0)?)),
+        op::CHUNK_INDEX => drop((next_text(&mut rest, 32)?, next_text(&mut rest, 8)?)),
         op::CHANNEL => {
-            let (_topic, _encoding, mut metadata) = (text(&mut rest, 4)?, text(&mut rest, 0)?, text(&mut rest, 0)?);
+            let (_topic, _encoding, mut metadata) =
+                (next_text(&mut rest, 4)?, next_text(&mut rest, 0)?, next_text(&mut rest, 0)?);
             while !metadata.is_empty() {
-                text(&mut metadata, 0)?;
+                next_text(&mut metadata, 0)?;
             }
         }
         // These have no texts.
@@ -65,7 +66,7 @@ fn texts_fit(opcode: u8, body: &[u8]) -> Option<()> {
 }
 
 /// The bytes of a text: its length follows after `further` bytes, and then the text itself.
-fn text<'a>(rest: &mut &'a [u8], further: usize) -> Option<&'a [u8]> {
+fn next_text<'a>(rest: &mut &'a [u8], further: usize) -> Option<&'a [u8]> {
     let (count, behind) = rest.get(further..)?.split_first_chunk()?;
     let (text, behind) = behind.split_at_checked(usize::try_from(u32::from_le_bytes(*count)).ok()?)?;
     *rest = behind;

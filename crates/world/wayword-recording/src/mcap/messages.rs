@@ -1,6 +1,6 @@
 //! Parses the ROS 2 messages that are used (`common_interfaces`: `sensor_msgs`, `geometry_msgs`, `nav_msgs`; `tf2_msgs`).
 
-use super::cdr::Cdr;
+use super::cdr::CdrReader;
 use glam::{DQuat, DVec3};
 
 /// The kind of a topic's messages.
@@ -22,7 +22,7 @@ pub(crate) enum MessageKind {
 
 impl MessageKind {
     /// The kind for a schema's name; `None` if it cannot be read.
-    pub(crate) fn of(schema: &str) -> Option<Self> {
+    pub(crate) fn from_schema(schema: &str) -> Option<Self> {
         // Some writers leave out `msg`, and IDL has colons.
         match schema.replace("::", "/").replace("/msg/", "/").as_str() {
             "sensor_msgs/Image" => Some(Self::Raw),
@@ -52,45 +52,45 @@ impl MessageKind {
 
 /// `std_msgs/msg/Header`.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Head {
+pub(crate) struct MessageHead {
     /// Time of the data, nanoseconds; 0 if it is not set.
     pub(crate) stamp_ns: i64,
     /// Frame of the data, without the slash that older programs put before it.
     pub(crate) frame: String,
 }
 
-fn head(cdr: &mut Cdr<'_>) -> Result<Head, String> {
-    let (seconds, nanoseconds) = (cdr.i32()?, cdr.u32()?);
-    Ok(Head { stamp_ns: i64::from(seconds) * 1_000_000_000 + i64::from(nanoseconds), frame: frame(cdr)? })
+fn read_head(cdr: &mut CdrReader<'_>) -> Result<MessageHead, String> {
+    let (seconds, nanoseconds) = (cdr.read_i32()?, cdr.read_u32()?);
+    Ok(MessageHead { stamp_ns: i64::from(seconds) * 1_000_000_000 + i64::from(nanoseconds), frame: read_frame(cdr)? })
 }
 
-fn frame(cdr: &mut Cdr<'_>) -> Result<String, String> {
-    let frame = cdr.text()?;
+fn read_frame(cdr: &mut CdrReader<'_>) -> Result<String, String> {
+    let frame = cdr.read_text()?;
     Ok(frame.strip_prefix('/').map_or(frame.clone(), str::to_owned))
 }
 
 /// The beginning of a picture's message, for which its first few hundred bytes are enough.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct PictureHead {
-    pub(crate) head: Head,
+    pub(crate) head: MessageHead,
     /// `bgr8`, `jpeg`, `rgb8; jpeg compressed bgr8`.
     pub(crate) encoding: String,
 }
 
 impl PictureHead {
     pub(crate) fn read(kind: MessageKind, message: &[u8]) -> Result<Self, String> {
-        let mut cdr = Cdr::new(message)?;
-        let head = head(&mut cdr)?;
+        let mut cdr = CdrReader::new(message)?;
+        let head = read_head(&mut cdr)?;
         if kind == MessageKind::Raw {
-            let (_height_px, _width_px) = (cdr.u32()?, cdr.u32()?);
+            let (_height_px, _width_px) = (cdr.read_u32()?, cdr.read_u32()?);
         }
-        Ok(Self { head, encoding: cdr.text()? })
+        Ok(Self { head, encoding: cdr.read_text()? })
     }
 }
 
 /// `sensor_msgs/msg/Image` after its header.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Raw<'a> {
+pub(crate) struct RawPicture<'a> {
     pub(crate) width_px: u32,
     pub(crate) height_px: u32,
     pub(crate) encoding: String,
@@ -100,41 +100,41 @@ pub(crate) struct Raw<'a> {
     pub(crate) pixels: &'a [u8],
 }
 
-impl<'a> Raw<'a> {
+impl<'a> RawPicture<'a> {
     pub(crate) fn read(message: &'a [u8]) -> Result<Self, String> {
-        let mut cdr = Cdr::new(message)?;
-        head(&mut cdr)?;
-        let (height_px, width_px) = (cdr.u32()?, cdr.u32()?);
-        let (encoding, big_endian) = (cdr.text()?, cdr.u8()? != 0);
-        Ok(Self { width_px, height_px, encoding, big_endian, row_bytes: cdr.u32()?, pixels: cdr.bytes()? })
+        let mut cdr = CdrReader::new(message)?;
+        read_head(&mut cdr)?;
+        let (height_px, width_px) = (cdr.read_u32()?, cdr.read_u32()?);
+        let (encoding, big_endian) = (cdr.read_text()?, cdr.read_u8()? != 0);
+        Ok(Self { width_px, height_px, encoding, big_endian, row_bytes: cdr.read_u32()?, pixels: cdr.read_bytes()? })
     }
 }
 
 /// `sensor_msgs/msg/CompressedImage` after its header: its format, and the bytes of a picture file.
-pub(crate) fn compressed(message: &[u8]) -> Result<(String, &[u8]), String> {
-    let mut cdr = Cdr::new(message)?;
-    head(&mut cdr)?;
-    Ok((cdr.text()?, cdr.bytes()?))
+pub(crate) fn read_compressed(message: &[u8]) -> Result<(String, &[u8]), String> {
+    let mut cdr = CdrReader::new(message)?;
+    read_head(&mut cdr)?;
+    Ok((cdr.read_text()?, cdr.read_bytes()?))
 }
 
 /// The lens in `sensor_msgs/msg/CameraInfo`.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Lens {
-    pub(crate) head: Head,
+pub(crate) struct CameraLens {
+    pub(crate) head: MessageHead,
     /// Radians; `None` if the camera is not calibrated, or the angle is not from 10 to 160 degrees.
     pub(crate) horizontal_fov_rad: Option<f64>,
 }
 
-impl Lens {
+impl CameraLens {
     pub(crate) fn read(message: &[u8]) -> Result<Self, String> {
-        let mut cdr = Cdr::new(message)?;
-        let head = head(&mut cdr)?;
-        let (_height_px, width_px) = (cdr.u32()?, cdr.u32()?);
-        let distortion = cdr.text()?;
-        for _ in 0..cdr.count(8)? {
-            cdr.f64()?;
+        let mut cdr = CdrReader::new(message)?;
+        let head = read_head(&mut cdr)?;
+        let (_height_px, width_px) = (cdr.read_u32()?, cdr.read_u32()?);
+        let distortion = cdr.read_text()?;
+        for _ in 0..cdr.read_count(8)? {
+            cdr.read_f64()?;
         }
-        let [focal_px, ..] = cdr.f64s::<9>()?;
+        let [focal_px, ..] = cdr.read_f64s::<9>()?;
         let widths = f64::from(width_px) / focal_px;
         let fov = match distortion.as_str() {
             // In a fisheye picture, equal angles are equal distances.
@@ -148,14 +148,14 @@ impl Lens {
 
 /// The position and rotation of one frame in another.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Placing {
+pub(crate) struct RigidTransform {
     pub(crate) position: DVec3,
     /// Has length 1.
     pub(crate) rotation: DQuat,
 }
 
-impl Placing {
-    pub(crate) const HERE: Self = Self { position: DVec3::ZERO, rotation: DQuat::IDENTITY };
+impl RigidTransform {
+    pub(crate) const IDENTITY_TRANSFORM: Self = Self { position: DVec3::ZERO, rotation: DQuat::IDENTITY };
 
     /// `None` if the numbers are not a position and a rotation.
     pub(crate) fn new(position: [f64; 3], rotation: [f64; 4]) -> Option<Self> {
@@ -167,13 +167,13 @@ impl Placing {
 
     /// Composes two placings: `self` places a frame in an outer one, and `inner` places something in that frame. The result
     /// places that thing in the outer frame.
-    pub(crate) fn then(self, inner: Self) -> Self {
+    pub(crate) fn compose_with(self, inner: Self) -> Self {
         let position = self.position + self.rotation * inner.position;
         Self { position, rotation: (self.rotation * inner.rotation).normalize() }
     }
 
     /// A placing between this and another: on the straight line and the short turn.
-    pub(crate) fn towards(self, other: Self, share: f64) -> Self {
+    pub(crate) fn interpolate_to(self, other: Self, share: f64) -> Self {
         Self {
             position: self.position.lerp(other.position, share),
             rotation: self.rotation.lerp(other.rotation, share),
@@ -183,26 +183,26 @@ impl Placing {
 
 /// A placing of a frame at a time: a pose, or a transform.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Placed {
+pub(crate) struct StampedTransform {
     /// The time, and the outer frame.
-    pub(crate) head: Head,
+    pub(crate) head: MessageHead,
     /// The frame that is placed; `None` for a pose, which does not name it.
     pub(crate) what: Option<String>,
-    pub(crate) placing: Placing,
+    pub(crate) placing: RigidTransform,
 }
 
 /// The poses or transforms in a message; invalid ones are left out.
-pub(crate) fn placed(kind: MessageKind, message: &[u8]) -> Result<Vec<Placed>, String> {
+pub(crate) fn read_transforms(kind: MessageKind, message: &[u8]) -> Result<Vec<StampedTransform>, String> {
     /// A header of 12 bytes at least, a text of 4, and 7 numbers.
     const LEAST_BYTES: usize = 12 + 4 + 7 * 8;
-    let mut cdr = Cdr::new(message)?;
-    let count = if kind == MessageKind::Transforms { cdr.count(LEAST_BYTES)? } else { 1 };
+    let mut cdr = CdrReader::new(message)?;
+    let count = if kind == MessageKind::Transforms { cdr.read_count(LEAST_BYTES)? } else { 1 };
     let mut all = Vec::with_capacity(count);
     for _ in 0..count {
-        let head = head(&mut cdr)?;
-        let what = if kind == MessageKind::Pose { None } else { Some(frame(&mut cdr)?) };
-        let (position, rotation) = (cdr.f64s()?, cdr.f64s()?);
-        all.extend(Placing::new(position, rotation).map(|placing| Placed { head, what, placing }));
+        let head = read_head(&mut cdr)?;
+        let what = if kind == MessageKind::Pose { None } else { Some(read_frame(&mut cdr)?) };
+        let (position, rotation) = (cdr.read_f64s()?, cdr.read_f64s()?);
+        all.extend(RigidTransform::new(position, rotation).map(|placing| StampedTransform { head, what, placing }));
     }
     Ok(all)
 }
@@ -213,28 +213,29 @@ mod tests {
 
     #[test]
     fn schemas_are_known_by_each_of_their_names() {
-        assert_eq!(MessageKind::of("sensor_msgs/msg/CompressedImage"), Some(MessageKind::Compressed));
-        assert_eq!(MessageKind::of("sensor_msgs/Image"), Some(MessageKind::Raw));
-        assert_eq!(MessageKind::of("nav_msgs::msg::Odometry"), Some(MessageKind::Odometry));
-        assert_eq!(MessageKind::of("foxglove.CompressedImage"), None);
+        assert_eq!(MessageKind::from_schema("sensor_msgs/msg/CompressedImage"), Some(MessageKind::Compressed));
+        assert_eq!(MessageKind::from_schema("sensor_msgs/Image"), Some(MessageKind::Raw));
+        assert_eq!(MessageKind::from_schema("nav_msgs::msg::Odometry"), Some(MessageKind::Odometry));
+        assert_eq!(MessageKind::from_schema("foxglove.CompressedImage"), None);
     }
 
     #[test]
     fn composed_placings_apply_both_rotations() {
         let quarter = DQuat::from_rotation_z(std::f64::consts::FRAC_PI_2);
-        let robot = Placing { position: DVec3::new(1.0, 2.0, 0.0), rotation: quarter };
-        let camera = Placing { position: DVec3::new(0.5, 0.0, 1.0), rotation: DQuat::IDENTITY };
-        let placed = robot.then(camera);
+        let robot = RigidTransform { position: DVec3::new(1.0, 2.0, 0.0), rotation: quarter };
+        let camera = RigidTransform { position: DVec3::new(0.5, 0.0, 1.0), rotation: DQuat::IDENTITY };
+        let placed = robot.compose_with(camera);
         assert!(placed.position.abs_diff_eq(DVec3::new(1.0, 2.5, 1.0), 1e-12));
         assert!(placed.rotation.abs_diff_eq(quarter, 1e-12));
         // A quaternion and its negative are the same rotation.
-        let half = Placing::HERE.towards(Placing { rotation: -quarter, ..robot }, 0.5);
+        let half =
+            RigidTransform::IDENTITY_TRANSFORM.interpolate_to(RigidTransform { rotation: -quarter, ..robot }, 0.5);
         assert!((half.rotation * DVec3::X).abs_diff_eq(DVec3::new(0.5, 0.5, 0.0) * 2_f64.sqrt(), 1e-12));
     }
 
     #[test]
     fn placing_refuses_zero_and_nan_rotations() {
-        assert_eq!(Placing::new([0.0; 3], [0.0; 4]), None);
-        assert_eq!(Placing::new([f64::NAN, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]), None);
+        assert_eq!(RigidTransform::new([0.0; 3], [0.0; 4]), None);
+        assert_eq!(RigidTransform::new([f64::NAN, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]), None);
     }
 }

@@ -17,20 +17,20 @@ mod topics;
 mod tree;
 
 use crate::{
-    axes::{Axes, Body, columns},
-    describe::Description,
+    axes::{PoseAxes, PoseBody, rotation_columns},
+    describe::RecordingDescription,
     kind, names,
-    plausible::{Sample, doubt},
-    reel::{Recording, Source},
-    track::{Fix, Track},
+    plausible::{PoseSample, find_doubt},
+    reel::{Recording, RecordingSource},
+    track::{CameraTrack, TrackFix},
 };
 use ::mcap::MAGIC;
-use contents::{Contents, Message};
+use contents::{McapContents, TopicMessage};
 use found::RecordPlace;
 use glam::DVec3 as Vector;
-use messages::{Lens, MessageKind, PictureHead, Placing};
-use poses::{Poses, Way};
-use reel::Pictures;
+use messages::{CameraLens, MessageKind, PictureHead, RigidTransform};
+use poses::{RecordedPoses, TransformChain};
+use reel::TopicReel;
 use std::{
     collections::{BTreeMap, BTreeSet},
     fs::File,
@@ -38,18 +38,18 @@ use std::{
     ops::ControlFlow,
     path::{Path, PathBuf},
 };
-use topics::Heads;
-use tree::{Clock, Times};
+use topics::PictureHeads;
+use tree::{MessageClock, MessageTimes};
 use wayword_core::{DVec3, PlatformError, SceneId};
 use wayword_world::files;
 
-const HINT: &str = "give a file that `ros2 bag record --storage mcap` wrote";
+const MCAP_HINT: &str = "give a file that `ros2 bag record --storage mcap` wrote";
 
 /// An MCAP file.
 pub(crate) struct McapFile {
     path: PathBuf,
     scene: SceneId,
-    described: Description,
+    described: RecordingDescription,
 }
 
 impl McapFile {
@@ -57,12 +57,12 @@ impl McapFile {
     ///
     /// # Errors
     /// When its name cannot be the name of a scene.
-    pub(crate) fn open(path: &Path, described: Description) -> Result<Self, PlatformError> {
+    pub(crate) fn open(path: &Path, described: RecordingDescription) -> Result<Self, PlatformError> {
         Ok(Self { path: path.to_owned(), scene: names::scene_of(path)?, described })
     }
 
     /// Checks whether its first bytes are those of an MCAP file.
-    fn check(&self) -> Result<(), PlatformError> {
+    fn check_magic(&self) -> Result<(), PlatformError> {
         let mut begin = [0; MAGIC.len()];
         let read = File::open(&self.path).and_then(|mut file| file.read_exact(&mut begin));
         if read.is_ok() && begin == *MAGIC {
@@ -72,53 +72,53 @@ impl McapFile {
             Err(error) if error.kind() != std::io::ErrorKind::UnexpectedEof => error.to_string(),
             _ => "byte 0: does not begin like an MCAP file".to_owned(),
         };
-        Err(kind::refusal(&self.path, "an MCAP file", (reason, HINT)))
+        Err(kind::refuse_file(&self.path, "an MCAP file", (reason, MCAP_HINT)))
     }
 
-    fn wrong(&self, (reason, hint): topics::Unclear) -> PlatformError {
-        files::wrong(&self.path, reason, hint)
+    fn file_error(&self, (reason, hint): topics::UnclearReason) -> PlatformError {
+        files::file_error(&self.path, reason, hint)
     }
 
-    fn read(&self) -> Result<Recording, PlatformError> {
-        self.check()?;
+    fn read_recording(&self) -> Result<Recording, PlatformError> {
+        self.check_magic()?;
         let broken = |why: String| {
-            self.wrong((why, "if it is damaged, `mcap recover IN.mcap -o OUT.mcap` saves what can be saved"))
+            self.file_error((why, "if it is damaged, `mcap recover IN.mcap -o OUT.mcap` saves what can be saved"))
         };
         let file = File::open(&self.path).map_err(|error| broken(error.to_string()))?;
-        let contents = Contents::of(&file).map_err(broken)?;
-        let unclear = |(why, hint): topics::Unclear| match &contents.broken {
+        let contents = McapContents::from_file(&file).map_err(broken)?;
+        let unclear = |(why, hint): topics::UnclearReason| match &contents.broken {
             Some(end) => broken(format!("{why} (it can be read only up to {end})")),
-            None => self.wrong((why, hint)),
+            None => self.file_error((why, hint)),
         };
-        let (heads, lenses) = beginnings(&file, &contents).map_err(broken)?;
-        let camera = topics::camera(&contents, &heads, self.described.camera.as_deref()).map_err(unclear)?;
+        let (heads, lenses) = read_beginnings(&file, &contents).map_err(broken)?;
+        let camera = topics::choose_camera(&contents, &heads, self.described.camera.as_deref()).map_err(unclear)?;
         let named = self.named_poses(&contents).map_err(unclear)?;
         let frame = heads.get(camera).map_or("", |head| head.head.frame.as_str());
-        let (mut shots, poses) = gathered(&file, &contents, camera, frame).map_err(broken)?;
-        let way = poses.way(named).map_err(unclear)?;
-        let (track, clock) = self.track(&shots, way.as_ref(), frame);
-        shots.retain(|shot| shot.times.on(clock).is_some());
-        let time_ns = |shot: &Shot| shot.times.on(clock).unwrap_or_default();
+        let (mut shots, poses) = gather_messages(&file, &contents, camera, frame).map_err(broken)?;
+        let way = poses.choose_chain(named).map_err(unclear)?;
+        let (track, clock) = self.find_track(&shots, way.as_ref(), frame);
+        shots.retain(|shot| shot.times.time_on(clock).is_some());
+        let time_ns = |shot: &PictureShot| shot.times.time_on(clock).unwrap_or_default();
         shots.sort_by_key(|shot| (time_ns(shot), shot.place));
         let first_ns = shots.first().map_or(0, time_ns);
-        let horizontal_fov_rad = topics::lens(&lenses, camera, frame).and_then(|lens| lens.horizontal_fov_rad);
-        let pictures = Pictures {
+        let horizontal_fov_rad = topics::find_lens(&lenses, camera, frame).and_then(|lens| lens.horizontal_fov_rad);
+        let pictures = TopicReel {
             file: self.path.clone(),
             topic: camera.to_owned(),
             kind: contents.topics.get(camera).and_then(|topic| topic.kind).unwrap_or(MessageKind::Raw),
-            times_s: shots.iter().map(|shot| seconds(time_ns(shot), first_ns)).collect(),
+            times_s: shots.iter().map(|shot| seconds_since(time_ns(shot), first_ns)).collect(),
             places: shots.iter().map(|shot| shot.place).collect(),
         };
         Ok(Recording { reel: Box::new(pictures), track, horizontal_fov_rad, described: self.described.clone() })
     }
 
     /// The pose topic that the user named; `None` if the user named none.
-    fn named_poses(&self, contents: &Contents) -> Result<Option<(&str, MessageKind)>, topics::Unclear> {
+    fn named_poses(&self, contents: &McapContents) -> Result<Option<(&str, MessageKind)>, topics::UnclearReason> {
         let Some(named) = self.described.poses.as_deref() else { return Ok(None) };
         let kind = contents.topics.get(named).and_then(|topic| topic.kind).filter(|kind| kind.is_pose());
         kind.map(|kind| Some((named, kind))).ok_or_else(|| {
             let poses = contents.topics.iter().filter(|(_, topic)| topic.kind.is_some_and(MessageKind::is_pose));
-            let poses = topics::listed(poses.map(|(name, _)| name.as_str()));
+            let poses = topics::list_names(poses.map(|(name, _)| name.as_str()));
             let reason = format!(
                 "has no pose topic {named}; its pose topics: {}",
                 if poses.is_empty() { "none" } else { &poses }
@@ -129,92 +129,104 @@ impl McapFile {
 
     /// The track of the camera, and the clock that pictures and poses share. This is the clock of their own stamps. If all
     /// stamps of either are missing, or if their time spans do not overlap, it is the recorder's clock instead.
-    fn track(&self, shots: &[Shot], way: Option<&Way<'_>>, frame: &str) -> (Option<Track>, Clock) {
-        let stamped = shots.iter().any(|shot| shot.times.on(Clock::Stamp).is_some());
-        let usual = if stamped { Clock::Stamp } else { Clock::Log };
+    fn find_track(
+        &self,
+        shots: &[PictureShot],
+        way: Option<&TransformChain<'_>>,
+        frame: &str,
+    ) -> (Option<CameraTrack>, MessageClock) {
+        let stamped = shots.iter().any(|shot| shot.times.time_on(MessageClock::Stamp).is_some());
+        let usual = if stamped { MessageClock::Stamp } else { MessageClock::Log };
         let Some(way) = way else { return (None, usual) };
-        let on = |clock: Clock| {
-            let times = shots.iter().filter_map(|shot| shot.times.on(clock));
+        let on = |clock: MessageClock| {
+            let times = shots.iter().filter_map(|shot| shot.times.time_on(clock));
             let (first_ns, last_ns) = (times.clone().min()?, times.max()?);
-            let placings = way.placings(clock);
+            let placings = way.chain_placings(clock);
             let meet = placings.first()?.0 <= last_ns && placings.last()?.0 >= first_ns;
-            let axes = self.described.axes(Axes::of(if way.of_camera { body(&placings, frame) } else { Body::Robot }));
-            let track = meet.then(|| fixes(&placings, first_ns, axes)).and_then(Track::new)?;
-            Some(match doubt(&samples(&placings), axes, &self.described) {
+            let axes = self.described.axes_or_usual(PoseAxes::for_body(if way.of_camera {
+                body_for_frame(&placings, frame)
+            } else {
+                PoseBody::Robot
+            }));
+            let track = meet.then(|| fixes_from_placings(&placings, first_ns, axes)).and_then(CameraTrack::new)?;
+            Some(match find_doubt(&samples_from_placings(&placings), axes, &self.described) {
                 Some(doubt) => track.in_doubt(format!("{}: {}", self.path.display(), doubt.into_words())),
                 None => track,
             })
         };
-        let clocks = if stamped { &[Clock::Stamp, Clock::Log][..] } else { &[Clock::Log] };
+        let clocks = if stamped { &[MessageClock::Stamp, MessageClock::Log][..] } else { &[MessageClock::Log] };
         clocks.iter().find_map(|clock| Some((Some(on(*clock)?), *clock))).unwrap_or((None, usual))
     }
 }
 
-fn fixes(placings: &[(i64, Placing)], first_ns: i64, axes: Axes) -> Vec<Fix> {
-    let fix = |(time_ns, placing): &(i64, Placing)| Fix {
-        time_s: seconds(*time_ns, first_ns),
+fn fixes_from_placings(placings: &[(i64, RigidTransform)], first_ns: i64, axes: PoseAxes) -> Vec<TrackFix> {
+    let fix = |(time_ns, placing): &(i64, RigidTransform)| TrackFix {
+        time_s: seconds_since(*time_ns, first_ns),
         position: axes.wayword_from_recorded(DVec3::from(placing.position.to_array())),
-        heading: axes.heading(placing.rotation.to_array()),
+        heading: axes.heading_by_quaternion(placing.rotation.to_array()),
     };
     placings.iter().map(fix).collect()
 }
 
 /// The poses as they were recorded.
-fn samples(placings: &[(i64, Placing)]) -> Vec<Sample> {
-    let sample = |(_, placing): &(i64, Placing)| Sample {
+fn samples_from_placings(placings: &[(i64, RigidTransform)]) -> Vec<PoseSample> {
+    let sample = |(_, placing): &(i64, RigidTransform)| PoseSample {
         position: DVec3::from(placing.position.to_array()),
-        held: columns(placing.rotation.to_array()),
+        held: rotation_columns(placing.rotation.to_array()),
     };
     placings.iter().map(sample).collect()
 }
 
 /// The body that the frame of the pictures belongs to. By `sensor_msgs/msg/Image` it should be the optical frame, but some
 /// recorders name the camera's body. A camera does not look straight up, so a frame with its z axis pointing up is a body.
-fn body(placings: &[(i64, Placing)], frame: &str) -> Body {
+fn body_for_frame(placings: &[(i64, RigidTransform)], frame: &str) -> PoseBody {
     let upright = placings.first().is_some_and(|(_, placing)| (placing.rotation * Vector::Z).z > 0.8);
-    if upright && !frame.contains("optical") { Body::Robot } else { Body::Optical }
+    if upright && !frame.contains("optical") { PoseBody::Robot } else { PoseBody::Optical }
 }
 
-fn seconds(time_ns: i64, first_ns: i64) -> f64 {
+fn seconds_since(time_ns: i64, first_ns: i64) -> f64 {
     time_ns.saturating_sub(first_ns) as f64 * 1e-9
 }
 
-impl Source for McapFile {
+impl RecordingSource for McapFile {
     fn scenes(&self) -> Vec<SceneId> {
         vec![self.scene.clone()]
     }
 
     fn open(&self, scene: &SceneId) -> Result<Recording, PlatformError> {
         if *scene != self.scene {
-            return Err(names::unknown(scene, &self.scenes()));
+            return Err(names::unknown_scene(scene, &self.scenes()));
         }
-        self.read()
+        self.read_recording()
     }
 
     fn files(&self, scene: &SceneId) -> Result<Vec<PathBuf>, PlatformError> {
         if *scene != self.scene {
-            return Err(names::unknown(scene, &self.scenes()));
+            return Err(names::unknown_scene(scene, &self.scenes()));
         }
-        Ok(names::plain([self.path.clone(), Description::file_beside(&self.path)]))
+        Ok(names::plain_files([self.path.clone(), RecordingDescription::file_beside(&self.path)]))
     }
 }
 
 /// The times of a picture, and its place in the file.
-struct Shot {
-    times: Times,
+struct PictureShot {
+    times: MessageTimes,
     place: RecordPlace,
 }
 
 /// The head of the first message of each camera, and the first message of each lens.
-fn beginnings(file: &File, contents: &Contents) -> Result<(Heads, BTreeMap<String, Lens>), String> {
-    let (mut heads, mut lenses) = (Heads::new(), BTreeMap::new());
-    let wanted = contents.channels(|_, kind| kind.is_picture() || kind == MessageKind::Lens);
+fn read_beginnings(
+    file: &File,
+    contents: &McapContents,
+) -> Result<(PictureHeads, BTreeMap<String, CameraLens>), String> {
+    let (mut heads, mut lenses) = (PictureHeads::new(), BTreeMap::new());
+    let wanted = contents.channels_where(|_, kind| kind.is_picture() || kind == MessageKind::Lens);
     let mut missing: BTreeSet<&str> = wanted.values().map(|(topic, _)| *topic).collect();
-    contents.messages(file, &wanted, &mut |Message { topic, kind, bytes, .. }| {
+    contents.each_message(file, &wanted, &mut |TopicMessage { topic, kind, bytes, .. }| {
         if !missing.remove(topic) {
         } else if kind == MessageKind::Lens {
             // A lens that cannot be read counts as unknown.
-            lenses.extend(Lens::read(bytes).ok().map(|lens| (topic.to_owned(), lens)));
+            lenses.extend(CameraLens::read(bytes).ok().map(|lens| (topic.to_owned(), lens)));
         } else {
             heads.insert(topic.to_owned(), PictureHead::read(kind, bytes)?);
         }
@@ -224,15 +236,20 @@ fn beginnings(file: &File, contents: &Contents) -> Result<(Heads, BTreeMap<Strin
 }
 
 /// The places of all pictures of a camera, and all poses.
-fn gathered(file: &File, contents: &Contents, camera: &str, frame: &str) -> Result<(Vec<Shot>, Poses), String> {
-    let (mut shots, mut poses) = (Vec::new(), Poses::new(frame));
-    let wanted = contents.channels(|topic, kind| kind.is_pose() || topic == camera);
-    contents.messages(file, &wanted, &mut |Message { topic, kind, logged_ns, place, bytes }| {
+fn gather_messages(
+    file: &File,
+    contents: &McapContents,
+    camera: &str,
+    frame: &str,
+) -> Result<(Vec<PictureShot>, RecordedPoses), String> {
+    let (mut shots, mut poses) = (Vec::new(), RecordedPoses::new(frame));
+    let wanted = contents.channels_where(|topic, kind| kind.is_pose() || topic == camera);
+    contents.each_message(file, &wanted, &mut |TopicMessage { topic, kind, logged_ns, place, bytes }| {
         if kind.is_picture() {
             let stamp_ns = PictureHead::read(kind, bytes)?.head.stamp_ns;
-            shots.push(Shot { times: Times { stamp_ns, logged_ns }, place });
+            shots.push(PictureShot { times: MessageTimes { stamp_ns, logged_ns }, place });
         } else {
-            poses.add(topic, kind, logged_ns, messages::placed(kind, bytes)?);
+            poses.add_message(topic, kind, logged_ns, messages::read_transforms(kind, bytes)?);
         }
         Ok(ControlFlow::Continue(()))
     })?;

@@ -1,19 +1,19 @@
 //! Decodes ROS pictures into RGB (encodings of `sensor_msgs/include/sensor_msgs/image_encodings.hpp`).
 
-use super::messages::{self, MessageKind, Raw};
+use super::messages::{self, MessageKind, RawPicture};
 use crate::size;
 use wayword_core::Image;
 use wayword_world::files;
 
 /// The reason why messages with this encoding cannot be read as pictures; `None` if they can.
-pub(crate) fn unfit(kind: MessageKind, encoding: &str) -> Option<String> {
+pub(crate) fn unfit_reason(kind: MessageKind, encoding: &str) -> Option<String> {
     let known = match kind {
         // Depth is `16UC1; compressedDepth png`. If the format does not name depth, the first bytes of the file
         // decide later.
         MessageKind::Compressed => {
             !encoding.contains("compressedDepth") && !is_depth(encoding.split(';').next()?.trim())
         }
-        _ => Layout::of(encoding).is_some(),
+        _ => RosPixelLayout::from_encoding(encoding).is_some(),
     };
     let depth = is_depth(encoding.split(';').next()?.trim()) || encoding.contains("compressedDepth");
     (!known).then(|| format!("{encoding:?}{}", if depth { ", which is depth" } else { ", which is not read" }))
@@ -24,20 +24,20 @@ fn is_depth(encoding: &str) -> bool {
 }
 
 /// Decodes a message of a camera.
-pub(crate) fn picture(kind: MessageKind, message: &[u8]) -> Result<Image, String> {
+pub(crate) fn decode_picture(kind: MessageKind, message: &[u8]) -> Result<Image, String> {
     if kind == MessageKind::Raw {
-        return raw(&Raw::read(message)?);
+        return decode_raw(&RawPicture::read(message)?);
     }
-    let (format, bytes) = messages::compressed(message)?;
-    match unfit(kind, &format) {
+    let (format, bytes) = messages::read_compressed(message)?;
+    match unfit_reason(kind, &format) {
         Some(why) => Err(format!("has the format {why}")),
-        None => files::picture(bytes).map_err(|why| format!("{why} (its format is {format:?})")),
+        None => files::decode_picture(bytes).map_err(|why| format!("{why} (its format is {format:?})")),
     }
 }
 
 /// The layout of the pixels in a row.
 #[derive(Clone, Copy)]
-enum Layout {
+enum RosPixelLayout {
     /// Bytes per pixel, and which of them are red, green and blue.
     Plain { bytes: usize, rgb: [usize; 3] },
     /// 16 bits of grey.
@@ -48,8 +48,8 @@ enum Layout {
     Bayer { red: [usize; 2] },
 }
 
-impl Layout {
-    fn of(encoding: &str) -> Option<Self> {
+impl RosPixelLayout {
+    fn from_encoding(encoding: &str) -> Option<Self> {
         Some(match encoding {
             "rgb8" => Self::Plain { bytes: 3, rgb: [0, 1, 2] },
             // `8UC3` has OpenCV's order: `cv_bridge` writes it without naming the colours.
@@ -77,8 +77,9 @@ impl Layout {
     }
 }
 
-fn raw(raw: &Raw<'_>) -> Result<Image, String> {
-    let layout = Layout::of(&raw.encoding).ok_or_else(|| format!("has the encoding {:?}", raw.encoding))?;
+fn decode_raw(raw: &RawPicture<'_>) -> Result<Image, String> {
+    let layout =
+        RosPixelLayout::from_encoding(&raw.encoding).ok_or_else(|| format!("has the encoding {:?}", raw.encoding))?;
     let (width_px, height_px) = (raw.width_px, raw.height_px);
     if !size::is_possible(width_px, height_px) || width_px == 0 || height_px == 0 {
         return Err(format!("has {width_px} x {height_px} pixels, but only 1 x 1 to 64 megapixels can be read"));
@@ -95,17 +96,17 @@ fn raw(raw: &Raw<'_>) -> Result<Image, String> {
     let mut rgb = Vec::with_capacity(width * height * 3);
     for y in 0..height {
         match layout {
-            Layout::Plain { bytes, rgb: [r, g, b] } => {
+            RosPixelLayout::Plain { bytes, rgb: [r, g, b] } => {
                 rgb.extend(row(y).chunks_exact(bytes).flat_map(|pixel| [pixel[r], pixel[g], pixel[b]]));
             }
-            Layout::Grey16 => {
+            RosPixelLayout::Grey16 => {
                 let high = usize::from(!raw.big_endian);
                 rgb.extend(row(y).chunks_exact(2).flat_map(|pixel| [pixel[high]; 3]));
             }
-            Layout::Yuv422 { y: first, u } => yuv422(row(y), [first, u], &mut rgb),
-            Layout::Bayer { red } => {
+            RosPixelLayout::Yuv422 { y: first, u } => decode_yuv422(row(y), [first, u], &mut rgb),
+            RosPixelLayout::Bayer { red } => {
                 let rows = [row(y.saturating_sub(1)), row(y), row((y + 1).min(height - 1))];
-                bayer(rows, y, red, &mut rgb);
+                decode_bayer(rows, y, red, &mut rgb);
             }
         }
     }
@@ -113,7 +114,7 @@ fn raw(raw: &Raw<'_>) -> Result<Image, String> {
 }
 
 /// A row in which each two pixels share their colour (ITU-R BT.601, studio range, as OpenCV's `COLOR_YUV2RGB_UYVY`).
-fn yuv422(row: &[u8], [first, u]: [usize; 2], rgb: &mut Vec<u8>) {
+fn decode_yuv422(row: &[u8], [first, u]: [usize; 2], rgb: &mut Vec<u8>) {
     for pair in row.chunks(4) {
         // The last pixel of an odd row has a U but no V, so it becomes grey.
         let chroma = |at: usize| if pair.len() == 4 { i32::from(pair[at]) - 128 } else { 0 };
@@ -127,7 +128,7 @@ fn yuv422(row: &[u8], [first, u]: [usize; 2], rgb: &mut Vec<u8>) {
 }
 
 /// A row of a Bayer picture: each colour of a pixel is the mean of that colour in the 3 x 3 pixels around it.
-fn bayer(rows: [&[u8]; 3], y: usize, [red_x, red_y]: [usize; 2], rgb: &mut Vec<u8>) {
+fn decode_bayer(rows: [&[u8]; 3], y: usize, [red_x, red_y]: [usize; 2], rgb: &mut Vec<u8>) {
     let width = rows[1].len();
     for x in 0..width {
         let (mut sums, mut counts) = ([0_u32; 3], [0_u32; 3]);
@@ -153,21 +154,21 @@ mod tests {
 
     fn of(encoding: &str, (width_px, height_px): (u32, u32), row_bytes: u32, pixels: &[u8]) -> Result<Image, String> {
         let encoding = encoding.to_owned();
-        raw(&Raw { width_px, height_px, encoding, big_endian: false, row_bytes, pixels })
+        decode_raw(&RawPicture { width_px, height_px, encoding, big_endian: false, row_bytes, pixels })
     }
 
     #[test]
     fn each_order_of_colours_comes_out_as_rgb() {
-        assert_eq!(of("rgb8", (1, 1), 3, &[1, 2, 3]).unwrap().rgb(), [1, 2, 3]);
-        assert_eq!(of("bgr8", (1, 1), 3, &[1, 2, 3]).unwrap().rgb(), [3, 2, 1]);
-        assert_eq!(of("bgra8", (1, 1), 4, &[1, 2, 3, 9]).unwrap().rgb(), [3, 2, 1]);
-        assert_eq!(of("mono8", (2, 1), 2, &[7, 8]).unwrap().rgb(), [7, 7, 7, 8, 8, 8]);
-        assert_eq!(of("mono16", (1, 1), 2, &[7, 8]).unwrap().rgb(), [8, 8, 8]);
+        assert_eq!(of("rgb8", (1, 1), 3, &[1, 2, 3]).unwrap().rgb_bytes(), [1, 2, 3]);
+        assert_eq!(of("bgr8", (1, 1), 3, &[1, 2, 3]).unwrap().rgb_bytes(), [3, 2, 1]);
+        assert_eq!(of("bgra8", (1, 1), 4, &[1, 2, 3, 9]).unwrap().rgb_bytes(), [3, 2, 1]);
+        assert_eq!(of("mono8", (2, 1), 2, &[7, 8]).unwrap().rgb_bytes(), [7, 7, 7, 8, 8, 8]);
+        assert_eq!(of("mono16", (1, 1), 2, &[7, 8]).unwrap().rgb_bytes(), [8, 8, 8]);
     }
 
     #[test]
     fn rows_may_be_padded_but_not_cut() {
-        assert_eq!(of("mono8", (1, 2), 3, &[5, 0, 0, 6]).unwrap().rgb(), [5, 5, 5, 6, 6, 6]);
+        assert_eq!(of("mono8", (1, 2), 3, &[5, 0, 0, 6]).unwrap().rgb_bytes(), [5, 5, 5, 6, 6, 6]);
         assert!(of("mono8", (1, 2), 3, &[5, 0, 0]).unwrap_err().contains("3 bytes in rows of 3"));
         assert!(of("rgb8", (2, 1), 3, &[0; 6]).is_err());
         assert!(of("rgb8", (u32::MAX, u32::MAX), u32::MAX, &[0; 6]).unwrap_err().contains("megapixels"));
@@ -179,9 +180,12 @@ mod tests {
         // BT.601: red is Y 82, U 90, V 240.
         for (encoding, pixels) in [("yuv422", [90, 82, 240, 82]), ("yuv422_yuy2", [82, 90, 82, 240])] {
             let image = of(encoding, (2, 1), 4, &pixels).unwrap();
-            assert!(image.rgb().chunks(3).all(|pixel| pixel[0] > 250 && pixel[1] < 5 && pixel[2] < 5), "{encoding}");
+            assert!(
+                image.rgb_bytes().chunks(3).all(|pixel| pixel[0] > 250 && pixel[1] < 5 && pixel[2] < 5),
+                "{encoding}"
+            );
         }
-        assert_eq!(of("yuv422", (1, 1), 2, &[128, 16]).unwrap().rgb(), [0, 0, 0]);
+        assert_eq!(of("yuv422", (1, 1), 2, &[128, 16]).unwrap().rgb_bytes(), [0, 0, 0]);
     }
 
     #[test]
@@ -191,18 +195,22 @@ mod tests {
         {
             let pixels: Vec<u8> = (0..16).map(|at| [200, 100, 50][(at % 4 + x) % 2 + (at / 4 + y) % 2]).collect();
             let image = of(encoding, (4, 4), 4, &pixels).unwrap();
-            assert!(image.rgb().chunks(3).all(|pixel| pixel == [200, 100, 50]), "{encoding}: {:?}", image.rgb());
+            assert!(
+                image.rgb_bytes().chunks(3).all(|pixel| pixel == [200, 100, 50]),
+                "{encoding}: {:?}",
+                image.rgb_bytes()
+            );
         }
         assert!(of("bayer_rggb8", (1, 1), 1, &[9]).is_ok());
     }
 
     #[test]
     fn depth_is_no_picture() {
-        assert!(unfit(MessageKind::Raw, "16UC1").unwrap().contains("depth"));
-        assert!(unfit(MessageKind::Compressed, "16UC1; compressedDepth png").unwrap().contains("depth"));
-        assert!(unfit(MessageKind::Raw, "nv12").unwrap().contains("not read"));
+        assert!(unfit_reason(MessageKind::Raw, "16UC1").unwrap().contains("depth"));
+        assert!(unfit_reason(MessageKind::Compressed, "16UC1; compressedDepth png").unwrap().contains("depth"));
+        assert!(unfit_reason(MessageKind::Raw, "nv12").unwrap().contains("not read"));
         for usual in ["jpeg", "png", "rgb8; jpeg compressed bgr8", ""] {
-            assert_eq!(unfit(MessageKind::Compressed, usual), None);
+            assert_eq!(unfit_reason(MessageKind::Compressed, usual), None);
         }
     }
 }

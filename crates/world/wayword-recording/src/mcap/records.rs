@@ -3,7 +3,7 @@
 //! The crate `mcap` unpacks compressed chunks, a record at a time. Everything else is read here, because the crate
 //! reads every record whole, while only the first bytes of a picture are needed to find its time.
 
-use super::found::{Found, RecordPlace};
+use super::found::{McapRecord, RecordPlace};
 use mcap::{
     records::op,
     sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions},
@@ -13,7 +13,7 @@ use std::{
     io::{BufReader, Error, ErrorKind, Read, Seek, SeekFrom},
     ops::ControlFlow,
 };
-use wayword_core::contained;
+use wayword_core::run_contained;
 
 /// Bytes of a record before its body: its type and length.
 const HEAD_BYTES: u64 = 9;
@@ -32,13 +32,13 @@ const MAX_UNPACKED: (u64, u64) = (256 << 20, 1000);
 const UNPACKED_RECORD: (u64, u64) = (64 << 10, 258 << 20);
 
 /// Most bytes of a message that the caller needs, by channel.
-pub(crate) type Most<'a> = dyn Fn(u16) -> u64 + 'a;
+pub(crate) type MostBytes<'a> = dyn Fn(u16) -> u64 + 'a;
 
 /// Receives records, and can stop the reading.
-pub(crate) type Hear<'a> = dyn FnMut(Found<'_>) -> Result<ControlFlow<()>, String> + 'a;
+pub(crate) type HearRecord<'a> = dyn FnMut(McapRecord<'_>) -> Result<ControlFlow<()>, String> + 'a;
 
 /// Records in a part of a file.
-pub(crate) struct Records<'a> {
+pub(crate) struct RecordReader<'a> {
     file: BufReader<&'a File>,
     /// Offset of the next record, or of the compressed chunk that is open.
     at: u64,
@@ -46,51 +46,56 @@ pub(crate) struct Records<'a> {
     end: u64,
     /// End of the chunk that was entered last, if it is not compressed.
     chunk_end: u64,
-    packed: Option<Packed>,
+    packed: Option<PackedChunk>,
     body: Vec<u8>,
 }
 
-impl<'a> Records<'a> {
+impl<'a> RecordReader<'a> {
     pub(crate) fn new(file: &'a File, from: u64, end: u64) -> Result<Self, String> {
         let file = BufReader::with_capacity(BUFFER_BYTES, file);
         let mut records = Self { file, at: 0, end, chunk_end: 0, packed: None, body: Vec::new() };
-        records.go(RecordPlace { file_at: from, within: None })?;
+        records.go_to(RecordPlace { file_at: from, within: None })?;
         Ok(records)
     }
 
     /// Goes to a record. For a record in a compressed chunk it goes to the start of that chunk, unless the chunk is
     /// open and the record is still ahead.
-    pub(crate) fn go(&mut self, to: RecordPlace) -> Result<(), String> {
-        let ahead = |packed: &Packed| packed.from == to.file_at && to.within.is_some_and(|within| within >= packed.at);
+    pub(crate) fn go_to(&mut self, to: RecordPlace) -> Result<(), String> {
+        let ahead =
+            |packed: &PackedChunk| packed.from == to.file_at && to.within.is_some_and(|within| within >= packed.at);
         if !self.packed.as_ref().is_some_and(ahead) {
             (self.at, self.chunk_end, self.packed) = (to.file_at, 0, None);
-            self.file.seek(SeekFrom::Start(to.file_at)).map_err(|error| self.broken(&error))?;
+            self.file.seek(SeekFrom::Start(to.file_at)).map_err(|error| self.broken_at(&error))?;
         }
         Ok(())
     }
 
     /// Enters the chunk that must be here.
-    pub(crate) fn enter(&mut self) -> Result<(), String> {
-        match self.head()? {
-            (op::CHUNK, length) => self.open(length),
+    pub(crate) fn enter_chunk(&mut self) -> Result<(), String> {
+        match self.read_head()? {
+            (op::CHUNK, length) => self.open_chunk(length),
             (opcode, _) => Err(format!("byte {}: expected a chunk, found a record of type {opcode:#04x}", self.at)),
         }
     }
 
     /// Offset of the next record, or the end of the compressed chunk that is open.
-    pub(crate) fn reached(&self) -> u64 {
+    pub(crate) fn reached_offset(&self) -> u64 {
         self.packed.as_ref().map_or(self.at, |packed| packed.end)
     }
 
     /// Hands out records up to the end of the data, or until `hear` stops it. The caller can go on with
-    /// [`Records::go`].
+    /// [`RecordReader::go_to`].
     ///
     /// # Errors
     /// When the file is broken, or `hear` fails.
-    pub(crate) fn each(&mut self, most: &Most<'_>, hear: &mut Hear<'_>) -> Result<ControlFlow<()>, String> {
+    pub(crate) fn each_record(
+        &mut self,
+        most: &MostBytes<'_>,
+        hear: &mut HearRecord<'_>,
+    ) -> Result<ControlFlow<()>, String> {
         loop {
             if let Some(packed) = &mut self.packed {
-                if packed.each(&mut self.file, most, hear)?.is_break() {
+                if packed.each_record(&mut self.file, most, hear)?.is_break() {
                     return Ok(ControlFlow::Break(()));
                 }
                 (self.at, self.packed) = (packed.end, None);
@@ -98,13 +103,13 @@ impl<'a> Records<'a> {
             if self.at >= self.end {
                 return Ok(ControlFlow::Continue(()));
             }
-            match self.head()? {
+            match self.read_head()? {
                 (op::DATA_END, _) => return Ok(ControlFlow::Continue(())),
-                (op::CHUNK, length) => self.open(length)?,
+                (op::CHUNK, length) => self.open_chunk(length)?,
                 (opcode, length) => {
-                    let is_wanted = self.body(opcode, length, most)?;
+                    let is_wanted = self.read_body(opcode, length, most)?;
                     let place = RecordPlace { file_at: self.at, within: None };
-                    if is_wanted && hear(Found { opcode, place, bytes: &self.body })?.is_break() {
+                    if is_wanted && hear(McapRecord { opcode, place, bytes: &self.body })?.is_break() {
                         return Ok(ControlFlow::Break(()));
                     }
                     self.at += HEAD_BYTES + length;
@@ -114,8 +119,8 @@ impl<'a> Records<'a> {
     }
 
     /// Type of the next record, and length of its body.
-    fn head(&mut self) -> Result<(u8, u64), String> {
-        let head = self.exactly::<{ HEAD_BYTES as usize }>()?;
+    fn read_head(&mut self) -> Result<(u8, u64), String> {
+        let head = self.read_exactly::<{ HEAD_BYTES as usize }>()?;
         let (opcode, length) = (head[0], u64_at(&head, 1));
         let end = if self.at < self.chunk_end { self.chunk_end } else { self.end };
         // A chunk that was cut off can still be read in part.
@@ -126,10 +131,10 @@ impl<'a> Records<'a> {
     }
 
     /// Enters the chunk after its head was read.
-    fn open(&mut self, length: u64) -> Result<(), String> {
+    fn open_chunk(&mut self, length: u64) -> Result<(), String> {
         let from = self.at;
         let end = from.saturating_add(HEAD_BYTES).saturating_add(length).min(self.end);
-        let head = self.exactly::<{ CHUNK_HEAD_BYTES as usize }>()?;
+        let head = self.read_exactly::<{ CHUNK_HEAD_BYTES as usize }>()?;
         let is_packed = head[28..32] != [0; 4];
         // The crate handles all unusual chunks.
         if !is_packed && u64_at(&head, 32).checked_add(CHUNK_HEAD_BYTES) == Some(length) {
@@ -142,43 +147,43 @@ impl<'a> Records<'a> {
                 "byte {from}: a chunk of {packed_bytes} bytes claims to unpack to {unpacked_bytes} bytes"
             ));
         }
-        self.file.seek_relative(-((HEAD_BYTES + CHUNK_HEAD_BYTES) as i64)).map_err(|error| self.broken(&error))?;
+        self.file.seek_relative(-((HEAD_BYTES + CHUNK_HEAD_BYTES) as i64)).map_err(|error| self.broken_at(&error))?;
         let record_bytes = unpacked_bytes.clamp(UNPACKED_RECORD.0, UNPACKED_RECORD.1) as usize;
         let options = LinearReaderOptions::default().with_skip_start_magic(true).with_skip_end_magic(true);
         let reader = LinearReader::new_with_options(options.with_record_length_limit(record_bytes));
-        self.packed = Some(Packed { reader, from, end, left: packed_bytes, at: 0 });
+        self.packed = Some(PackedChunk { reader, from, end, left: packed_bytes, at: 0 });
         Ok(())
     }
 
     /// Reads the needed first bytes of a body and skips the rest. Returns whether the record concerns messages.
-    fn body(&mut self, opcode: u8, length: u64, most: &Most<'_>) -> Result<bool, String> {
+    fn read_body(&mut self, opcode: u8, length: u64, most: &MostBytes<'_>) -> Result<bool, String> {
         self.body.clear();
         let begun = length.min(2);
-        self.append(begun)?;
-        let wanted = wanted(opcode, &self.body, most);
+        self.append_bytes(begun)?;
+        let wanted = wanted_bytes(opcode, &self.body, most);
         let read = wanted.unwrap_or(0).clamp(begun, length);
-        self.append(read - begun)?;
+        self.append_bytes(read - begun)?;
         let passed = i64::try_from(length - read).map_err(Error::other);
-        passed.and_then(|passed| self.file.seek_relative(passed)).map_err(|error| self.broken(&error))?;
+        passed.and_then(|passed| self.file.seek_relative(passed)).map_err(|error| self.broken_at(&error))?;
         Ok(wanted.is_some())
     }
 
-    fn append(&mut self, count: u64) -> Result<(), String> {
+    fn append_bytes(&mut self, count: u64) -> Result<(), String> {
         // Memory grows only with the bytes that the file really has.
         match self.file.by_ref().take(count).read_to_end(&mut self.body) {
             Ok(read) if read as u64 == count => Ok(()),
-            Ok(_) => Err(self.broken(&ErrorKind::UnexpectedEof.into())),
-            Err(error) => Err(self.broken(&error)),
+            Ok(_) => Err(self.broken_at(&ErrorKind::UnexpectedEof.into())),
+            Err(error) => Err(self.broken_at(&error)),
         }
     }
 
-    fn exactly<const BYTES: usize>(&mut self) -> Result<[u8; BYTES], String> {
+    fn read_exactly<const BYTES: usize>(&mut self) -> Result<[u8; BYTES], String> {
         let mut bytes = [0; BYTES];
-        self.file.read_exact(&mut bytes).map_err(|error| self.broken(&error))?;
+        self.file.read_exact(&mut bytes).map_err(|error| self.broken_at(&error))?;
         Ok(bytes)
     }
 
-    fn broken(&self, error: &Error) -> String {
+    fn broken_at(&self, error: &Error) -> String {
         match error.kind() {
             ErrorKind::UnexpectedEof => format!("byte {}: the file ends in the middle of a record", self.at),
             _ => format!("byte {}: {error}", self.at),
@@ -187,7 +192,7 @@ impl<'a> Records<'a> {
 }
 
 /// A chunk that is unpacked while its records are read.
-struct Packed {
+struct PackedChunk {
     reader: LinearReader,
     /// Its beginning and end in the file.
     from: u64,
@@ -198,16 +203,17 @@ struct Packed {
     at: u64,
 }
 
-impl Packed {
-    fn each(
+impl PackedChunk {
+    fn each_record(
         &mut self,
         file: &mut BufReader<&File>,
-        most: &Most<'_>,
-        hear: &mut Hear<'_>,
+        most: &MostBytes<'_>,
+        hear: &mut HearRecord<'_>,
     ) -> Result<ControlFlow<()>, String> {
         loop {
             let place = RecordPlace { file_at: self.from, within: Some(self.at) };
-            let event = contained(|| self.reader.next_event()).ok_or_else(|| format!("{place}: cannot be unpacked"))?;
+            let event =
+                run_contained(|| self.reader.next_event()).ok_or_else(|| format!("{place}: cannot be unpacked"))?;
             match event.transpose().map_err(|error| format!("{place}: {error}"))? {
                 None => return Ok(ControlFlow::Continue(())),
                 Some(LinearReadEvent::ReadRequest(count)) => {
@@ -219,9 +225,9 @@ impl Packed {
                 }
                 Some(LinearReadEvent::Record { opcode, data }) => {
                     self.at += HEAD_BYTES + data.len() as u64;
-                    let Some(most) = wanted(opcode, data, most) else { continue };
+                    let Some(most) = wanted_bytes(opcode, data, most) else { continue };
                     let bytes = usize::try_from(most).ok().and_then(|most| data.get(..most)).unwrap_or(data);
-                    if hear(Found { opcode, place, bytes })?.is_break() {
+                    if hear(McapRecord { opcode, place, bytes })?.is_break() {
                         return Ok(ControlFlow::Break(()));
                     }
                 }
@@ -231,7 +237,7 @@ impl Packed {
 }
 
 /// Most bytes of a record that are needed; `None` if it does not concern messages.
-fn wanted(opcode: u8, body: &[u8], most: &Most<'_>) -> Option<u64> {
+fn wanted_bytes(opcode: u8, body: &[u8], most: &MostBytes<'_>) -> Option<u64> {
     let id = body.first_chunk().copied().map_or(0, u16::from_le_bytes);
     match opcode {
         op::MESSAGE => Some(MESSAGE_HEAD_BYTES + most(id)),

@@ -1,17 +1,17 @@
 //! The pictures of one topic.
 
-use super::{HINT, found::RecordPlace, messages::MessageKind, pixels, records::Records};
-use crate::reel::{Reel, Take};
+use super::{MCAP_HINT, found::RecordPlace, messages::MessageKind, pixels, records::RecordReader};
+use crate::reel::{PictureReel, TakePicture};
 use mcap::records::Record;
 use std::{fs::File, ops::ControlFlow, path::PathBuf};
-use wayword_core::{Image, PlatformError, contain::decoded};
+use wayword_core::{Image, PlatformError, contain::run_decoder};
 use wayword_world::files;
 
 /// Largest message of a picture: 64 megapixels of four bytes.
 const MAX_MESSAGE_BYTES: u64 = 257 << 20;
 
 /// Pictures that are read from the file on demand.
-pub(crate) struct Pictures {
+pub(crate) struct TopicReel {
     pub(crate) file: PathBuf,
     pub(crate) topic: String,
     pub(crate) kind: MessageKind,
@@ -21,27 +21,28 @@ pub(crate) struct Pictures {
     pub(crate) times_s: Vec<f64>,
 }
 
-impl Reel for Pictures {
+impl PictureReel for TopicReel {
     fn times_s(&self) -> &[f64] {
         &self.times_s
     }
 
-    fn name(&self, number: usize) -> String {
+    fn picture_name(&self, number: usize) -> String {
         format!("{number:06}")
     }
 
-    fn pictures(&self, wanted: &[usize], take: &mut Take<'_>) -> Result<(), PlatformError> {
-        let unreadable = |error: std::io::Error| files::wrong(&self.file, error.to_string(), HINT);
+    fn hand_out_pictures(&self, wanted: &[usize], take: &mut TakePicture<'_>) -> Result<(), PlatformError> {
+        let unreadable = |error: std::io::Error| files::file_error(&self.file, error.to_string(), MCAP_HINT);
         let file = File::open(&self.file).map_err(unreadable)?;
         let length = file.metadata().map_err(unreadable)?.len();
         // One reader serves all pictures: they mostly follow each other, and a compressed chunk can only be read from
         // its start.
-        let mut records = Records::new(&file, 0, length).map_err(|why| files::wrong(&self.file, why, HINT))?;
+        let mut records =
+            RecordReader::new(&file, 0, length).map_err(|why| files::file_error(&self.file, why, MCAP_HINT))?;
         for &number in wanted {
             let place = self.places.get(number).ok_or_else(|| "there is no such picture".to_owned());
-            let picture = place.and_then(|place| self.picture(&mut records, *place)).map_err(|why| {
+            let picture = place.and_then(|place| self.read_picture(&mut records, *place)).map_err(|why| {
                 let reason = format!("picture {number} of {}: {why}", self.topic);
-                files::wrong(&self.file, reason, "repair the file with `mcap recover`, or leave this part out")
+                files::file_error(&self.file, reason, "repair the file with `mcap recover`, or leave this part out")
             })?;
             take(number, picture)?;
         }
@@ -49,15 +50,15 @@ impl Reel for Pictures {
     }
 }
 
-impl Pictures {
-    fn picture(&self, records: &mut Records<'_>, place: RecordPlace) -> Result<Image, String> {
+impl TopicReel {
+    fn read_picture(&self, records: &mut RecordReader<'_>, place: RecordPlace) -> Result<Image, String> {
         let mut picture = Err("the message is no longer there".to_owned());
-        records.go(place)?;
-        let heard = records.each(&|_| MAX_MESSAGE_BYTES, &mut |found| {
+        records.go_to(place)?;
+        let heard = records.each_record(&|_| MAX_MESSAGE_BYTES, &mut |found| {
             if found.place == place
-                && let Record::Message { data, .. } = found.record()?
+                && let Record::Message { data, .. } = found.parse_record()?
             {
-                picture = decoded(|| pixels::picture(self.kind, &data));
+                picture = run_decoder(|| pixels::decode_picture(self.kind, &data));
             }
             Ok(if found.place < place { ControlFlow::Continue(()) } else { ControlFlow::Break(()) })
         });

@@ -11,12 +11,12 @@ fn fixture(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/mcap").join(name)
 }
 
-fn read(path: &Path, described: Description) -> Result<Recording, String> {
+fn read(path: &Path, described: RecordingDescription) -> Result<Recording, String> {
     let file = McapFile::open(path, described).map_err(|error| error.to_string())?;
     file.open(&file.scenes()[0]).map_err(|error| error.to_string())
 }
 
-fn bytes_read(bytes: &[u8], described: Description) -> (TempDir, Result<Recording, String>) {
+fn bytes_read(bytes: &[u8], described: RecordingDescription) -> (TempDir, Result<Recording, String>) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("made.mcap");
     std::fs::write(&path, bytes).unwrap();
@@ -26,7 +26,7 @@ fn bytes_read(bytes: &[u8], described: Description) -> (TempDir, Result<Recordin
 
 fn pictures(recording: &Recording, wanted: &[usize]) -> Result<Vec<Image>, String> {
     let mut images = Vec::new();
-    let taken = recording.reel.pictures(wanted, &mut |number, image| {
+    let taken = recording.reel.hand_out_pictures(wanted, &mut |number, image| {
         assert_eq!(wanted[images.len()], number);
         images.push(image);
         Ok(())
@@ -47,7 +47,7 @@ fn check_colours(recording: &Recording, frames: &[usize]) {
         let step = *frame as i32;
         let expected = [20 * step, 255 - 20 * step, 40 + 80 * (step % 3)];
         assert_eq!((image.width_px(), image.height_px()), (32, 24));
-        for pixel in image.rgb().chunks(3) {
+        for pixel in image.rgb_bytes().chunks(3) {
             let off = pixel.iter().zip(expected).map(|(found, expected)| (i32::from(*found) - expected).abs());
             assert!(off.max().unwrap() <= 3, "frame {frame}: {pixel:?}, not {expected:?}");
         }
@@ -62,7 +62,7 @@ fn check_walk(recording: &Recording, frames: usize, [ahead_m, up_m]: [f64; 2]) {
     let track = recording.track.as_ref().unwrap();
     for (frame, time_s) in times_s.iter().enumerate() {
         assert!((time_s - frame as f64 * 0.5).abs() < 1e-9);
-        let fix = track.at(*time_s).unwrap();
+        let fix = track.fix_at(*time_s).unwrap();
         let (position, deg) = robot(frame);
         let heading = Heading::new(deg.to_radians()).unwrap();
         let ahead = DVec3::new(deg.to_radians().sin(), deg.to_radians().cos(), 0.0);
@@ -84,14 +84,14 @@ const ALL: [(&str, [f64; 2]); 5] = [
 #[test]
 fn recordings_of_other_programs_give_their_path() {
     for (name, camera) in ALL {
-        let recording = read(&fixture(name), Description::default()).unwrap();
+        let recording = read(&fixture(name), RecordingDescription::default()).unwrap();
         check_walk(&recording, 11, camera);
         // Any picture can be read, also backwards in the file.
         check_colours(&recording, &[9]);
         check_colours(&recording, &[0, 3, 10]);
         let fov_deg = recording.horizontal_fov_rad.map(|fov| fov.to_degrees().round());
         assert_eq!(fov_deg, Some(90.0).filter(|_| name != "tree_chunks.mcap"), "{name}");
-        assert_eq!(recording.reel.name(3), "000003");
+        assert_eq!(recording.reel.picture_name(3), "000003");
     }
 }
 
@@ -100,9 +100,9 @@ fn a_summary_gives_the_same_contents_as_all_records() {
     for (name, _) in ALL {
         let file = File::open(fixture(name)).unwrap();
         let bytes = std::fs::read(fixture(name)).unwrap();
-        let told = Contents::of(&file).unwrap();
-        let (folder, _) = bytes_read(&bytes[..bytes.len() - 8], Description::default());
-        let walked = Contents::of(&File::open(folder.path().join("made.mcap")).unwrap()).unwrap();
+        let told = McapContents::from_file(&file).unwrap();
+        let (folder, _) = bytes_read(&bytes[..bytes.len() - 8], RecordingDescription::default());
+        let walked = McapContents::from_file(&File::open(folder.path().join("made.mcap")).unwrap()).unwrap();
         assert_eq!(told.topics, walked.topics, "{name}");
         assert_eq!(places(&file, &told), places(&file, &walked), "{name}");
         // Only the end of the summary is missing.
@@ -113,9 +113,9 @@ fn a_summary_gives_the_same_contents_as_all_records() {
 }
 
 /// The places of all messages that can be read.
-fn places(file: &File, contents: &Contents) -> Vec<(String, RecordPlace)> {
+fn places(file: &File, contents: &McapContents) -> Vec<(String, RecordPlace)> {
     let mut places = Vec::new();
-    let heard = contents.messages(file, &contents.channels(|_, _| true), &mut |message| {
+    let heard = contents.each_message(file, &contents.channels_where(|_, _| true), &mut |message| {
         places.push((message.topic.to_owned(), message.place));
         Ok(ControlFlow::Continue(()))
     });
@@ -126,7 +126,7 @@ fn places(file: &File, contents: &Contents) -> Vec<(String, RecordPlace)> {
 /// The offsets of a file's compressed chunks.
 fn chunks(name: &str) -> BTreeSet<usize> {
     let file = File::open(fixture(name)).unwrap();
-    let places = places(&file, &Contents::of(&file).unwrap());
+    let places = places(&file, &McapContents::from_file(&file).unwrap());
     let chunks =
         places.iter().filter_map(|(_, place)| place.to_string().split_once(" of the chunk at byte ")?.1.parse().ok());
     chunks.collect()
@@ -138,12 +138,12 @@ fn a_file_of_a_crashed_recorder_is_read_up_to_its_break() {
         let bytes = std::fs::read(fixture(name)).unwrap();
         let mut counts = Vec::new();
         for tenths in 1..10 {
-            let (_folder, recording) = bytes_read(&bytes[..bytes.len() * tenths / 10], Description::default());
+            let (_folder, recording) = bytes_read(&bytes[..bytes.len() * tenths / 10], RecordingDescription::default());
             match recording {
                 Ok(recording) => {
                     let frames = recording.reel.times_s().len();
                     // The last picture may have come before the last pose.
-                    let placed = |at: &f64| recording.track.as_ref().is_some_and(|track| track.at(*at).is_some());
+                    let placed = |at: &f64| recording.track.as_ref().is_some_and(|track| track.fix_at(*at).is_some());
                     if recording.reel.times_s().iter().all(placed) {
                         check_walk(&recording, frames, camera);
                     } else {
@@ -168,10 +168,10 @@ fn a_file_of_a_crashed_recorder_is_read_up_to_its_break() {
 #[test]
 fn named_cameras_and_poses_are_taken() {
     let path = fixture("odometry_zstd.mcap");
-    let named = |camera: &str, poses: &str| Description {
+    let named = |camera: &str, poses: &str| RecordingDescription {
         camera: Some(camera.to_owned()).filter(|name| !name.is_empty()),
         poses: Some(poses.to_owned()).filter(|name| !name.is_empty()),
-        ..Description::default()
+        ..RecordingDescription::default()
     };
     check_walk(&read(&path, named("/camera/color/image_raw", "/odom")).unwrap(), 11, [0.2, 1.0]);
     let error = |camera, poses| read(&path, named(camera, poses)).err().unwrap();
@@ -188,7 +188,7 @@ fn named_cameras_and_poses_are_taken() {
 
 #[test]
 fn messages_compressed_by_themselves_are_recognised() {
-    let error = read(&fixture("messages_zstd.mcap"), Description::default()).err().unwrap();
+    let error = read(&fixture("messages_zstd.mcap"), RecordingDescription::default()).err().unwrap();
     assert!(error.contains("each message is compressed by itself"), "{error}");
 }
 
@@ -199,10 +199,10 @@ fn open_refuses_files_that_are_no_mcap_at_once() {
         (b"#ROSBAG V2.0\n....", "is a ROS 1 bag, not an MCAP file"),
         (b"", "is empty"),
     ] {
-        let error = bytes_read(bytes, Description::default()).1.err().unwrap();
+        let error = bytes_read(bytes, RecordingDescription::default()).1.err().unwrap();
         assert!(error.contains(told), "{error}");
     }
-    assert!(bytes_read(MAGIC, Description::default()).1.err().unwrap().contains("has no messages"));
+    assert!(bytes_read(MAGIC, RecordingDescription::default()).1.err().unwrap().contains("has no messages"));
 }
 
 /// A file that the Rust library writes, of messages: topic, schema, encoding, log time, bytes.
@@ -277,13 +277,13 @@ fn pictures_and_poses_meet_on_a_clock_that_both_have() {
             ("/image", IMAGE, "cdr", 12 * S, grey(shot[1], 9)),
             ("/pose", POSE, "cdr", 12 * S, pose(posed[1], 2.0)),
         ]);
-        let (_folder, recording) = bytes_read(&bytes, Description::default());
+        let (_folder, recording) = bytes_read(&bytes, RecordingDescription::default());
         let recording = recording.unwrap();
         let last_s = *recording.reel.times_s().last().unwrap();
-        let fix = recording.track.as_ref().unwrap().at(last_s).unwrap();
+        let fix = recording.track.as_ref().unwrap().fix_at(last_s).unwrap();
         assert_eq!(fix.position.x, expected, "{shot:?} {posed:?}");
         let last = recording.reel.times_s().len() - 1;
-        assert_eq!(pictures(&recording, &[last]).unwrap()[0].rgb(), [9, 9, 9]);
+        assert_eq!(pictures(&recording, &[last]).unwrap()[0].rgb_bytes(), [9, 9, 9]);
     }
 }
 
@@ -294,10 +294,10 @@ fn pictures_that_were_written_late_keep_their_order() {
         ("/image", IMAGE, "cdr", 11 * S, grey(10, 1)),
         ("/image", IMAGE, "cdr", 12 * S, grey(20, 2)),
     ]);
-    let (_folder, recording) = bytes_read(&bytes, Description::default());
+    let (_folder, recording) = bytes_read(&bytes, RecordingDescription::default());
     let recording = recording.unwrap();
     assert_eq!(recording.reel.times_s(), [0.0, 10.0, 20.0]);
-    let greys: Vec<u8> = pictures(&recording, &[0, 1, 2]).unwrap().iter().map(|image| image.rgb()[0]).collect();
+    let greys: Vec<u8> = pictures(&recording, &[0, 1, 2]).unwrap().iter().map(|image| image.rgb_bytes()[0]).collect();
     assert_eq!(greys, [1, 2, 3]);
     assert!(recording.track.is_none());
 }
@@ -311,7 +311,7 @@ fn errors_name_the_topics_and_a_way_out() {
         made(&[("/image", IMAGE, "cdr", 1, grey(1, 1)[..20].to_vec())]),
         made(&[("/image", IMAGE, "cdr", 1, vec![0, 9, 0, 0])]),
     ]
-    .map(|bytes| bytes_read(&bytes, Description::default()).1.err().unwrap())
+    .map(|bytes| bytes_read(&bytes, RecordingDescription::default()).1.err().unwrap())
     .map(|error| error.split_once("made.mcap").unwrap().1.to_owned())
     .into();
     for (error, expected) in errors.iter().zip([
@@ -332,7 +332,7 @@ fn an_error_about_a_cut_picture_names_its_number() {
     let mut cut = grey(1, 1);
     cut.pop();
     let bytes = made(&[("/image", IMAGE, "cdr", 1, grey(1, 1)), ("/image", IMAGE, "cdr", 2, cut)]);
-    let (_folder, recording) = bytes_read(&bytes, Description::default());
+    let (_folder, recording) = bytes_read(&bytes, RecordingDescription::default());
     let error = pictures(&recording.unwrap(), &[0, 1]).unwrap_err();
     assert!(error.contains("picture 1 of /image: message at byte"), "{error}");
 }
@@ -345,7 +345,7 @@ fn lengths_that_lie_take_no_memory() {
     for (from, to) in [(at + 1, at + 9), (at + 9 + 16, at + 9 + 24)] {
         let mut bytes = bytes.clone();
         bytes[from..to].fill(0x7f);
-        let (_folder, recording) = bytes_read(&bytes, Description::default());
+        let (_folder, recording) = bytes_read(&bytes, RecordingDescription::default());
         if let Err(error) = recording.and_then(|recording| pictures(&recording, &[0])) {
             assert!(error.contains("byte"), "{error}");
         }
@@ -361,7 +361,7 @@ fn a_damaged_chunk_in_a_file_with_a_summary_is_an_error_that_names_the_byte() {
         for damaged in [at, at + 9 + 32, at + 9 + 44] {
             let mut bytes = whole.clone();
             bytes[damaged] ^= 0x55;
-            let (_folder, recording) = bytes_read(&bytes, Description::default());
+            let (_folder, recording) = bytes_read(&bytes, RecordingDescription::default());
             let error = recording.and_then(|recording| pictures(&recording, &[0])).err().unwrap_or_default();
             assert!(error.contains(&format!("byte {at}")), "{name} {damaged}: {error}");
         }
@@ -370,7 +370,7 @@ fn a_damaged_chunk_in_a_file_with_a_summary_is_an_error_that_names_the_byte() {
 
 /// Reads all of a file that may be broken.
 fn exhaust(bytes: &[u8]) {
-    if let (_folder, Ok(recording)) = bytes_read(bytes, Description::default()) {
+    if let (_folder, Ok(recording)) = bytes_read(bytes, RecordingDescription::default()) {
         let times_s = recording.reel.times_s();
         assert!(times_s.is_sorted());
         let _ = pictures(&recording, &(0..times_s.len()).collect::<Vec<_>>());
@@ -385,7 +385,7 @@ fn a_text_that_is_longer_than_its_file_is_refused_before_it_takes_memory() {
     let record = |opcode: u8, body: &[u8]| [&[opcode][..], &(body.len() as u64).to_le_bytes(), body].concat();
     // A schema with a name that claims a length of 1.7 GB.
     let schema = record(3, &[&[1, 0][..], b"iense", &[0; 8]].concat());
-    let (_folder, read) = bytes_read(&[b"\x89MCAP0\r\n".to_vec(), schema].concat(), Description::default());
+    let (_folder, read) = bytes_read(&[b"\x89MCAP0\r\n".to_vec(), schema].concat(), RecordingDescription::default());
     let error = read.err().unwrap();
     assert!(error.contains("larger than the record"), "{error}");
 }

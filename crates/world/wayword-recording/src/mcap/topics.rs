@@ -1,9 +1,9 @@
 //! Chooses the topic of a file that is the camera, and the topic of its lens.
 
 use super::{
-    contents::Contents,
-    contents::Topic,
-    messages::{Lens, PictureHead},
+    contents::McapContents,
+    contents::McapTopic,
+    messages::{CameraLens, PictureHead},
     pixels,
 };
 use std::collections::BTreeMap;
@@ -13,29 +13,33 @@ const MAX_NAMES: usize = 20;
 /// Words in the names of topics with pictures of another kind than a person would see.
 const NO_VIEW: [&str; 9] = ["depth", "disparity", "infra", "thermal", "mask", "segment", "semantic", "label", "debug"];
 /// Words in the names of topics with pictures in colour.
-const COLOUR: [&str; 3] = ["color", "colour", "rgb"];
+const COLOUR_WORDS: [&str; 3] = ["color", "colour", "rgb"];
 
 /// The head of the first message of each camera, by topic.
-pub(crate) type Heads = BTreeMap<String, PictureHead>;
+pub(crate) type PictureHeads = BTreeMap<String, PictureHead>;
 
 /// The reason why a topic cannot be chosen, and a way out.
-pub(crate) type Unclear = (String, &'static str);
+pub(crate) type UnclearReason = (String, &'static str);
 
 const NAME_IT: &str = "write `camera = \"TOPIC\"` into a file NAME.toml beside NAME.mcap, or into recording.toml";
-const FOREIGN: &str =
+const FOREIGN_HINT: &str =
     "record sensor_msgs/msg/Image or CompressedImage with ROS 2; or write the pictures to a folder, or to an MP4 file";
 const ROS_1: &str = "convert the ROS 1 bag with `rosbags-convert --src NAME.bag --dst NAME --dst-storage mcap \
                      --dst-typestore ros2_humble` (pip install rosbags)";
 
 /// The camera's topic: the named one, or the obvious one.
-pub(crate) fn camera<'a>(contents: &'a Contents, heads: &Heads, named: Option<&str>) -> Result<&'a str, Unclear> {
+pub(crate) fn choose_camera<'a>(
+    contents: &'a McapContents,
+    heads: &PictureHeads,
+    named: Option<&str>,
+) -> Result<&'a str, UnclearReason> {
     let cameras: Vec<(&str, Option<String>)> = contents
         .topics
         .iter()
         .filter_map(|(name, topic)| {
             let kind = topic.kind.filter(|kind| kind.is_picture())?;
             // A topic has no head if all its messages come after a break in the file.
-            Some((name.as_str(), pixels::unfit(kind, &heads.get(name)?.encoding)))
+            Some((name.as_str(), pixels::unfit_reason(kind, &heads.get(name)?.encoding)))
         })
         .collect();
     if let Some(named) = named {
@@ -49,37 +53,40 @@ pub(crate) fn camera<'a>(contents: &'a Contents, heads: &Heads, named: Option<&s
         };
     }
     let fit: Vec<&str> = cameras.iter().filter(|(_, why)| why.is_none()).map(|(name, _)| *name).collect();
-    match obvious(&fit) {
+    match obvious_camera(&fit) {
         Some(camera) => Ok(camera),
-        None if fit.is_empty() => Err(none(contents, &cameras)),
-        None => Err((format!("holds several cameras: {}", listed(fit.into_iter())), NAME_IT)),
+        None if fit.is_empty() => Err(no_camera(contents, &cameras)),
+        None => Err((format!("holds several cameras: {}", list_names(fit.into_iter())), NAME_IT)),
     }
 }
 
-fn not_there(contents: &Contents, named: &str) -> String {
+fn not_there(contents: &McapContents, named: &str) -> String {
     match contents.topics.get(named) {
-        Some(topic) => format!("{named} has no pictures, but {}", told(topic)),
-        None => format!("has no camera {named}; its topics: {}", listed(contents.topics.keys().map(String::as_str))),
+        Some(topic) => format!("{named} has no pictures, but {}", describe_topic(topic)),
+        None => {
+            format!("has no camera {named}; its topics: {}", list_names(contents.topics.keys().map(String::as_str)))
+        }
     }
 }
 
-fn none(contents: &Contents, cameras: &[(&str, Option<String>)]) -> Unclear {
+fn no_camera(contents: &McapContents, cameras: &[(&str, Option<String>)]) -> UnclearReason {
     if !cameras.is_empty() {
         let why = cameras.iter().map(|(name, why)| format!("{name}: {}", why.as_deref().unwrap_or_default()));
         let why: Vec<String> = why.take(MAX_NAMES).collect();
-        return (format!("has no pictures that can be read ({})", why.join("; ")), FOREIGN);
+        return (format!("has no pictures that can be read ({})", why.join("; ")), FOREIGN_HINT);
     }
-    let topics = contents.topics.iter().take(MAX_NAMES).map(|(name, topic)| format!("{name} ({})", told(topic)));
+    let topics =
+        contents.topics.iter().take(MAX_NAMES).map(|(name, topic)| format!("{name} ({})", describe_topic(topic)));
     let topics: Vec<String> = topics.collect();
-    let hint = if contents.topics.values().any(|topic| topic.encoding == "ros1") { ROS_1 } else { FOREIGN };
+    let hint = if contents.topics.values().any(|topic| topic.encoding == "ros1") { ROS_1 } else { FOREIGN_HINT };
     match topics.is_empty() {
         true => ("has no messages".to_owned(), "record it again, with a camera's topic"),
         false => (format!("has no pictures that can be read; its topics: {}", topics.join(", ")), hint),
     }
 }
 
-fn told(topic: &Topic) -> String {
-    let Topic { schema, encoding, .. } = topic;
+fn describe_topic(topic: &McapTopic) -> String {
+    let McapTopic { schema, encoding, .. } = topic;
     if schema.is_empty() {
         format!("messages without a type, as {encoding}")
     } else {
@@ -87,7 +94,7 @@ fn told(topic: &Topic) -> String {
     }
 }
 
-pub(crate) fn listed<'a>(names: impl Iterator<Item = &'a str>) -> String {
+pub(crate) fn list_names<'a>(names: impl Iterator<Item = &'a str>) -> String {
     let names: Vec<&str> = names.collect();
     match names.len().saturating_sub(MAX_NAMES) {
         0 => names.join(", "),
@@ -97,7 +104,7 @@ pub(crate) fn listed<'a>(names: impl Iterator<Item = &'a str>) -> String {
 
 /// The obvious camera among those that can be read: the only one; else the only one without depth and the like and without
 /// doubles; else the only one of these with colour in its name.
-fn obvious<'a>(fit: &[&'a str]) -> Option<&'a str> {
+fn obvious_camera<'a>(fit: &[&'a str]) -> Option<&'a str> {
     let only = |names: &[&'a str]| if let [name] = names { Some(*name) } else { None };
     let has = |name: &str, words: &[&str]| words.iter().any(|word| name.to_ascii_lowercase().contains(word));
     let seen: Vec<&str> = fit.iter().copied().filter(|name| !has(name, &NO_VIEW)).collect();
@@ -105,12 +112,16 @@ fn obvious<'a>(fit: &[&'a str]) -> Option<&'a str> {
     let doubled =
         |name: &str| seen.iter().any(|other| *other != name && other.strip_suffix("/compressed") == Some(name));
     let seen: Vec<&str> = seen.iter().copied().filter(|name| !doubled(name)).collect();
-    let colour: Vec<&str> = seen.iter().copied().filter(|name| has(name, &COLOUR)).collect();
+    let colour: Vec<&str> = seen.iter().copied().filter(|name| has(name, &COLOUR_WORDS)).collect();
     only(fit).or_else(|| only(&seen)).or_else(|| only(&colour))
 }
 
 /// A camera's lens: that of the neighbouring topic, else those with the same frame if all of them have one field of view.
-pub(crate) fn lens<'a>(lenses: &'a BTreeMap<String, Lens>, camera: &str, frame: &str) -> Option<&'a Lens> {
+pub(crate) fn find_lens<'a>(
+    lenses: &'a BTreeMap<String, CameraLens>,
+    camera: &str,
+    frame: &str,
+) -> Option<&'a CameraLens> {
     let plain = camera.strip_suffix("/compressed").unwrap_or(camera);
     let beside = plain.rsplit_once('/').map_or("", |(parent, _)| parent);
     if let Some(lens) = lenses.get(&format!("{beside}/camera_info")) {
@@ -128,18 +139,18 @@ mod tests {
     #[test]
     fn the_colour_camera_is_obvious_and_two_of_them_are_not() {
         let depth = ["/cam/color/image_raw", "/cam/aligned_depth_to_color/image_raw", "/cam/infra1/image_rect_raw"];
-        assert_eq!(obvious(&depth), Some("/cam/color/image_raw"));
-        assert_eq!(obvious(&["/image_raw", "/image_raw/compressed"]), Some("/image_raw/compressed"));
-        assert_eq!(obvious(&["/fisheye/image", "/front/rgb/image"]), Some("/front/rgb/image"));
-        assert_eq!(obvious(&["/left/image", "/right/image"]), None);
+        assert_eq!(obvious_camera(&depth), Some("/cam/color/image_raw"));
+        assert_eq!(obvious_camera(&["/image_raw", "/image_raw/compressed"]), Some("/image_raw/compressed"));
+        assert_eq!(obvious_camera(&["/fisheye/image", "/front/rgb/image"]), Some("/front/rgb/image"));
+        assert_eq!(obvious_camera(&["/left/image", "/right/image"]), None);
         // The only camera is taken, whatever its name.
-        assert_eq!(obvious(&["/thermal/image"]), Some("/thermal/image"));
-        assert_eq!(obvious(&[]), None);
+        assert_eq!(obvious_camera(&["/thermal/image"]), Some("/thermal/image"));
+        assert_eq!(obvious_camera(&[]), None);
     }
 
     #[test]
     fn long_lists_are_cut() {
         let names: Vec<String> = (0..25).map(|at| format!("/{at}")).collect();
-        assert!(listed(names.iter().map(String::as_str)).ends_with("/19 and 5 more"));
+        assert!(list_names(names.iter().map(String::as_str)).ends_with("/19 and 5 more"));
     }
 }

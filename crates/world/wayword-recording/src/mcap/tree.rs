@@ -1,16 +1,16 @@
 //! The tree of frames that are placed in each other (`tf2`), over time.
 
-use super::messages::{Placed, Placing};
+use super::messages::{RigidTransform, StampedTransform};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Names of fixed frames, the best first (REP 105).
-const STANDING: [&str; 3] = ["map", "odom", "world"];
+const STANDING_FRAMES: [&str; 3] = ["map", "odom", "world"];
 /// Most frames of a file: no robot has more.
 const MAX_FRAMES: usize = 100_000;
 
 /// The clock by which times are read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Clock {
+pub(crate) enum MessageClock {
     /// The stamps in the messages' headers.
     Stamp,
     /// The times at which the recorder received the messages.
@@ -19,49 +19,49 @@ pub(crate) enum Clock {
 
 /// The two times of a message, nanoseconds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Times {
+pub(crate) struct MessageTimes {
     pub(crate) stamp_ns: i64,
     pub(crate) logged_ns: i64,
 }
 
-impl Times {
+impl MessageTimes {
     /// The time on a clock; `None` if that is the stamp and it is 0.
-    pub(crate) fn on(self, clock: Clock) -> Option<i64> {
+    pub(crate) fn time_on(self, clock: MessageClock) -> Option<i64> {
         match clock {
-            Clock::Stamp => Some(self.stamp_ns).filter(|stamp_ns| *stamp_ns != 0),
-            Clock::Log => Some(self.logged_ns),
+            MessageClock::Stamp => Some(self.stamp_ns).filter(|stamp_ns| *stamp_ns != 0),
+            MessageClock::Log => Some(self.logged_ns),
         }
     }
 }
 
 /// The placings of one frame in another, over time.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub(crate) struct Edge {
+pub(crate) struct TransformEdge {
     /// The frame in which it is placed.
     pub(crate) parent: String,
     /// Whether it never moves.
     pub(crate) fixed: bool,
-    pub(crate) samples: Vec<(Times, Placing)>,
+    pub(crate) samples: Vec<(MessageTimes, RigidTransform)>,
 }
 
-impl Edge {
-    fn moves(&self) -> bool {
+impl TransformEdge {
+    fn is_moving(&self) -> bool {
         !self.fixed && self.samples.len() > 1
     }
 
     /// The edge in the order of one clock; a single placing is valid at all times.
-    pub(crate) fn on(&self, clock: Clock) -> Timed {
-        if !self.moves() {
-            return Timed {
+    pub(crate) fn timed_on(&self, clock: MessageClock) -> TimedEdge {
+        if !self.is_moving() {
+            return TimedEdge {
                 samples: self.samples.last().map(|(_, placing)| (0, *placing)).into_iter().collect(),
                 moves: false,
             };
         }
-        let timed = self.samples.iter().filter_map(|(times, placing)| Some((times.on(clock)?, *placing)));
-        let mut samples: Vec<(i64, Placing)> = timed.collect();
+        let timed = self.samples.iter().filter_map(|(times, placing)| Some((times.time_on(clock)?, *placing)));
+        let mut samples: Vec<(i64, RigidTransform)> = timed.collect();
         samples.sort_by_key(|(time_ns, _)| *time_ns);
         samples.dedup_by_key(|(time_ns, _)| *time_ns);
-        Timed { samples, moves: true }
+        TimedEdge { samples, moves: true }
     }
 }
 
@@ -70,15 +70,15 @@ impl Edge {
 const MAX_GAP_NS: i64 = 10_000_000_000;
 
 /// An edge on one clock.
-pub(crate) struct Timed {
-    samples: Vec<(i64, Placing)>,
+pub(crate) struct TimedEdge {
+    samples: Vec<(i64, RigidTransform)>,
     moves: bool,
 }
 
-impl Timed {
+impl TimedEdge {
     /// The placing at a time, interpolated between the two samples around it. `None` before the first, after
     /// the last, and in gaps longer than [`MAX_GAP_NS`].
-    fn at(&self, time_ns: i64) -> Option<Placing> {
+    fn placing_at(&self, time_ns: i64) -> Option<RigidTransform> {
         if !self.moves {
             return self.samples.first().map(|(_, placing)| *placing);
         }
@@ -92,48 +92,52 @@ impl Timed {
             return None;
         }
         let share = time_ns.saturating_sub(before_ns) as f64 / after_ns.saturating_sub(before_ns) as f64;
-        Some(before.towards(after, share))
+        Some(before.interpolate_to(after, share))
     }
 }
 
 /// The placing of the first frame of a chain in the last one, at each time at which a frame of the chain moved.
-pub(crate) fn placings(chain: &[&Edge], clock: Clock) -> Vec<(i64, Placing)> {
-    let chain: Vec<Timed> = chain.iter().map(|edge| edge.on(clock)).collect();
+pub(crate) fn placings_along(chain: &[&TransformEdge], clock: MessageClock) -> Vec<(i64, RigidTransform)> {
+    let chain: Vec<TimedEdge> = chain.iter().map(|edge| edge.timed_on(clock)).collect();
     let moving = chain.iter().filter(|edge| edge.moves);
     let mut times: Vec<i64> = moving.flat_map(|edge| edge.samples.iter().map(|(time_ns, _)| *time_ns)).collect();
     times.sort_unstable();
     times.dedup();
-    let at = |time_ns: i64| chain.iter().try_fold(Placing::HERE, |inner, edge| Some(edge.at(time_ns)?.then(inner)));
+    let at = |time_ns: i64| {
+        chain.iter().try_fold(RigidTransform::IDENTITY_TRANSFORM, |inner, edge| {
+            Some(edge.placing_at(time_ns)?.compose_with(inner))
+        })
+    };
     times.into_iter().filter_map(|time_ns| Some((time_ns, at(time_ns)?))).collect()
 }
 
 /// Frames by name, each with its parent.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Tree {
+pub(crate) struct TransformTree {
     /// The camera's frame: only this and the frames above it are needed.
     camera: String,
-    edges: BTreeMap<String, Edge>,
+    edges: BTreeMap<String, TransformEdge>,
     /// The only frames that are still needed, once the way up to a fixed frame is known.
     kept: Option<BTreeSet<String>>,
 }
 
-impl Tree {
+impl TransformTree {
     pub(crate) fn new(camera: &str) -> Self {
         Self { camera: camera.to_owned(), ..Self::default() }
     }
 
     /// Adds a placing of a frame.
-    pub(crate) fn add(&mut self, logged_ns: i64, placed: Placed, fixed: bool) {
+    pub(crate) fn add_placed(&mut self, logged_ns: i64, placed: StampedTransform, fixed: bool) {
         let Some(frame) = placed.what else { return };
         let unknown = !self.edges.contains_key(&frame);
         if self.kept.as_ref().is_some_and(|kept| !kept.contains(&frame)) || (unknown && self.edges.len() == MAX_FRAMES)
         {
             return;
         }
-        let edge = self.edges.entry(frame).or_insert_with(|| Edge {
+        let edge = self.edges.entry(frame).or_insert_with(|| TransformEdge {
             parent: placed.head.frame.clone(),
             fixed,
-            ..Edge::default()
+            ..TransformEdge::default()
         });
         // If a frame changes its parent, only the first parent counts.
         if edge.parent == placed.head.frame {
@@ -141,7 +145,7 @@ impl Tree {
             if fixed {
                 edge.samples.clear();
             }
-            edge.samples.push((Times { stamp_ns: placed.head.stamp_ns, logged_ns }, placed.placing));
+            edge.samples.push((MessageTimes { stamp_ns: placed.head.stamp_ns, logged_ns }, placed.placing));
         }
         if unknown {
             self.forget_others();
@@ -149,9 +153,9 @@ impl Tree {
     }
 
     fn forget_others(&mut self) {
-        let above = self.above(&self.camera);
+        let above = self.frames_above(&self.camera);
         let root = above.last().copied().unwrap_or_default();
-        if standing(root).is_some() {
+        if standing_rank(root).is_some() {
             let kept: BTreeSet<String> = above.iter().map(|frame| (*frame).to_owned()).collect();
             self.edges.retain(|frame, _| kept.contains(frame));
             self.kept = Some(kept);
@@ -159,7 +163,7 @@ impl Tree {
     }
 
     /// A frame, its parent, and so on up to the root.
-    pub(crate) fn above<'a>(&'a self, frame: &'a str) -> Vec<&'a str> {
+    pub(crate) fn frames_above<'a>(&'a self, frame: &'a str) -> Vec<&'a str> {
         let (mut above, mut seen) = (vec![frame], BTreeSet::from([frame]));
         while let Some(edge) = above.last().and_then(|frame| self.edges.get(*frame)) {
             if !seen.insert(&edge.parent) {
@@ -171,43 +175,47 @@ impl Tree {
     }
 
     /// The edges from the camera's frame up to another one; `None` if that is not above it.
-    pub(crate) fn up_to(&self, frame: &str) -> Option<Vec<&Edge>> {
-        let above = self.above(&self.camera);
+    pub(crate) fn up_to(&self, frame: &str) -> Option<Vec<&TransformEdge>> {
+        let above = self.frames_above(&self.camera);
         let to = above.iter().position(|above| *above == frame)?;
         above[..to].iter().map(|frame| self.edges.get(*frame)).collect()
     }
 
     /// The edges from the camera's frame up to the best fixed frame. With `any`, up to the root if there is no fixed frame.
     /// `None` if there is no way, or no edge of it ever moves.
-    pub(crate) fn way_up(&self, any: bool) -> Option<Vec<&Edge>> {
-        let above = self.above(&self.camera);
-        let best = above.iter().filter_map(|frame| Some((standing(frame)?, *frame))).min().map(|(_, frame)| frame);
+    pub(crate) fn way_up(&self, any: bool) -> Option<Vec<&TransformEdge>> {
+        let above = self.frames_above(&self.camera);
+        let best = above.iter().filter_map(|frame| Some((standing_rank(frame)?, *frame))).min().map(|(_, frame)| frame);
         let way = self.up_to(best.or(above.last().copied().filter(|_| any))?)?;
-        way.iter().any(|edge| edge.moves()).then_some(way)
+        way.iter().any(|edge| edge.is_moving()).then_some(way)
     }
 }
 
-/// Index in [`STANDING`] of a frame with one of those names: `map`, `robot1/map`.
-fn standing(frame: &str) -> Option<usize> {
+/// Index in [`STANDING_FRAMES`] of a frame with one of those names: `map`, `robot1/map`.
+fn standing_rank(frame: &str) -> Option<usize> {
     let name = frame.rsplit('/').next().unwrap_or(frame);
-    STANDING.iter().position(|standing| *standing == name)
+    STANDING_FRAMES.iter().position(|standing| *standing == name)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mcap::messages::Head;
+    use crate::mcap::messages::MessageHead;
     use glam::{DQuat, DVec3};
 
-    fn placed(frame: &str, what: &str, stamp_ns: i64, x: f64) -> Placed {
-        let placing = Placing { position: DVec3::new(x, 0.0, 0.0), rotation: DQuat::IDENTITY };
-        Placed { head: Head { stamp_ns, frame: frame.to_owned() }, what: Some(what.to_owned()), placing }
+    fn placed(frame: &str, what: &str, stamp_ns: i64, x: f64) -> StampedTransform {
+        let placing = RigidTransform { position: DVec3::new(x, 0.0, 0.0), rotation: DQuat::IDENTITY };
+        StampedTransform {
+            head: MessageHead { stamp_ns, frame: frame.to_owned() },
+            what: Some(what.to_owned()),
+            placing,
+        }
     }
 
-    fn tree(all: &[(&str, &str, i64, f64, bool)]) -> Tree {
-        let mut tree = Tree::new("cam");
+    fn tree(all: &[(&str, &str, i64, f64, bool)]) -> TransformTree {
+        let mut tree = TransformTree::new("cam");
         for (frame, what, stamp_ns, x, fixed) in all {
-            tree.add(0, placed(frame, what, *stamp_ns, *x), *fixed);
+            tree.add_placed(0, placed(frame, what, *stamp_ns, *x), *fixed);
         }
         tree
     }
@@ -225,7 +233,7 @@ mod tests {
         ]);
         let way = tree.way_up(false).unwrap();
         let found: Vec<_> =
-            placings(&way, Clock::Stamp).iter().map(|(at, placing)| (*at, placing.position.x)).collect();
+            placings_along(&way, MessageClock::Stamp).iter().map(|(at, placing)| (*at, placing.position.x)).collect();
         let third = 100.0 + 100.0 / 3.0;
         assert_eq!(found.len(), 3);
         for ((at, x), (expected_at, expected)) in found.iter().zip([(10, third + 1.25), (20, 202.25), (30, 203.25)]) {
@@ -240,7 +248,7 @@ mod tests {
         let tree =
             tree(&[("odom", "cam", 1, 1.0, false), ("odom", "cam", 3, 1.0, false), ("map", "odom", 2, 10.0, true)]);
         assert_eq!(tree.way_up(false).unwrap().len(), 2);
-        assert_eq!(placings(&tree.way_up(false).unwrap(), Clock::Stamp)[1].1.position.x, 11.0);
+        assert_eq!(placings_along(&tree.way_up(false).unwrap(), MessageClock::Stamp)[1].1.position.x, 11.0);
     }
 
     #[test]

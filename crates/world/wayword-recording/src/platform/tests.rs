@@ -3,7 +3,7 @@
 use super::*;
 use ::image::{Rgb, RgbImage};
 use std::sync::Mutex;
-use wayword_core::motion::Turn;
+use wayword_core::motion::TurnKind;
 
 /// Nine pictures, each with its own pattern: 4 m north, then 4 m east, with a pose file if `poses`.
 fn walk(poses: bool) -> tempfile::TempDir {
@@ -26,9 +26,9 @@ fn walk(poses: bool) -> tempfile::TempDir {
 fn open(folder: &tempfile::TempDir) -> (RecordingPlatform, SceneId, Arc<Mutex<Vec<String>>>) {
     let heard = Arc::new(Mutex::new(Vec::new()));
     let hearing = Arc::clone(&heard);
-    let hear: Hear = Arc::new(move |line: &str| hearing.lock().unwrap().push(line.to_owned()));
+    let hear: OutputListener = Arc::new(move |line: &str| hearing.lock().unwrap().push(line.to_owned()));
     let platform = RecordingPlatform::open(folder.path(), hear).unwrap();
-    let scene = platform.scenes().unwrap().remove(0);
+    let scene = platform.list_scenes().unwrap().remove(0);
     (platform, scene, heard)
 }
 
@@ -37,15 +37,15 @@ fn a_walk_with_poses_has_moves_and_pictures_ahead() {
     let folder = walk(true);
     let (platform, scene, heard) = open(&folder);
     let path = platform.sample_path(&scene, &PathRequest::default(), 3).unwrap();
-    assert_eq!((path.frames.len(), path.motion, path.target.is_none()), (9, Motion::Known, true));
-    let turns: Vec<Turn> = path.moves().iter().map(wayword_core::Move::turn).collect();
-    assert_eq!(turns.iter().filter(|turn| **turn == Turn::Right).count(), 1, "{turns:?}");
-    assert_eq!(platform.graph(&scene).unwrap().len(), 9);
+    assert_eq!((path.frames.len(), path.motion, path.target.is_none()), (9, PathMotion::Known, true));
+    let turns: Vec<TurnKind> = path.moves().iter().map(wayword_core::PathMove::turn).collect();
+    assert_eq!(turns.iter().filter(|turn| **turn == TurnKind::Right).count(), 1, "{turns:?}");
+    assert_eq!(platform.graph_for_scene(&scene).unwrap().len(), 9);
     for (at, frame) in path.frames.iter().enumerate() {
-        let view = platform.look(&scene, frame, Gaze::quarter(frame.pose.heading)).unwrap();
-        assert_eq!(view.image.unwrap().rgb()[2], at as u8);
+        let view = platform.look_from(&scene, frame, ViewGaze::quarter_view(frame.pose.heading)).unwrap();
+        assert_eq!(view.image.unwrap().rgb_bytes()[2], at as u8);
 
-        let behind = platform.look(&scene, frame, Gaze::around(frame.pose.heading)[2]).unwrap();
+        let behind = platform.look_from(&scene, frame, ViewGaze::around_heading(frame.pose.heading)[2]).unwrap();
         assert!(behind.image.is_none());
     }
     assert!(heard.lock().unwrap()[0].contains("9 pictures, 9 frames"), "{heard:?}");
@@ -56,14 +56,14 @@ fn a_walk_without_poses_knows_its_order_alone() {
     let folder = walk(false);
     let (platform, scene, heard) = open(&folder);
     let path = platform.sample_path(&scene, &PathRequest { hops: 2..=3, ..PathRequest::default() }, 3).unwrap();
-    assert_eq!(path.motion, Motion::Unknown);
+    assert_eq!(path.motion, PathMotion::Unknown);
     assert!(path.moves().is_empty());
     assert!((3..=4).contains(&path.frames.len()));
-    assert!(platform.graph(&scene).unwrap().is_empty());
+    assert!(platform.graph_for_scene(&scene).unwrap().is_empty());
     let names: Vec<&str> = path.frames.iter().map(|frame| frame.viewpoint.as_ref().unwrap().as_str()).collect();
     assert!(names.iter().all(|name| name.ends_with(".png")), "{names:?}");
     let first = &path.frames[0];
-    assert!(platform.look(&scene, first, Gaze::quarter(first.pose.heading)).unwrap().image.is_some());
+    assert!(platform.look_from(&scene, first, ViewGaze::quarter_view(first.pose.heading)).unwrap().image.is_some());
     assert!(heard.lock().unwrap()[0].contains("no poses"));
 }
 
@@ -100,7 +100,7 @@ fn no_path_leads_over_a_gap_in_the_track() {
     }
     assert!(platform.sample_path(&scene, &request(5.0..=30.0), 0).is_err());
     let id = |name: &str| ViewpointId::new(name).unwrap();
-    let graph = platform.graph(&scene).unwrap();
+    let graph = platform.graph_for_scene(&scene).unwrap();
     assert!(graph.shortest_path(&id("6.png"), &id("8.png")).unwrap().is_some());
     assert!(graph.shortest_path(&id("2.png"), &id("6.png")).unwrap().is_none());
     assert!(heard.lock().unwrap()[0].contains("1 gap that no path crosses"), "{heard:?}");
@@ -127,15 +127,15 @@ fn check_reports_all_unreadable_recordings_of_the_scenes() {
     let shelf = with_unreadable();
     let (platform, ..) = open(&shelf);
     let scenes: Vec<SceneId> = ["a", "b", "phone", "torn", "elsewhere"].map(|name| SceneId::new(name).unwrap()).into();
-    let told = platform.check(&scenes.iter().collect()).unwrap_err().to_string();
+    let told = platform.check_scenes(&scenes.iter().collect()).unwrap_err().to_string();
     assert!(told.contains("2 of 4 recordings cannot be read") && told.contains("--scan"), "{told}");
     assert!(told.contains("1.jpg: is an HEIC picture") && told.contains("heif-convert"), "{told}");
     assert!(told.contains("torn/1.png: cannot be decoded as a picture"), "{told}");
-    platform.check(&scenes[..2].iter().collect()).unwrap();
+    platform.check_scenes(&scenes[..2].iter().collect()).unwrap();
     let alone = RecordingPlatform::open(&shelf.path().join("phone"), Arc::new(|_: &str| {})).unwrap();
-    let told = alone.check(&scenes.iter().collect()).unwrap_err().to_string();
+    let told = alone.check_scenes(&scenes.iter().collect()).unwrap_err().to_string();
     assert!(told.contains("1.jpg: is an HEIC picture, neither PNG nor JPEG"), "{told}");
-    assert!(alone.graph(&scenes[2]).unwrap_err().to_string().contains("HEIC"));
+    assert!(alone.graph_for_scene(&scenes[2]).unwrap_err().to_string().contains("HEIC"));
 }
 
 #[test]
@@ -144,16 +144,16 @@ fn an_unopened_recording_reports_its_error_when_used() {
     std::fs::write(shelf.path().join("b/2.heic"), b"\0\0\0\x1cftypheic\0\0\0\0mif1heic").unwrap();
     let (platform, ..) = open(&shelf);
     let [a, b] = ["a", "b"].map(|name| SceneId::new(name).unwrap());
-    platform.check(&BTreeSet::from([&a])).unwrap();
-    let told = platform.check(&BTreeSet::from([&a, &b])).unwrap_err().to_string();
+    platform.check_scenes(&BTreeSet::from([&a])).unwrap();
+    let told = platform.check_scenes(&BTreeSet::from([&a, &b])).unwrap_err().to_string();
     assert!(told.contains("1 of 4 recordings cannot be read"), "{told}");
     assert!(told.contains("holds pictures, but 2.heic is an HEIC picture"), "{told}");
-    assert!(platform.graph(&b).unwrap_err().to_string().contains("2.heic"));
+    assert!(platform.graph_for_scene(&b).unwrap_err().to_string().contains("2.heic"));
 }
 
 /// The names of the files that a scene is read from.
 fn files(platform: &RecordingPlatform, scene: &str) -> Vec<String> {
-    let files = platform.files(&SceneId::new(scene).unwrap()).unwrap();
+    let files = platform.source_files(&SceneId::new(scene).unwrap()).unwrap();
     files.iter().map(|file| file.file_name().unwrap().to_str().unwrap().to_owned()).collect()
 }
 
@@ -173,7 +173,7 @@ fn files_of_a_folder_are_its_pictures_poses_and_description() {
     let (platform, ..) = open(&shelf);
     assert_eq!(files(&platform, "a"), ["1.png", "2.png", "poses.csv", "recording.toml"]);
     assert_eq!(files(&platform, "b"), ["1.png"]);
-    assert!(matches!(platform.files(&SceneId::new("c").unwrap()), Err(PlatformError::UnknownScene { .. })));
+    assert!(matches!(platform.source_files(&SceneId::new("c").unwrap()), Err(PlatformError::UnknownScene { .. })));
 }
 
 #[cfg(all(feature = "mcap", feature = "video"))]
@@ -196,12 +196,12 @@ fn unknown_scenes_and_viewpoints_are_refused() {
     let (platform, scene, _) = open(&folder);
     let mut frame = platform.sample_path(&scene, &PathRequest::default(), 0).unwrap().frames.remove(0);
     frame.viewpoint = Some(ViewpointId::new("nothing").unwrap());
-    let gaze = Gaze::quarter(frame.pose.heading);
-    assert!(matches!(platform.look(&scene, &frame, gaze), Err(PlatformError::UnknownViewpoint { .. })));
+    let gaze = ViewGaze::quarter_view(frame.pose.heading);
+    assert!(matches!(platform.look_from(&scene, &frame, gaze), Err(PlatformError::UnknownViewpoint { .. })));
     frame.viewpoint = None;
-    assert!(matches!(platform.look(&scene, &frame, gaze), Err(PlatformError::NotAViewpoint { .. })));
+    assert!(matches!(platform.look_from(&scene, &frame, gaze), Err(PlatformError::NotAViewpoint { .. })));
     let other = SceneId::new("other").unwrap();
-    assert!(matches!(platform.graph(&other), Err(PlatformError::UnknownScene { .. })));
+    assert!(matches!(platform.graph_for_scene(&other), Err(PlatformError::UnknownScene { .. })));
     let nowhere = RecordingPlatform::open(FilePath::new("/nowhere"), Arc::new(|_: &str| {}));
     assert!(nowhere.err().unwrap().to_string().contains("there is no such file or folder"));
 }
@@ -209,13 +209,13 @@ fn unknown_scenes_and_viewpoints_are_refused() {
 #[test]
 fn large_pictures_are_made_as_large_as_other_worlds_have_them() {
     let large = Image::new(1280, 720, vec![90; 1280 * 720 * 3]).unwrap();
-    let small = scaled(&large);
+    let small = scale_down(&large);
     assert_eq!((small.width_px(), small.height_px()), (640, 360));
-    assert!(small.rgb().iter().all(|level| *level == 90));
+    assert!(small.rgb_bytes().iter().all(|level| *level == 90));
     // A phone that was held upright.
-    let upright = scaled(&Image::new(720, 1280, vec![90; 1280 * 720 * 3]).unwrap());
+    let upright = scale_down(&Image::new(720, 1280, vec![90; 1280 * 720 * 3]).unwrap());
     assert_eq!((upright.width_px(), upright.height_px()), (360, 640));
-    assert_eq!(scaled(&upright), upright);
+    assert_eq!(scale_down(&upright), upright);
 }
 
 #[test]
@@ -226,11 +226,11 @@ fn a_doubt_about_poses_is_reported() {
     let csv: String = (0..=8).map(line).collect();
     std::fs::write(folder.path().join("poses.csv"), format!("image,x,y,z\n{csv}")).unwrap();
     let (platform, scene, heard) = open(&folder);
-    platform.graph(&scene).unwrap();
+    platform.graph_for_scene(&scene).unwrap();
     assert!(heard.lock().unwrap().iter().any(|line| line.contains("write world = \"y-up\"")), "{heard:?}");
     std::fs::write(folder.path().join("recording.toml"), "world = \"y-up\"").unwrap();
     let (platform, scene, heard) = open(&folder);
-    platform.graph(&scene).unwrap();
+    platform.graph_for_scene(&scene).unwrap();
     assert_eq!(heard.lock().unwrap().len(), 1, "{heard:?}");
 }
 

@@ -5,7 +5,7 @@ use std::f64::consts::FRAC_PI_2;
 
 /// A path in a world with z up: its places, with an OpenGL camera that looks along each step, tilted down by some
 /// radians.
-fn walk(places: &[[f64; 3]], tilt_rad: f64) -> Vec<Sample> {
+fn walk(places: &[[f64; 3]], tilt_rad: f64) -> Vec<PoseSample> {
     let places: Vec<DVec3> = places.iter().map(|place| DVec3::from(*place)).collect();
     let mut samples = Vec::new();
     let mut ahead = DVec3::Y;
@@ -16,48 +16,54 @@ fn walk(places: &[[f64; 3]], tilt_rad: f64) -> Vec<Sample> {
         let held = Some([right, right.cross(looking), -looking]);
         let steps = (pair[0].distance(pair[1]) / 0.25).ceil();
         let at = |step: usize| pair[0].lerp(pair[1], step as f64 / steps);
-        samples.extend((0..steps as usize).map(|step| Sample { position: at(step), held }));
+        samples.extend((0..steps as usize).map(|step| PoseSample { position: at(step), held }));
     }
     samples
 }
 
 /// A path through rooms: north, east, south, with 5 cm of bobbing.
-fn level() -> Vec<Sample> {
+fn level() -> Vec<PoseSample> {
     walk(&[[0.0, 0.0, 1.5], [0.0, 6.0, 1.55], [5.0, 6.0, 1.5], [5.0, 1.0, 1.55]], 0.2)
 }
 
 /// The same poses in a world with y up.
-fn with_y_up(samples: Vec<Sample>) -> Vec<Sample> {
+fn with_y_up(samples: Vec<PoseSample>) -> Vec<PoseSample> {
     let turn = |place: DVec3| DVec3::new(place.x, place.z, -place.y);
-    let turned =
-        |sample: Sample| Sample { position: turn(sample.position), held: sample.held.map(|held| held.map(turn)) };
+    let turned = |sample: PoseSample| PoseSample {
+        position: turn(sample.position),
+        held: sample.held.map(|held| held.map(turn)),
+    };
     samples.into_iter().map(turned).collect()
 }
 
-fn without_orientation(samples: Vec<Sample>) -> Vec<Sample> {
-    samples.into_iter().map(|sample| Sample { held: None, ..sample }).collect()
+fn without_orientation(samples: Vec<PoseSample>) -> Vec<PoseSample> {
+    samples.into_iter().map(|sample| PoseSample { held: None, ..sample }).collect()
 }
 
-fn found(samples: &[Sample], axes: Axes) -> Option<Doubt> {
-    doubt(samples, axes, &Description::default())
+fn found(samples: &[PoseSample], axes: PoseAxes) -> Option<PoseDoubt> {
+    find_doubt(samples, axes, &RecordingDescription::default())
 }
 
-const OPEN_GL: Axes = Axes::of(Body::OpenGl);
+const OPEN_GL: PoseAxes = PoseAxes::for_body(PoseBody::OpenGl);
 
 #[test]
 fn y_up_taken_for_z_up_is_refused_with_the_setting_that_mends_it() {
     let samples = with_y_up(level());
-    let Some(Doubt::Misread(words)) = found(&samples, OPEN_GL) else { panic!("it is misread") };
+    let Some(PoseDoubt::Misread(words)) = found(&samples, OPEN_GL) else { panic!("it is misread") };
     assert!(words.contains("Write world = \"y-up\" into a recording.toml"), "{words}");
-    assert_eq!(found(&samples, Axes { world: World::YUp, ..OPEN_GL }), None);
+    assert_eq!(found(&samples, PoseAxes { world: WorldUpAxis::YUp, ..OPEN_GL }), None);
     // What the user set is not questioned.
-    let described = Description { world: Some(World::ZUp), orientation: Some(Body::OpenGl), ..Description::default() };
-    assert_eq!(doubt(&samples, OPEN_GL, &described), None);
+    let described = RecordingDescription {
+        world: Some(WorldUpAxis::ZUp),
+        orientation: Some(PoseBody::OpenGl),
+        ..RecordingDescription::default()
+    };
+    assert_eq!(find_doubt(&samples, OPEN_GL, &described), None);
 }
 
 #[test]
 fn both_settings_are_named_where_both_are_wrong() {
-    let Some(Doubt::Misread(words)) = found(&with_y_up(level()), Axes::of(Body::Robot)) else {
+    let Some(PoseDoubt::Misread(words)) = found(&with_y_up(level()), PoseAxes::for_body(PoseBody::Robot)) else {
         panic!("it is misread")
     };
     assert!(words.contains("Write world = \"y-up\" and orientation = \"open-gl\" into"), "{words}");
@@ -65,18 +71,20 @@ fn both_settings_are_named_where_both_are_wrong() {
 
 #[test]
 fn a_body_that_is_taken_for_another_is_odd() {
-    let Some(Doubt::Odd(words)) = found(&level(), Axes::of(Body::Robot)) else { panic!("it is odd") };
+    let Some(PoseDoubt::Odd(words)) = found(&level(), PoseAxes::for_body(PoseBody::Robot)) else { panic!("it is odd") };
     assert!(words.contains("Write orientation = \"open-gl\" into"), "{words}");
 }
 
 #[test]
 fn places_alone_that_keep_to_an_upright_plane_are_odd() {
-    let Some(Doubt::Odd(words)) = found(&without_orientation(with_y_up(level())), OPEN_GL) else { panic!("it is odd") };
+    let Some(PoseDoubt::Odd(words)) = found(&without_orientation(with_y_up(level())), OPEN_GL) else {
+        panic!("it is odd")
+    };
     assert!(words.contains("write world = \"y-up\""), "{words}");
     assert_eq!(found(&without_orientation(level()), OPEN_GL), None);
-    let described = Description { world: Some(World::ZUp), ..Description::default() };
+    let described = RecordingDescription { world: Some(WorldUpAxis::ZUp), ..RecordingDescription::default() };
     assert_eq!(
-        doubt(&without_orientation(with_y_up(level())), OPEN_GL, &described),
+        find_doubt(&without_orientation(with_y_up(level())), OPEN_GL, &described),
         None,
         "what the user set is not questioned"
     );
@@ -97,14 +105,14 @@ fn drones_and_lifts_are_not_refused() {
     let rise = [[0.0, 0.0, 0.0], [0.0, 0.0, 20.0], [30.0, 0.0, 20.0], [30.0, 40.0, 25.0], [30.0, 40.0, 0.0]];
     let lift = [[0.0, 0.0, 1.5], [0.0, 6.0, 1.5], [0.0, 6.0, 13.5], [0.0, 0.0, 13.5]];
     for (places, tilt_rad) in [(&rise[..], 0.5), (&rise[..], FRAC_PI_2), (&rise[1..3], FRAC_PI_2), (&lift[..], 0.2)] {
-        for world in [World::ZUp, World::YUp] {
+        for world in [WorldUpAxis::ZUp, WorldUpAxis::YUp] {
             let samples = walk(places, tilt_rad);
-            let samples = if world == World::YUp { with_y_up(samples) } else { samples };
-            let axes = Axes { world, ..OPEN_GL };
+            let samples = if world == WorldUpAxis::YUp { with_y_up(samples) } else { samples };
+            let axes = PoseAxes { world, ..OPEN_GL };
             let told = found(&samples, axes);
-            assert!(!matches!(told, Some(Doubt::Misread(_))), "{places:?} {tilt_rad}: {told:?}");
+            assert!(!matches!(told, Some(PoseDoubt::Misread(_))), "{places:?} {tilt_rad}: {told:?}");
             let told = found(&without_orientation(samples), axes);
-            assert!(!matches!(told, Some(Doubt::Misread(_))), "{places:?}: {told:?}");
+            assert!(!matches!(told, Some(PoseDoubt::Misread(_))), "{places:?}: {told:?}");
         }
     }
 }
@@ -113,10 +121,10 @@ fn drones_and_lifts_are_not_refused() {
 fn a_camera_on_its_head_is_odd_and_a_short_walk_is_not_judged() {
     let upside_down = level().into_iter().map(|sample| {
         let held = sample.held.map(|[x, y, z]| [-x, -y, z]);
-        Sample { held, ..sample }
+        PoseSample { held, ..sample }
     });
     // Read as an optical frame it would be upright and look back, so the warning names that frame.
     let told = found(&upside_down.collect::<Vec<_>>(), OPEN_GL);
-    assert!(matches!(&told, Some(Doubt::Odd(words)) if words.contains("orientation = \"optical\"")), "{told:?}");
+    assert!(matches!(&told, Some(PoseDoubt::Odd(words)) if words.contains("orientation = \"optical\"")), "{told:?}");
     assert_eq!(found(&with_y_up(walk(&[[0.0, 0.0, 1.5], [0.0, 2.0, 1.5]], 0.2)), OPEN_GL), None);
 }

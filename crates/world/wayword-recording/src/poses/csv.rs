@@ -1,22 +1,22 @@
 //! Reads poses from CSV with a header: a time or a picture, a position, and optionally the direction of the camera.
 
-use super::rows::{Facing, Of, Row, Rows, number, seconds};
-use crate::axes::{Axes, Body};
+use super::rows::{PoseFacing, PoseKey, PoseRow, PoseRows, parse_number, seconds_in_unit};
+use crate::axes::{PoseAxes, PoseBody};
 use wayword_core::DVec3;
 
 /// The number of each column that is read.
-struct Columns {
-    of: Index,
+struct CsvColumns {
+    of: CsvKeyColumn,
     position: [usize; 3],
-    facing: Seat,
+    facing: CsvFacing,
 }
 
-enum Index {
+enum CsvKeyColumn {
     Time { column: usize, unit: Option<&'static str> },
     Picture(usize),
 }
 
-enum Seat {
+enum CsvFacing {
     Nowhere,
     Quaternion([usize; 4]),
     Yaw { column: usize, per_unit_rad: f64 },
@@ -25,33 +25,34 @@ enum Seat {
 
 /// The beginning of EuRoC's names for positions.
 const EUROC_POSITION: &str = "p_rs_r_";
-const HEADER: &str = "the header needs a column `time_s` or `image`, and `x`, `y`, `z`; `qx`, `qy`, `qz`, `qw`, \
+const HEADER_HINT: &str = "the header needs a column `time_s` or `image`, and `x`, `y`, `z`; `qx`, `qy`, `qz`, `qw`, \
                       `yaw_rad` or `heading_deg` say where the camera looks";
 
 /// Reads the rows of a CSV file.
-pub(super) fn read(text: &str) -> Result<Rows, String> {
+pub(super) fn read_csv(text: &str) -> Result<PoseRows, String> {
     let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
     let (_, header) = lines.next().ok_or("is empty")?;
-    let names: Vec<String> = Cells::of(header.trim_start_matches('\u{feff}')).plain.into_iter().map(name_of).collect();
-    let columns = Columns::of(&names).ok_or_else(|| format!("line 1: {HEADER}"))?;
-    let rows = lines
-        .filter(|(_, line)| !line.starts_with('#'))
-        .map(|(at, line)| columns.row(&Cells::of(line)).map_err(|reason| format!("line {}: {reason}", at + 1)));
+    let names: Vec<String> =
+        CsvCells::from_line(header.trim_start_matches('\u{feff}')).plain.into_iter().map(name_of).collect();
+    let columns = CsvColumns::from_names(&names).ok_or_else(|| format!("line 1: {HEADER_HINT}"))?;
+    let rows = lines.filter(|(_, line)| !line.starts_with('#')).map(|(at, line)| {
+        columns.read_row(&CsvCells::from_line(line)).map_err(|reason| format!("line {}: {reason}", at + 1))
+    });
     // The sensor of EuRoC has z ahead and x up (`body_T_cam` in its sensor.yaml).
     let is_euroc = header.to_ascii_lowercase().contains(EUROC_POSITION);
-    let body = if is_euroc { Body::Optical } else { Body::Robot };
-    Ok(Rows { usual: Axes::of(body), knows_above: !is_euroc, rows: rows.collect::<Result<_, _>>()? })
+    let body = if is_euroc { PoseBody::Optical } else { PoseBody::Robot };
+    Ok(PoseRows { usual: PoseAxes::for_body(body), knows_above: !is_euroc, rows: rows.collect::<Result<_, _>>()? })
 }
 
 /// The cells of a line, up to a quoted cell that contains the separator: all cells after that one would be shifted.
-struct Cells<'a> {
+struct CsvCells<'a> {
     plain: Vec<&'a str>,
     /// The separator that the first unread cell contains, if there is such a cell.
     held: Option<char>,
 }
 
-impl<'a> Cells<'a> {
-    fn of(line: &'a str) -> Self {
+impl<'a> CsvCells<'a> {
+    fn from_line(line: &'a str) -> Self {
         let between = if line.contains(';') && !line.contains(',') { ';' } else { ',' };
         let is_plain = |cell: &&str| !cell.starts_with('"') || (cell.len() > 1 && cell.ends_with('"'));
         let cells = || line.split(between).map(str::trim);
@@ -81,47 +82,52 @@ fn name_of(cell: &str) -> String {
     if matches!(unit, "s" | "ms" | "us" | "ns" | "rad" | "deg") { format!("{name}_{unit}") } else { name }
 }
 
-impl Columns {
-    fn of(names: &[String]) -> Option<Self> {
+impl CsvColumns {
+    fn from_names(names: &[String]) -> Option<Self> {
         let find = |name: &str| names.iter().position(|other| other == name);
         let any = |names: &[&str]| names.iter().find_map(|name| find(name));
         let time = || {
-            let bare = any(&["time", "timestamp", "t", "stamp"]).map(|column| Index::Time { column, unit: None });
+            let bare =
+                any(&["time", "timestamp", "t", "stamp"]).map(|column| CsvKeyColumn::Time { column, unit: None });
             let with_unit = ["s", "ms", "us", "ns"].into_iter().find_map(|unit| {
                 let names = ["time", "timestamp", "t", "stamp"].map(|name| format!("{name}_{unit}"));
                 let column = names.iter().find_map(|name| find(name))?;
-                Some(Index::Time { column, unit: Some(unit) })
+                Some(CsvKeyColumn::Time { column, unit: Some(unit) })
             });
             with_unit.or(bare)
         };
-        let of = any(&["image", "file", "filename", "picture", "name"]).map(Index::Picture).or_else(time)?;
+        let of = any(&["image", "file", "filename", "picture", "name"]).map(CsvKeyColumn::Picture).or_else(time)?;
         let axis = |axis: &str| any(&[axis, &format!("t{axis}"), &format!("p{axis}"), &format!("{axis}_m")]);
-        Some(Self { of, position: [axis("x")?, axis("y")?, axis("z").or_else(|| axis("x"))?], facing: Seat::of(&find) })
+        Some(Self {
+            of,
+            position: [axis("x")?, axis("y")?, axis("z").or_else(|| axis("x"))?],
+            facing: CsvFacing::from_columns(&find),
+        })
     }
 
-    fn row(&self, cells: &Cells<'_>) -> Result<Row, String> {
+    fn read_row(&self, cells: &CsvCells<'_>) -> Result<PoseRow, String> {
         let cell = |column: usize| cells.get(column);
-        let value = |column: usize| number(cell(column)?);
+        let value = |column: usize| parse_number(cell(column)?);
         let of = match self.of {
-            Index::Time { column, unit } => Of::Time(seconds(value(column)?, unit)),
-            Index::Picture(column) => Of::Picture(cell(column)?.to_owned()),
+            CsvKeyColumn::Time { column, unit } => PoseKey::Time(seconds_in_unit(value(column)?, unit)),
+            CsvKeyColumn::Picture(column) => PoseKey::Picture(cell(column)?.to_owned()),
         };
         let [x, y, z] = self.position;
         // A robot on a plane has no z.
         let height_m = if z == x { 0.0 } else { value(z)? };
         let position = DVec3::new(value(x)?, value(y)?, height_m);
         let facing = match self.facing {
-            Seat::Nowhere => Facing::Unknown,
-            Seat::Quaternion([x, y, z, w]) => Facing::Quaternion([value(x)?, value(y)?, value(z)?, value(w)?]),
-            Seat::Yaw { column, per_unit_rad } => Facing::Yaw(value(column)? * per_unit_rad),
-            Seat::Heading { column, per_unit_rad } => Facing::Heading(value(column)? * per_unit_rad),
+            CsvFacing::Nowhere => PoseFacing::Unknown,
+            CsvFacing::Quaternion([x, y, z, w]) => PoseFacing::Quaternion([value(x)?, value(y)?, value(z)?, value(w)?]),
+            CsvFacing::Yaw { column, per_unit_rad } => PoseFacing::Yaw(value(column)? * per_unit_rad),
+            CsvFacing::Heading { column, per_unit_rad } => PoseFacing::Heading(value(column)? * per_unit_rad),
         };
-        Ok(Row { of, position, facing })
+        Ok(PoseRow { of, position, facing })
     }
 }
 
-impl Seat {
-    fn of(find: &dyn Fn(&str) -> Option<usize>) -> Self {
+impl CsvFacing {
+    fn from_columns(find: &dyn Fn(&str) -> Option<usize>) -> Self {
         let quaternion = || Some(Self::Quaternion([find("qx")?, find("qy")?, find("qz")?, find("qw")?]));
         let rad_per_deg = 1_f64.to_radians();
         let angle = |name: &str| {

@@ -1,7 +1,7 @@
 //! Reads poses from JSON: Wayword's own list of poses, or NeRF's `transforms.json`.
 
-use super::rows::{Facing, Of, Row, Rows, seconds};
-use crate::axes::{Axes, Body};
+use super::rows::{PoseFacing, PoseKey, PoseRow, PoseRows, seconds_in_unit};
+use crate::axes::{PoseAxes, PoseBody};
 use serde::Deserialize;
 use wayword_core::DVec3;
 
@@ -9,14 +9,14 @@ use wayword_core::DVec3;
 #[derive(Deserialize)]
 #[serde(untagged)]
 enum PoseFile {
-    Transforms { frames: Vec<Framed> },
-    Poses { poses: Vec<Posed> },
-    List(Vec<Posed>),
+    Transforms { frames: Vec<NerfFrame> },
+    Poses { poses: Vec<JsonPose> },
+    List(Vec<JsonPose>),
 }
 
 /// A frame of `transforms.json`.
 #[derive(Deserialize)]
-struct Framed {
+struct NerfFrame {
     file_path: String,
     /// world_from_camera, row by row.
     transform_matrix: Vec<[f64; 4]>,
@@ -25,7 +25,7 @@ struct Framed {
 /// A pose of Wayword's own format.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Posed {
+struct JsonPose {
     #[serde(default)]
     time_s: Option<f64>,
     #[serde(default)]
@@ -40,55 +40,58 @@ struct Posed {
     heading_deg: Option<f64>,
 }
 
-const EXPECTED: &str = "expected `transforms.json`, or a list of {\"image\" or \"time_s\", \"position\": [x, y, z]} \
+const EXPECTED_JSON: &str = "expected `transforms.json`, or a list of {\"image\" or \"time_s\", \"position\": [x, y, z]} \
                         with \"orientation\": [x, y, z, w], \"yaw_rad\" or \"heading_deg\"";
 
 /// Reads the rows of a JSON file.
-pub(super) fn read(text: &str) -> Result<Rows, String> {
+pub(super) fn read_json(text: &str) -> Result<PoseRows, String> {
     // The error of an untagged enum does not name the fault, so invalid JSON is reported first.
     let value: serde_json::Value = serde_json::from_str(text).map_err(|error| error.to_string())?;
-    match PoseFile::deserialize(value).map_err(|_| EXPECTED.to_owned())? {
+    match PoseFile::deserialize(value).map_err(|_| EXPECTED_JSON.to_owned())? {
         PoseFile::Transforms { frames } => {
-            let rows = frames.into_iter().enumerate().map(|(at, framed)| framed.row().ok_or((at, "frame")));
-            rows_of(Axes::of(Body::OpenGl), rows)
+            let rows = frames.into_iter().enumerate().map(|(at, framed)| framed.into_row().ok_or((at, "frame")));
+            rows_of(PoseAxes::for_body(PoseBody::OpenGl), rows)
         }
         PoseFile::Poses { poses } | PoseFile::List(poses) => {
-            let rows = poses.into_iter().enumerate().map(|(at, posed)| posed.row().ok_or((at, "pose")));
-            rows_of(Axes::of(Body::Robot), rows)
+            let rows = poses.into_iter().enumerate().map(|(at, posed)| posed.into_row().ok_or((at, "pose")));
+            rows_of(PoseAxes::for_body(PoseBody::Robot), rows)
         }
     }
 }
 
-fn rows_of(usual: Axes, rows: impl Iterator<Item = Result<Row, (usize, &'static str)>>) -> Result<Rows, String> {
-    let rows = rows.collect::<Result<_, _>>().map_err(|(at, what)| format!("{what} {at}: {EXPECTED}"))?;
-    Ok(Rows { usual, knows_above: true, rows })
+fn rows_of(
+    usual: PoseAxes,
+    rows: impl Iterator<Item = Result<PoseRow, (usize, &'static str)>>,
+) -> Result<PoseRows, String> {
+    let rows = rows.collect::<Result<_, _>>().map_err(|(at, what)| format!("{what} {at}: {EXPECTED_JSON}"))?;
+    Ok(PoseRows { usual, knows_above: true, rows })
 }
 
-impl Framed {
-    fn row(self) -> Option<Row> {
+impl NerfFrame {
+    fn into_row(self) -> Option<PoseRow> {
         let [a, b, c, ..] = *self.transform_matrix.as_slice() else { return None };
         let column = |at: usize| DVec3::new(a[at], b[at], c[at]);
-        Some(Row {
-            of: Of::Picture(self.file_path),
+        Some(PoseRow {
+            of: PoseKey::Picture(self.file_path),
             position: column(3),
-            facing: Facing::Columns([column(0), column(1), column(2)]),
+            facing: PoseFacing::Columns([column(0), column(1), column(2)]),
         })
     }
 }
 
-impl Posed {
-    fn row(self) -> Option<Row> {
+impl JsonPose {
+    fn into_row(self) -> Option<PoseRow> {
         let of = match (self.image, self.time_s) {
-            (Some(image), _) => Of::Picture(image),
-            (None, Some(time_s)) => Of::Time(seconds(time_s, Some("s"))),
+            (Some(image), _) => PoseKey::Picture(image),
+            (None, Some(time_s)) => PoseKey::Time(seconds_in_unit(time_s, Some("s"))),
             (None, None) => return None,
         };
         let facing = match (self.orientation, self.heading_deg, self.yaw_rad) {
-            (Some(quaternion), ..) => Facing::Quaternion(quaternion),
-            (_, Some(deg), _) => Facing::Heading(deg.to_radians()),
-            (.., Some(rad)) => Facing::Yaw(rad),
-            _ => Facing::Unknown,
+            (Some(quaternion), ..) => PoseFacing::Quaternion(quaternion),
+            (_, Some(deg), _) => PoseFacing::Heading(deg.to_radians()),
+            (.., Some(rad)) => PoseFacing::Yaw(rad),
+            _ => PoseFacing::Unknown,
         };
-        Some(Row { of, position: DVec3::from_array(self.position), facing })
+        Some(PoseRow { of, position: DVec3::from_array(self.position), facing })
     }
 }

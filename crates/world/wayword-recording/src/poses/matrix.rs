@@ -1,11 +1,11 @@
 //! Reads poses from lines of bare numbers: TUM (`time x y z qx qy qz qw`) and KITTI (a 3 x 4 matrix per picture).
 
-use super::rows::{Facing, Of, Row, Rows, number, seconds};
-use crate::axes::{Axes, Body, World};
+use super::rows::{PoseFacing, PoseKey, PoseRow, PoseRows, parse_number, seconds_in_unit};
+use crate::axes::{PoseAxes, PoseBody, WorldUpAxis};
 use wayword_core::DVec3;
 
 /// Reads either format; the length of the first line decides between them.
-pub(super) fn read(text: &str) -> Result<Rows, String> {
+pub(super) fn read_matrix(text: &str) -> Result<PoseRows, String> {
     let lines = text.lines().enumerate().filter(|(_, line)| {
         let line = line.trim();
         !line.is_empty() && !line.starts_with('#')
@@ -17,11 +17,11 @@ pub(super) fn read(text: &str) -> Result<Rows, String> {
             .split([' ', '\t', ','])
             .filter(|word| !word.is_empty())
             .take(13)
-            .map(number)
+            .map(parse_number)
             .collect::<Result<_, _>>()
             .map_err(|reason| format!("line {}: {reason}", at + 1))?;
         let expected = *columns.get_or_insert(numbers.len());
-        let row = if numbers.len() == expected { row(&numbers, rows.len()) } else { None };
+        let row = if numbers.len() == expected { row_from_numbers(&numbers, rows.len()) } else { None };
         rows.push(row.ok_or_else(|| {
             let count = numbers.len();
             let at = at + 1;
@@ -31,22 +31,22 @@ pub(super) fn read(text: &str) -> Result<Rows, String> {
             )
         })?);
     }
-    let kitti = Axes { world: World::YDown, ..Axes::of(Body::Optical) };
-    let usual = if columns == Some(12) { kitti } else { Axes::of(Body::Optical) };
-    Ok(Rows { usual, knows_above: true, rows })
+    let kitti = PoseAxes { world: WorldUpAxis::YDown, ..PoseAxes::for_body(PoseBody::Optical) };
+    let usual = if columns == Some(12) { kitti } else { PoseAxes::for_body(PoseBody::Optical) };
+    Ok(PoseRows { usual, knows_above: true, rows })
 }
 
-fn row(numbers: &[f64], at: usize) -> Option<Row> {
+fn row_from_numbers(numbers: &[f64], at: usize) -> Option<PoseRow> {
     match *numbers {
-        [time, x, y, z, qx, qy, qz, qw] => Some(Row {
-            of: Of::Time(seconds(time, None)),
+        [time, x, y, z, qx, qy, qz, qw] => Some(PoseRow {
+            of: PoseKey::Time(seconds_in_unit(time, None)),
             position: DVec3::new(x, y, z),
-            facing: Facing::Quaternion([qx, qy, qz, qw]),
+            facing: PoseFacing::Quaternion([qx, qy, qz, qw]),
         }),
-        [a, b, c, x, d, e, f, y, g, h, i, z] => Some(Row {
-            of: Of::Number(at),
+        [a, b, c, x, d, e, f, y, g, h, i, z] => Some(PoseRow {
+            of: PoseKey::Number(at),
             position: DVec3::new(x, y, z),
-            facing: Facing::Columns([DVec3::new(a, d, g), DVec3::new(b, e, h), DVec3::new(c, f, i)]),
+            facing: PoseFacing::Columns([DVec3::new(a, d, g), DVec3::new(b, e, h), DVec3::new(c, f, i)]),
         }),
         _ => None,
     }

@@ -6,18 +6,18 @@ mod matrix;
 mod rows;
 
 use crate::{
-    axes::{Axes, World},
-    describe::Description,
-    plausible::{self, Doubt},
-    track::Track,
+    axes::{PoseAxes, WorldUpAxis},
+    describe::RecordingDescription,
+    plausible::{self, PoseDoubt},
+    track::CameraTrack,
 };
-use rows::{Facing, Of};
+use rows::{PoseFacing, PoseKey};
 use std::path::{Component, Path, PathBuf};
 use wayword_core::PlatformError;
 use wayword_world::files;
 
 const MAX_FILE_BYTES: u64 = 256 << 20;
-const HINT: &str = "docs/RECORDINGS.md shows the pose files that can be read";
+const POSE_FILE_HINT: &str = "docs/RECORDINGS.md shows the pose files that can be read";
 /// Names of a folder's pose file, in the order in which they are tried.
 const IN_FOLDER: [&str; 6] =
     ["poses.json", "poses.csv", "poses.tum", "poses.txt", "groundtruth.txt", "transforms.json"];
@@ -27,7 +27,7 @@ const IN_FOLDER: [&str; 6] =
 ///
 /// # Errors
 /// When the description names a file that does not exist.
-pub(crate) fn beside(path: &Path, described: &Description) -> Result<Option<PathBuf>, PlatformError> {
+pub(crate) fn find_pose_file(path: &Path, described: &RecordingDescription) -> Result<Option<PathBuf>, PlatformError> {
     let folder = if path.is_dir() { path } else { path.parent().unwrap_or(Path::new(".")) };
     if let Some(named) = &described.poses {
         let plain = Path::new(named).components().all(|part| matches!(part, Component::Normal(_)));
@@ -36,7 +36,7 @@ pub(crate) fn beside(path: &Path, described: &Description) -> Result<Option<Path
             Ok(Some(file))
         } else {
             let reason = format!("poses = {named:?} is not a file in the recording's folder");
-            Err(files::wrong(folder, reason, crate::describe::HINT))
+            Err(files::file_error(folder, reason, crate::describe::DESCRIPTION_HINT))
         };
     }
     let candidates: Vec<PathBuf> = if path.is_dir() {
@@ -51,30 +51,30 @@ pub(crate) fn beside(path: &Path, described: &Description) -> Result<Option<Path
 ///
 /// # Errors
 /// When it cannot be read, or has no pose for any of these pictures.
-pub(crate) fn track(
+pub(crate) fn read_track(
     file: &Path,
-    described: &Description,
+    described: &RecordingDescription,
     times_s: &[f64],
     name: &dyn Fn(usize) -> String,
-) -> Result<Track, PlatformError> {
-    let wrong = |reason: String| files::wrong(file, reason, HINT);
-    let text =
-        files::text_if_there(file, MAX_FILE_BYTES, HINT)?.ok_or_else(|| wrong("there is no such file".into()))?;
+) -> Result<CameraTrack, PlatformError> {
+    let wrong = |reason: String| files::file_error(file, reason, POSE_FILE_HINT);
+    let text = files::text_if_there(file, MAX_FILE_BYTES, POSE_FILE_HINT)?
+        .ok_or_else(|| wrong("there is no such file".into()))?;
     let ending = file.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
     let read = match ending {
-        "json" => json::read(&text),
-        "csv" => csv::read(&text),
-        _ => matrix::read(&text),
+        "json" => json::read_json(&text),
+        "csv" => csv::read_csv(&text),
+        _ => matrix::read_matrix(&text),
     }
     .map_err(wrong)?;
-    let axes = described.axes(read.usual);
-    let doubt = plausible::doubt(&read.samples(), axes, described);
+    let axes = described.axes_or_usual(read.usual);
+    let doubt = plausible::find_doubt(&read.samples(), axes, described);
     let rows = read.rows;
-    if axes.world != World::ZUp && rows.iter().any(|row| matches!(row.facing, Facing::Yaw(_))) {
+    if axes.world != WorldUpAxis::ZUp && rows.iter().any(|row| matches!(row.facing, PoseFacing::Yaw(_))) {
         return Err(wrong("a yaw turns about z, so `world` must be z-up".into()));
     }
-    if let Some(Doubt::Misread(reason)) = doubt {
-        return Err(files::wrong(file, reason, crate::describe::HINT));
+    if let Some(PoseDoubt::Misread(reason)) = doubt {
+        return Err(files::file_error(file, reason, crate::describe::DESCRIPTION_HINT));
     }
     let none = if rows.is_empty() {
         "holds no poses"
@@ -82,7 +82,7 @@ pub(crate) fn track(
         "has no usable pose: the pictures that it names or counts are not here, or its positions are not valid"
     };
     let track = on_clock(rows, axes, times_s, name).ok_or_else(|| wrong(none.into()))?;
-    if !times_s.iter().any(|time_s| track.at(*time_s).is_some()) {
+    if !times_s.iter().any(|time_s| track.fix_at(*time_s).is_some()) {
         let ((from, to), first, last) =
             (track.span_s(), times_s.first().unwrap_or(&0.0), times_s.last().unwrap_or(&0.0));
         return Err(wrong(format!(
@@ -91,32 +91,37 @@ pub(crate) fn track(
         )));
     }
     Ok(match doubt {
-        Some(Doubt::Odd(words)) => track.in_doubt(format!("{}: {words}", file.display())),
+        Some(PoseDoubt::Odd(words)) => track.in_doubt(format!("{}: {words}", file.display())),
         _ => track,
     })
 }
 
 /// Converts rows into fixes. Rows of pictures that do not exist are left out.
-fn on_clock(rows: Vec<rows::Row>, axes: Axes, times_s: &[f64], name: &dyn Fn(usize) -> String) -> Option<Track> {
-    let by_name = rows.iter().any(|row| matches!(row.of, Of::Picture(_)));
+fn on_clock(
+    rows: Vec<rows::PoseRow>,
+    axes: PoseAxes,
+    times_s: &[f64],
+    name: &dyn Fn(usize) -> String,
+) -> Option<CameraTrack> {
+    let by_name = rows.iter().any(|row| matches!(row.of, PoseKey::Picture(_)));
     let mut named: Vec<(String, f64)> = Vec::new();
     if by_name {
-        named = times_s.iter().enumerate().map(|(at, time_s)| (rows::stem(&name(at)), *time_s)).collect();
+        named = times_s.iter().enumerate().map(|(at, time_s)| (rows::picture_stem(&name(at)), *time_s)).collect();
         named.sort_by(|a, b| a.0.cmp(&b.0));
     }
     let fixes = rows.into_iter().filter_map(|row| {
         let time_s = match &row.of {
-            Of::Time(time_s) => Some(*time_s),
-            Of::Number(number) => times_s.get(*number).copied(),
-            Of::Picture(picture) => {
-                let stem = rows::stem(picture);
+            PoseKey::Time(time_s) => Some(*time_s),
+            PoseKey::Number(number) => times_s.get(*number).copied(),
+            PoseKey::Picture(picture) => {
+                let stem = rows::picture_stem(picture);
                 let found = named.binary_search_by(|(other, _)| other.as_str().cmp(&stem)).ok();
                 found.map(|at| named[at].1)
             }
         };
-        Some(row.fix(time_s?, axes))
+        Some(row.fix_at(time_s?, axes))
     });
-    Track::new(fixes.collect())
+    CameraTrack::new(fixes.collect())
 }
 
 #[cfg(test)]

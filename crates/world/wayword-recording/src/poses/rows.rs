@@ -1,33 +1,33 @@
 //! The common form of a line of a pose file, in every format.
 
 use crate::{
-    axes::{Axes, columns},
-    plausible::Sample,
-    track::Fix,
+    axes::{PoseAxes, rotation_columns},
+    plausible::PoseSample,
+    track::TrackFix,
 };
 use std::path::Path;
 use wayword_core::{DVec3, Heading};
 
 /// The poses of a file, and the axes that its format usually has.
 #[derive(Debug)]
-pub(super) struct Rows {
-    pub(super) usual: Axes,
+pub(super) struct PoseRows {
+    pub(super) usual: PoseAxes,
     /// Whether the body's up direction is known. For EuRoC's sensor only the direction ahead is.
     pub(super) knows_above: bool,
-    pub(super) rows: Vec<Row>,
+    pub(super) rows: Vec<PoseRow>,
 }
 
 /// A pose as it was recorded.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Row {
-    pub(super) of: Of,
+pub(super) struct PoseRow {
+    pub(super) of: PoseKey,
     pub(super) position: DVec3,
-    pub(super) facing: Facing,
+    pub(super) facing: PoseFacing,
 }
 
 /// The time or the picture that a pose belongs to.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Of {
+pub(super) enum PoseKey {
     /// A time, seconds.
     Time(f64),
     /// A picture, by the name of its file.
@@ -38,7 +38,7 @@ pub(super) enum Of {
 
 /// The direction in which the body looks.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Facing {
+pub(super) enum PoseFacing {
     Unknown,
     /// recorded_from_body as x, y, z, w.
     Quaternion([f64; 4]),
@@ -50,35 +50,36 @@ pub(super) enum Facing {
     Heading(f64),
 }
 
-impl Row {
+impl PoseRow {
     /// The fix for this pose at a time, in Wayword's frame.
-    pub(super) fn fix(&self, time_s: f64, axes: Axes) -> Fix {
+    pub(super) fn fix_at(&self, time_s: f64, axes: PoseAxes) -> TrackFix {
         let heading = match self.facing {
-            Facing::Unknown => None,
-            Facing::Quaternion(quaternion) => axes.heading(quaternion),
-            Facing::Columns(columns) => axes.heading_by_columns(columns),
-            Facing::Yaw(yaw_rad) => axes.heading_by_yaw(yaw_rad),
-            Facing::Heading(rad) => Heading::new(rad + axes.mount_rad).ok(),
+            PoseFacing::Unknown => None,
+            PoseFacing::Quaternion(quaternion) => axes.heading_by_quaternion(quaternion),
+            PoseFacing::Columns(columns) => axes.heading_by_columns(columns),
+            PoseFacing::Yaw(yaw_rad) => axes.heading_by_yaw(yaw_rad),
+            PoseFacing::Heading(rad) => Heading::new(rad + axes.mount_rad).ok(),
         };
-        Fix { time_s, position: axes.wayword_from_recorded(self.position), heading }
+        TrackFix { time_s, position: axes.wayword_from_recorded(self.position), heading }
     }
 }
 
-impl Rows {
+impl PoseRows {
     /// The poses as they were recorded.
-    pub(super) fn samples(&self) -> Vec<Sample> {
-        let held = |facing: Facing| match facing {
-            Facing::Quaternion(quaternion) => columns(quaternion),
-            Facing::Columns(columns) => Some(columns),
-            Facing::Unknown | Facing::Yaw(_) | Facing::Heading(_) => None,
+    pub(super) fn samples(&self) -> Vec<PoseSample> {
+        let held = |facing: PoseFacing| match facing {
+            PoseFacing::Quaternion(quaternion) => rotation_columns(quaternion),
+            PoseFacing::Columns(columns) => Some(columns),
+            PoseFacing::Unknown | PoseFacing::Yaw(_) | PoseFacing::Heading(_) => None,
         };
-        let sample = |row: &Row| Sample { position: row.position, held: held(row.facing).filter(|_| self.knows_above) };
+        let sample =
+            |row: &PoseRow| PoseSample { position: row.position, held: held(row.facing).filter(|_| self.knows_above) };
         self.rows.iter().map(sample).collect()
     }
 }
 
 /// The part of a picture's name that is compared. A pose file may add a folder and an ending to it.
-pub(super) fn stem(name: &str) -> String {
+pub(super) fn picture_stem(name: &str) -> String {
     let path = Path::new(name);
     let known = path
         .extension()
@@ -90,13 +91,13 @@ pub(super) fn stem(name: &str) -> String {
 
 /// Parses a number; the error is in words. `nan` is accepted, because trackers write it while they are lost; such rows are
 /// dropped later.
-pub(super) fn number(text: &str) -> Result<f64, String> {
+pub(super) fn parse_number(text: &str) -> Result<f64, String> {
     text.trim().parse().map_err(|_| format!("{:?} is not a number", text.chars().take(40).collect::<String>()))
 }
 
 /// A time in seconds from a number and the unit in its column's name. Without a unit the number is in seconds, unless
 /// it is so large that it can only be a time since 1970 in milliseconds, microseconds or nanoseconds.
-pub(super) fn seconds(number: f64, unit: Option<&str>) -> f64 {
+pub(super) fn seconds_in_unit(number: f64, unit: Option<&str>) -> f64 {
     let per_s = match unit {
         Some("ns") => 1e9,
         Some("us") => 1e6,

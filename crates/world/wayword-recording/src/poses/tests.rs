@@ -5,22 +5,22 @@ use proptest::prelude::*;
 use wayword_core::DVec3;
 
 /// Reads a pose file for pictures `0.png`, `1.png`, ... that were taken a second apart from `from_s` on.
-fn read(name: &str, text: &str, from_s: f64, described: &Description) -> Result<Track, String> {
+fn read(name: &str, text: &str, from_s: f64, described: &RecordingDescription) -> Result<CameraTrack, String> {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join(name);
     std::fs::write(&file, text).unwrap();
     let times_s: Vec<f64> = (0..4).map(|at| from_s + f64::from(at)).collect();
-    track(&file, described, &times_s, &|at| format!("{at}.png")).map_err(|error| error.to_string())
+    read_track(&file, described, &times_s, &|at| format!("{at}.png")).map_err(|error| error.to_string())
 }
 
-fn at(track: &Track, time_s: f64) -> (DVec3, f64) {
-    let fix = track.at(time_s).unwrap();
+fn at(track: &CameraTrack, time_s: f64) -> (DVec3, f64) {
+    let fix = track.fix_at(time_s).unwrap();
     (fix.position, fix.heading.unwrap().deg().round() % 360.0)
 }
 
 #[test]
 fn every_pose_format_gives_the_same_walk() {
-    let usual = Description::default();
+    let usual = RecordingDescription::default();
     // Two metres east, looking east.
     let files = [
         (
@@ -55,26 +55,27 @@ fn every_pose_format_gives_the_same_walk() {
 #[test]
 fn kitti_counts_pictures_and_has_y_down() {
     let text = "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 -1 0 0 1 3\n";
-    let track = read("poses.txt", text, 0.0, &Description::default()).unwrap();
+    let track = read("poses.txt", text, 0.0, &RecordingDescription::default()).unwrap();
     assert_eq!(at(&track, 1.0), (DVec3::new(0.0, 3.0, 1.0), 0.0));
 }
 
 #[test]
 fn a_tracker_that_was_lost_leaves_no_pose() {
     let text = "10 0 0 1.5 -0.5 0.5 -0.5 0.5\n11 nan nan nan nan nan nan nan\n12 2 0 1.5 -0.5 0.5 -0.5 0.5\n";
-    let track = read("poses.tum", text, 10.0, &Description::default()).unwrap();
+    let track = read("poses.tum", text, 10.0, &RecordingDescription::default()).unwrap();
     assert_eq!(at(&track, 11.0).0, DVec3::new(1.0, 0.0, 1.5));
 }
 
 #[test]
 fn clocks_that_never_meet_are_reported_with_both_time_spans() {
-    let error = read("poses.csv", "time,x,y\n5,0,0\n6,1,1\n", 1_700_000_000.0, &Description::default()).unwrap_err();
+    let error =
+        read("poses.csv", "time,x,y\n5,0,0\n6,1,1\n", 1_700_000_000.0, &RecordingDescription::default()).unwrap_err();
     assert!(error.contains("from 5 to 6 s") && error.contains("from 1700000000"), "{error}");
 }
 
 #[test]
 fn pose_file_errors_name_the_line() {
-    let usual = Description::default();
+    let usual = RecordingDescription::default();
     for (name, text, told) in [
         ("poses.csv", "time,x\n1,2\n", "line 1: the header needs"),
         ("poses.csv", "time,x,y\n1,2,here\n", "line 2: \"here\" is not a number"),
@@ -99,13 +100,13 @@ fn euroc_looks_along_z() {
     // The first pose of V1_01_easy: the camera looks east and down, the sensor's x axis up.
     let text = "#timestamp [ns],p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],q_RS_y [],q_RS_z []\n\
                 0,0.878612,2.142470,0.947262,0.060514,-0.828459,-0.058956,-0.553641\n";
-    let track = read("poses.csv", text, 0.0, &Description::default()).unwrap();
+    let track = read("poses.csv", text, 0.0, &RecordingDescription::default()).unwrap();
     assert_eq!(at(&track, 0.0).1, 80.0);
 }
 
 #[test]
 fn a_yaw_needs_a_world_with_z_up() {
-    let described = Description { world: Some(World::YUp), ..Description::default() };
+    let described = RecordingDescription { world: Some(WorldUpAxis::YUp), ..RecordingDescription::default() };
     let error = read("poses.csv", "time_s,x,y,z,yaw_rad\n0,0,0,0,0\n", 0.0, &described).unwrap_err();
     assert!(error.contains("z-up"), "{error}");
     assert!(read("poses.csv", "time_s,x,y,z,heading_deg\n0,0,0,0,0\n", 0.0, &described).is_ok());
@@ -119,13 +120,16 @@ fn a_pose_file_is_found_by_its_name_and_never_outside() {
     std::fs::write(folder.path().join("secret.csv"), "").unwrap();
     std::fs::write(folder.path().join("walk.csv"), "").unwrap();
     std::fs::write(folder.path().join("walk.mp4"), "").unwrap();
-    let usual = Description::default();
-    assert_eq!(beside(&inside, &usual).unwrap(), None);
-    assert_eq!(beside(&folder.path().join("walk.mp4"), &usual).unwrap(), Some(folder.path().join("walk.csv")));
+    let usual = RecordingDescription::default();
+    assert_eq!(find_pose_file(&inside, &usual).unwrap(), None);
+    assert_eq!(find_pose_file(&folder.path().join("walk.mp4"), &usual).unwrap(), Some(folder.path().join("walk.csv")));
     for named in ["../secret.csv", "none.csv", "/etc/hostname"] {
-        let described = Description { poses: Some(named.into()), ..Description::default() };
+        let described = RecordingDescription { poses: Some(named.into()), ..RecordingDescription::default() };
         assert!(
-            beside(&inside, &described).unwrap_err().to_string().contains("is not a file in the recording's folder"),
+            find_pose_file(&inside, &described)
+                .unwrap_err()
+                .to_string()
+                .contains("is not a file in the recording's folder"),
             "{named}"
         );
     }
@@ -134,7 +138,7 @@ fn a_pose_file_is_found_by_its_name_and_never_outside() {
 proptest! {
     #[test]
     fn no_file_makes_it_panic(text in "(time|x|y|z|qw|image|[0-9.,;# \\-\n\"\\[\\]{}:e]){0,60}", ending in "(csv|json|tum)") {
-        let _ = read(&format!("poses.{ending}"), &text, 0.0, &Description::default());
+        let _ = read(&format!("poses.{ending}"), &text, 0.0, &RecordingDescription::default());
     }
 }
 
@@ -152,17 +156,21 @@ fn with_y_up(is_held: bool) -> String {
 
 #[test]
 fn a_level_walk_that_would_climb_is_refused_until_the_user_sets_the_axes() {
-    let usual = Description::default();
+    let usual = RecordingDescription::default();
     let error = read("poses.csv", &with_y_up(true), 0.0, &usual).unwrap_err();
     assert!(error.contains("poses.csv") && error.contains("path climbs straight up"), "{error}");
     assert!(error.contains("Write world = \"y-up\" and orientation = \"open-gl\" into a recording.toml"), "{error}");
-    let meant = Description { world: Some(World::YUp), orientation: Some(crate::axes::Body::OpenGl), ..usual };
+    let meant = RecordingDescription {
+        world: Some(WorldUpAxis::YUp),
+        orientation: Some(crate::axes::PoseBody::OpenGl),
+        ..usual
+    };
     let track = read("poses.csv", &with_y_up(true), 0.0, &meant).unwrap();
     assert_eq!((at(&track, 2.0), track.doubt()), ((DVec3::new(0.0, 4.0, 1.5), 0.0), None));
 }
 
 #[test]
 fn positions_alone_that_would_climb_raise_a_doubt() {
-    let track = read("poses.csv", &with_y_up(false), 0.0, &Description::default()).unwrap();
+    let track = read("poses.csv", &with_y_up(false), 0.0, &RecordingDescription::default()).unwrap();
     assert!(track.doubt().unwrap().contains("write world = \"y-up\" into a recording.toml"), "{:?}", track.doubt());
 }

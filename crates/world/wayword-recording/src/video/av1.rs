@@ -1,21 +1,21 @@
 //! Decodes AV1 with rav1d, a port of dav1d to Rust.
 
 use super::{
-    colour::{Chroma, Colour, Plane, Planes},
-    decoder::{Coded, Decode, Out, size_is_possible},
+    colour::{ChromaPlanes, PicturePlane, PicturePlanes, StreamColour},
+    decoder::{CodedSample, SampleDecoder, TakePlanes, size_is_possible},
 };
 use crate::size::MAX_PIXELS;
 use re_rav1d::dav1d::{Decoder, Error, Picture, PixelLayout, PlanarImageComponent, Settings, pixel::YUVRange};
 
 /// A decoder of one stream.
-pub(super) struct Av1 {
+pub(super) struct Av1Decoder {
     decoder: Decoder,
     /// The colours that the container gives.
-    colour: Colour,
+    colour: StreamColour,
 }
 
-impl Av1 {
-    pub(super) fn new(colour: Colour) -> Result<Self, String> {
+impl Av1Decoder {
+    pub(super) fn new(colour: StreamColour) -> Result<Self, String> {
         let mut settings = Settings::new();
         // With one thread and no delay, no picture stays in the decoder.
         settings.set_n_threads(1);
@@ -26,7 +26,7 @@ impl Av1 {
     }
 
     /// Hands out all pictures that the decoder has ready.
-    fn drain(&mut self, out: &mut Out<'_>) -> Result<(), String> {
+    fn drain_pictures(&mut self, out: &mut TakePlanes<'_>) -> Result<(), String> {
         loop {
             match self.decoder.get_picture() {
                 Ok(picture) => hand_out(&picture, self.colour, out)?,
@@ -37,12 +37,12 @@ impl Av1 {
     }
 }
 
-impl Decode for Av1 {
-    fn feed(&mut self, coded: Coded<'_>, out: &mut Out<'_>) -> Result<(), String> {
+impl SampleDecoder for Av1Decoder {
+    fn feed(&mut self, coded: CodedSample<'_>, out: &mut TakePlanes<'_>) -> Result<(), String> {
         let sample = i64::try_from(coded.sample).ok();
         let mut sent = self.decoder.send_data(coded.bytes.to_vec(), None, sample, None);
         loop {
-            self.drain(out)?;
+            self.drain_pictures(out)?;
             match sent {
                 Ok(()) => return Ok(()),
                 Err(Error::Again) => sent = self.decoder.send_pending_data(),
@@ -51,12 +51,12 @@ impl Decode for Av1 {
         }
     }
 
-    fn finish(&mut self, out: &mut Out<'_>) -> Result<(), String> {
-        self.drain(out)
+    fn finish(&mut self, out: &mut TakePlanes<'_>) -> Result<(), String> {
+        self.drain_pictures(out)
     }
 }
 
-fn hand_out(picture: &Picture, container: Colour, out: &mut Out<'_>) -> Result<(), String> {
+fn hand_out(picture: &Picture, container: StreamColour, out: &mut TakePlanes<'_>) -> Result<(), String> {
     let sample = picture
         .timestamp()
         .and_then(|sample| usize::try_from(sample).ok())
@@ -72,26 +72,26 @@ fn hand_out(picture: &Picture, container: Colour, out: &mut Out<'_>) -> Result<(
     let brightness = picture.plane(Y);
     let chroma = shifts.map(|shifts| (picture.plane(U), picture.plane(V), shifts));
     let stride = |component| picture.stride(component) as usize;
-    let chroma = chroma.as_ref().map(|(blue, red, (shift_x, shift_y))| Chroma {
-        blue: Plane { bytes: blue.as_ref(), stride: stride(U) },
-        red: Plane { bytes: red.as_ref(), stride: stride(V) },
+    let chroma = chroma.as_ref().map(|(blue, red, (shift_x, shift_y))| ChromaPlanes {
+        blue: PicturePlane { bytes: blue.as_ref(), stride: stride(U) },
+        red: PicturePlane { bytes: red.as_ref(), stride: stride(V) },
         shift_x: *shift_x,
         shift_y: *shift_y,
     });
-    let planes = Planes {
+    let planes = PicturePlanes {
         width_px: picture.width(),
         height_px: picture.height(),
         bits: picture.bit_depth() as u32,
-        brightness: Plane { bytes: brightness.as_ref(), stride: stride(Y) },
+        brightness: PicturePlane { bytes: brightness.as_ref(), stride: stride(Y) },
         chroma,
-        colour: said(picture).or(container),
+        colour: stream_colour(picture).or(container),
     };
     out(sample, &planes)
 }
 
 /// The colours that the stream gives.
-fn said(picture: &Picture) -> Colour {
+fn stream_colour(picture: &Picture) -> StreamColour {
     let full_range = Some(picture.color_range() == YUVRange::Full);
-    let matrix = Colour::coded(picture.matrix_coefficients() as u32);
-    Colour { matrix, full_range }
+    let matrix = StreamColour::matrix_from_code(picture.matrix_coefficients() as u32);
+    StreamColour { matrix, full_range }
 }

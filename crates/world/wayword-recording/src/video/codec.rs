@@ -1,25 +1,25 @@
 //! The codecs that can be read.
 
 use super::{
-    av1::Av1,
-    colour::Colour,
-    decoder::Decode,
-    h264::{self, H264},
+    av1::Av1Decoder,
+    colour::StreamColour,
+    decoder::SampleDecoder,
+    h264::{self, H264Decoder},
 };
 
 /// A codec that can be read, with the settings of its decoder.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) enum Codec {
-    H264(h264::Setup),
+pub(super) enum ReadableCodec {
+    H264(h264::H264Setup),
     /// With the colours that the container gives.
-    Av1(Colour),
+    Av1(StreamColour),
 }
 
-impl Codec {
-    pub(super) fn decoder(&self) -> Result<Box<dyn Decode>, String> {
+impl ReadableCodec {
+    pub(super) fn new_decoder(&self) -> Result<Box<dyn SampleDecoder>, String> {
         Ok(match self {
-            Self::H264(setup) => Box::new(H264::new(setup)?),
-            Self::Av1(colour) => Box::new(Av1::new(*colour)?),
+            Self::H264(setup) => Box::new(H264Decoder::new(setup)?),
+            Self::Av1(colour) => Box::new(Av1Decoder::new(*colour)?),
         })
     }
 

@@ -4,23 +4,23 @@
 use wayword_core::Image;
 
 /// Fixed point: 1.0.
-const ONE: f64 = 65536.0;
+const FIXED_POINT_ONE: f64 = 65536.0;
 /// The value of `matrix_coefficients` that leaves the matrix open.
-const UNSPECIFIED: u32 = 2;
+const UNSPECIFIED_MATRIX: u32 = 2;
 
 /// The colours that a stream or its container gives; `None` for those that it leaves open.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(super) struct Colour {
+pub(super) struct StreamColour {
     /// `matrix_coefficients` of H.273, table 4.
     pub(super) matrix: Option<u32>,
     /// Whether black is 0 and white the largest number.
     pub(super) full_range: Option<bool>,
 }
 
-impl Colour {
+impl StreamColour {
     /// A matrix as streams write it; `None` where it is unspecified.
-    pub(super) fn coded(matrix: u32) -> Option<u32> {
-        (matrix != UNSPECIFIED).then_some(matrix)
+    pub(super) fn matrix_from_code(matrix: u32) -> Option<u32> {
+        (matrix != UNSPECIFIED_MATRIX).then_some(matrix)
     }
 
     /// The colours of `self`, and those of `other` for the ones that `self` leaves open.
@@ -30,7 +30,7 @@ impl Colour {
 
     /// Weights of red and blue in the brightness. The default is BT.601, because ffmpeg, OpenCV and so LeRobot write it
     /// at every picture size.
-    fn weights(self) -> Result<(f64, f64), String> {
+    fn brightness_weights(self) -> Result<(f64, f64), String> {
         match self.matrix.unwrap_or(6) {
             1 => Ok((0.2126, 0.0722)),
             4 => Ok((0.30, 0.11)),
@@ -44,13 +44,13 @@ impl Colour {
 
 /// One plane: rows from the top.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Plane<'a> {
+pub(super) struct PicturePlane<'a> {
     pub(super) bytes: &'a [u8],
     /// Distance from one row to the next, bytes.
     pub(super) stride: usize,
 }
 
-impl<'a> Plane<'a> {
+impl<'a> PicturePlane<'a> {
     fn row(self, y: usize, bytes: usize) -> Option<&'a [u8]> {
         let start = self.stride.checked_mul(y)?;
         self.bytes.get(start..start.checked_add(bytes)?)
@@ -59,28 +59,28 @@ impl<'a> Plane<'a> {
 
 /// Planes of colour differences. A shift is the number of bits by which the plane is smaller in that direction.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Chroma<'a> {
-    pub(super) blue: Plane<'a>,
-    pub(super) red: Plane<'a>,
+pub(super) struct ChromaPlanes<'a> {
+    pub(super) blue: PicturePlane<'a>,
+    pub(super) red: PicturePlane<'a>,
     pub(super) shift_x: u32,
     pub(super) shift_y: u32,
 }
 
 /// A decoded picture.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Planes<'a> {
+pub(super) struct PicturePlanes<'a> {
     pub(super) width_px: u32,
     pub(super) height_px: u32,
     /// Bits of a sample: 8 take one byte, more take two.
     pub(super) bits: u32,
-    pub(super) brightness: Plane<'a>,
+    pub(super) brightness: PicturePlane<'a>,
     /// `None` if all is grey.
-    pub(super) chroma: Option<Chroma<'a>>,
-    pub(super) colour: Colour,
+    pub(super) chroma: Option<ChromaPlanes<'a>>,
+    pub(super) colour: StreamColour,
 }
 
 /// Factors in fixed point.
-struct Factors {
+struct RgbFactors {
     black: i32,
     grey: i32,
     brightness: i32,
@@ -90,10 +90,10 @@ struct Factors {
     blue: i32,
 }
 
-impl Factors {
+impl RgbFactors {
     /// H.273, section 8.3, equations 21 to 23 and 39 to 44.
-    fn new(colour: Colour, bits: u32) -> Result<Self, String> {
-        let (kr, kb) = colour.weights()?;
+    fn new(colour: StreamColour, bits: u32) -> Result<Self, String> {
+        let (kr, kb) = colour.brightness_weights()?;
         let kg = 1.0 - kr - kb;
         let unit = 1 << (bits - 8);
         let (black, steps, chroma_steps) = match colour.full_range {
@@ -101,7 +101,7 @@ impl Factors {
             _ => (16 * unit, 219 * unit, 224 * unit),
         };
         let chroma = 255.0 / f64::from(chroma_steps);
-        let fixed = |factor: f64| (factor * ONE).round() as i32;
+        let fixed = |factor: f64| (factor * FIXED_POINT_ONE).round() as i32;
         Ok(Self {
             black,
             grey: 128 * unit,
@@ -113,7 +113,7 @@ impl Factors {
         })
     }
 
-    fn rgb(&self, brightness: i32, blue: i32, red: i32) -> [u8; 3] {
+    fn to_rgb(&self, brightness: i32, blue: i32, red: i32) -> [u8; 3] {
         let base = (brightness - self.black) * self.brightness + (1 << 15);
         let (blue, red) = (blue - self.grey, red - self.grey);
         let byte = |fixed: i32| (fixed >> 16).clamp(0, 255) as u8;
@@ -126,26 +126,34 @@ impl Factors {
 }
 
 /// The picture in RGB. Pixels that share a colour all get that colour without interpolation, as players do by default.
-pub(super) fn picture(planes: &Planes<'_>) -> Result<Image, String> {
-    let factors = Factors::new(planes.colour, planes.bits)?;
+pub(super) fn rgb_picture(planes: &PicturePlanes<'_>) -> Result<Image, String> {
+    let factors = RgbFactors::new(planes.colour, planes.bits)?;
     let mut rgb = vec![0; planes.width_px as usize * planes.height_px as usize * 3];
     let rows = rgb.chunks_exact_mut((planes.width_px as usize * 3).max(1));
     for (y, row) in rows.enumerate() {
-        let written =
-            if planes.bits == 8 { line::<1>(planes, &factors, y, row) } else { line::<2>(planes, &factors, y, row) };
+        let written = if planes.bits == 8 {
+            convert_row::<1>(planes, &factors, y, row)
+        } else {
+            convert_row::<2>(planes, &factors, y, row)
+        };
         written.ok_or("its decoder gave fewer pixels than it announced")?;
     }
     Image::new(planes.width_px, planes.height_px, rgb).map_err(|error| error.to_string())
 }
 
-/// Turns one row into RGB, from samples of `BYTES` bytes; `None` if there are too few samples.
-fn line<const BYTES: usize>(planes: &Planes<'_>, factors: &Factors, y: usize, rgb: &mut [u8]) -> Option<()> {
+/// Turns one row into RGB, from samples of `KIND_BYTES` bytes; `None` if there are too few samples.
+fn convert_row<const BYTES: usize>(
+    planes: &PicturePlanes<'_>,
+    factors: &RgbFactors,
+    y: usize,
+    rgb: &mut [u8],
+) -> Option<()> {
     let width = planes.width_px as usize;
     let brightness = planes.brightness.row(y, width * BYTES)?;
     let pixels = rgb.chunks_exact_mut(3).enumerate();
     let Some(chroma) = planes.chroma else {
         for (x, pixel) in pixels {
-            pixel.copy_from_slice(&factors.rgb(number::<BYTES>(brightness, x), factors.grey, factors.grey));
+            pixel.copy_from_slice(&factors.to_rgb(sample_at::<BYTES>(brightness, x), factors.grey, factors.grey));
         }
         return Some(());
     };
@@ -154,14 +162,14 @@ fn line<const BYTES: usize>(planes: &Planes<'_>, factors: &Factors, y: usize, rg
     let red = chroma.red.row(y >> chroma.shift_y, narrow * BYTES)?;
     for (x, pixel) in pixels {
         let shared = x >> chroma.shift_x;
-        let (blue, red) = (number::<BYTES>(blue, shared), number::<BYTES>(red, shared));
-        pixel.copy_from_slice(&factors.rgb(number::<BYTES>(brightness, x), blue, red));
+        let (blue, red) = (sample_at::<BYTES>(blue, shared), sample_at::<BYTES>(red, shared));
+        pixel.copy_from_slice(&factors.to_rgb(sample_at::<BYTES>(brightness, x), blue, red));
     }
     Some(())
 }
 
 /// A sample of one byte, or of two in the byte order of this machine.
-fn number<const BYTES: usize>(row: &[u8], at: usize) -> i32 {
+fn sample_at<const BYTES: usize>(row: &[u8], at: usize) -> i32 {
     match BYTES {
         1 => i32::from(row[at]),
         _ => i32::from(u16::from_ne_bytes([row[2 * at], row[2 * at + 1]])),
@@ -172,20 +180,21 @@ fn number<const BYTES: usize>(row: &[u8], at: usize) -> i32 {
 mod tests {
     use super::*;
 
-    fn pixel(colour: Colour, bits: u32, [y, cb, cr]: [u16; 3]) -> [u8; 3] {
+    fn pixel(colour: StreamColour, bits: u32, [y, cb, cr]: [u16; 3]) -> [u8; 3] {
         let bytes = |number: u16| if bits == 8 { vec![number as u8] } else { number.to_ne_bytes().to_vec() };
         let (y, cb, cr) = (bytes(y), bytes(cb), bytes(cr));
-        let plane = |bytes| Plane { bytes, stride: 2 };
-        let chroma = Chroma { blue: plane(&cb), red: plane(&cr), shift_x: 1, shift_y: 1 };
-        let planes = Planes { width_px: 1, height_px: 1, bits, brightness: plane(&y), chroma: Some(chroma), colour };
-        picture(&planes).unwrap().rgb().try_into().unwrap()
+        let plane = |bytes| PicturePlane { bytes, stride: 2 };
+        let chroma = ChromaPlanes { blue: plane(&cb), red: plane(&cr), shift_x: 1, shift_y: 1 };
+        let planes =
+            PicturePlanes { width_px: 1, height_px: 1, bits, brightness: plane(&y), chroma: Some(chroma), colour };
+        rgb_picture(&planes).unwrap().rgb_bytes().try_into().unwrap()
     }
 
     #[test]
     fn picture_converts_black_white_and_red_by_the_standards() {
-        let said = |matrix, full_range| Colour { matrix: Some(matrix), full_range: Some(full_range) };
-        assert_eq!(pixel(Colour::default(), 8, [16, 128, 128]), [0, 0, 0]);
-        assert_eq!(pixel(Colour::default(), 8, [235, 128, 128]), [255, 255, 255]);
+        let said = |matrix, full_range| StreamColour { matrix: Some(matrix), full_range: Some(full_range) };
+        assert_eq!(pixel(StreamColour::default(), 8, [16, 128, 128]), [0, 0, 0]);
+        assert_eq!(pixel(StreamColour::default(), 8, [235, 128, 128]), [255, 255, 255]);
         assert_eq!(pixel(said(6, true), 8, [255, 128, 128]), [255, 255, 255]);
         // Pure red: BT.601 limited (81, 90, 240), BT.709 limited (63, 102, 240), both within rounding.
         let near = |[r, g, b]: [u8; 3]| r >= 253 && g <= 2 && b <= 2;
@@ -197,12 +206,12 @@ mod tests {
 
     #[test]
     fn pixels_that_are_not_there_are_an_error_and_no_panic() {
-        let plane = Plane { bytes: &[0; 7], stride: 4 };
-        let colour = Colour::default();
-        let planes = Planes { width_px: 4, height_px: 2, bits: 8, brightness: plane, chroma: None, colour };
-        assert!(picture(&planes).is_err());
-        assert!(picture(&Planes { width_px: 3, ..planes }).is_ok());
-        let colour = Colour { matrix: Some(0), ..colour };
-        assert!(picture(&Planes { width_px: 3, colour, ..planes }).unwrap_err().contains("H.273"));
+        let plane = PicturePlane { bytes: &[0; 7], stride: 4 };
+        let colour = StreamColour::default();
+        let planes = PicturePlanes { width_px: 4, height_px: 2, bits: 8, brightness: plane, chroma: None, colour };
+        assert!(rgb_picture(&planes).is_err());
+        assert!(rgb_picture(&PicturePlanes { width_px: 3, ..planes }).is_ok());
+        let colour = StreamColour { matrix: Some(0), ..colour };
+        assert!(rgb_picture(&PicturePlanes { width_px: 3, colour, ..planes }).unwrap_err().contains("H.273"));
     }
 }

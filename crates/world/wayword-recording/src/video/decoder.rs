@@ -1,11 +1,11 @@
 //! The common interface of the decoders of all codecs.
 
-use super::colour::Planes;
+use super::colour::PicturePlanes;
 use crate::size;
 
 /// A sample on its way into a decoder.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Coded<'a> {
+pub(super) struct CodedSample<'a> {
     /// Its index in the order of decoding.
     pub(super) sample: usize,
     /// The time at which it is shown, ticks.
@@ -14,16 +14,16 @@ pub(super) struct Coded<'a> {
 }
 
 /// Receives the planes of a picture, with the sample that it came from.
-pub(super) type Out<'a> = dyn FnMut(usize, &Planes<'_>) -> Result<(), String> + 'a;
+pub(super) type TakePlanes<'a> = dyn FnMut(usize, &PicturePlanes<'_>) -> Result<(), String> + 'a;
 
 /// A decoder of one stream.
-pub(super) trait Decode {
+pub(super) trait SampleDecoder {
     /// Takes the next sample, and hands out the pictures that are ready. Samples may be skipped if the next one is one
     /// with which decoding can begin.
-    fn feed(&mut self, coded: Coded<'_>, out: &mut Out<'_>) -> Result<(), String>;
+    fn feed(&mut self, coded: CodedSample<'_>, out: &mut TakePlanes<'_>) -> Result<(), String>;
 
     /// Hands out the remaining pictures after the last sample.
-    fn finish(&mut self, out: &mut Out<'_>) -> Result<(), String>;
+    fn finish(&mut self, out: &mut TakePlanes<'_>) -> Result<(), String>;
 }
 
 /// Refuses pictures that are larger than any camera's.

@@ -1,13 +1,13 @@
 //! Applies edit lists: which pictures a player shows, in which order, and when (ISO/IEC 14496-12, section 8.6.6).
 
 use super::{
-    boxes::{Fields, find, within},
-    tables::Sample,
+    boxes::{BoxFields, find_box, in_box},
+    tables::TrackSample,
 };
 
 /// One picture as it is shown.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Shown {
+pub(super) struct ShownPicture {
     /// Seconds from the start of the video.
     pub(super) time_s: f64,
     /// Its index in the order of decoding.
@@ -16,7 +16,7 @@ pub(super) struct Shown {
 
 /// The part of a track that is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Edit {
+pub(super) struct TrackEdit {
     /// Time at the start without a picture, ticks of the movie.
     wait: u64,
     /// Beginning of the shown part, ticks of the track.
@@ -27,27 +27,27 @@ pub(super) struct Edit {
 
 /// Ticks per second.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Clocks {
+pub(super) struct TickRates {
     pub(super) movie: u32,
     pub(super) track: u32,
 }
 
 /// Reads the edit list of a track; `None` if the whole track is shown.
-pub(super) fn edit(trak: &[u8]) -> Result<Option<Edit>, String> {
-    let Some(elst) = find(trak, b"edts").and_then(|edts| find(edts, b"elst")) else { return Ok(None) };
+pub(super) fn read_edit(trak: &[u8]) -> Result<Option<TrackEdit>, String> {
+    let Some(elst) = find_box(trak, b"edts").and_then(|edts| find_box(edts, b"elst")) else { return Ok(None) };
     let read = || -> Result<Vec<(u64, i64)>, String> {
-        let (mut fields, version, _) = Fields::full(elst)?;
+        let (mut fields, version, _) = BoxFields::with_version(elst)?;
         if version == 0 {
-            return Ok(fields.rows::<12>()?.filter_map(|row| entry(&row, version)).collect());
+            return Ok(fields.read_rows::<12>()?.filter_map(|row| edit_entry(&row, version)).collect());
         }
-        Ok(fields.rows::<20>()?.filter_map(|row| entry(&row, version)).collect())
+        Ok(fields.read_rows::<20>()?.filter_map(|row| edit_entry(&row, version)).collect())
     };
-    let mut found: Option<Edit> = None;
+    let mut found: Option<TrackEdit> = None;
     let mut wait = 0_u64;
-    for (length, start) in read().map_err(within("elst"))? {
+    for (length, start) in read().map_err(in_box("elst"))? {
         match found {
             None if start < 0 => wait = wait.saturating_add(length),
-            None => found = Some(Edit { wait, start, length }),
+            None => found = Some(TrackEdit { wait, start, length }),
             // An empty piece at the end has no pictures.
             Some(_) if start < 0 => {}
             Some(_) => return Err("has an edit list of several pieces (box `elst`), which cannot be read".to_owned()),
@@ -57,21 +57,21 @@ pub(super) fn edit(trak: &[u8]) -> Result<Option<Edit>, String> {
 }
 
 /// Length of a piece and its start; -1 for an empty piece.
-fn entry(row: &[u8], version: u8) -> Option<(u64, i64)> {
-    let mut fields = Fields::new(row);
-    let length = fields.long(version).ok()?;
-    let start = if version == 0 { i64::from(fields.i32().ok()?) } else { fields.u64().ok()?.cast_signed() };
+fn edit_entry(row: &[u8], version: u8) -> Option<(u64, i64)> {
+    let mut fields = BoxFields::new(row);
+    let length = fields.read_versioned(version).ok()?;
+    let start = if version == 0 { i64::from(fields.read_i32().ok()?) } else { fields.read_u64().ok()?.cast_signed() };
     // Larger numbers could overflow in the subtraction later.
     Some((length, start.clamp(-1, 1 << 56)))
 }
 
 /// The pictures that a player shows, in its order.
-pub(super) fn shown(samples: &[Sample], edit: Option<Edit>, clocks: Clocks) -> Vec<Shown> {
+pub(super) fn shown_pictures(samples: &[TrackSample], edit: Option<TrackEdit>, clocks: TickRates) -> Vec<ShownPicture> {
     let (movie, track) = (f64::from(clocks.movie), f64::from(clocks.track));
     // Without an edit list the first picture is the start, because recorders that cut a stream count from the
     // beginning of that stream.
     let first = samples.iter().map(|sample| sample.shown).min().unwrap_or(0);
-    let Edit { wait, start, length } = edit.unwrap_or(Edit { wait: 0, start: first, length: 0 });
+    let TrackEdit { wait, start, length } = edit.unwrap_or(TrackEdit { wait: 0, start: first, length: 0 });
     // Lengths are rounded to the movie's ticks, so a picture that begins within the last tick begins after the end.
     let end_s = if length == 0 { f64::INFINITY } else { (length as f64 - 1.0) / movie };
     let mut order: Vec<usize> = (0..samples.len()).collect();
@@ -79,7 +79,7 @@ pub(super) fn shown(samples: &[Sample], edit: Option<Edit>, clocks: Clocks) -> V
     let timed = order.into_iter().filter_map(|sample| {
         let ticks = samples[sample].shown - start;
         let time_s = ticks as f64 / track;
-        (ticks >= 0 && time_s < end_s).then(|| Shown { time_s: time_s + wait as f64 / movie, sample })
+        (ticks >= 0 && time_s < end_s).then(|| ShownPicture { time_s: time_s + wait as f64 / movie, sample })
     });
     timed.collect()
 }
@@ -88,14 +88,14 @@ pub(super) fn shown(samples: &[Sample], edit: Option<Edit>, clocks: Clocks) -> V
 mod tests {
     use super::*;
 
-    const CLOCKS: Clocks = Clocks { movie: 1000, track: 10 };
+    const CLOCKS: TickRates = TickRates { movie: 1000, track: 10 };
 
-    fn samples(shown: &[i64]) -> Vec<Sample> {
-        shown.iter().map(|shown| Sample { offset: 0, bytes: 1, shown: *shown, is_key: false }).collect()
+    fn samples(shown: &[i64]) -> Vec<TrackSample> {
+        shown.iter().map(|shown| TrackSample { offset: 0, bytes: 1, shown: *shown, is_key: false }).collect()
     }
 
-    fn of(edit: Option<Edit>) -> Vec<(f64, usize)> {
-        let shown = shown(&samples(&[2, 6, 4, 3, 5]), edit, CLOCKS);
+    fn of(edit: Option<TrackEdit>) -> Vec<(f64, usize)> {
+        let shown = shown_pictures(&samples(&[2, 6, 4, 3, 5]), edit, CLOCKS);
         shown.into_iter().map(|shown| (shown.time_s, shown.sample)).collect()
     }
 
@@ -106,7 +106,7 @@ mod tests {
 
     #[test]
     fn shown_leaves_out_pictures_outside_the_edit() {
-        let edit = Edit { wait: 500, start: 3, length: 200 };
+        let edit = TrackEdit { wait: 500, start: 3, length: 200 };
         assert_eq!(of(Some(edit)), [(0.5, 3), (0.6, 2)]);
     }
 
@@ -119,9 +119,9 @@ mod tests {
             [&(elst.len() as u32 + 8).to_be_bytes(), &b"edts"[..], &elst].concat()
         };
         let rate = 1 << 16;
-        let wanted = Edit { wait: 40, start: 1024, length: 3000 };
-        assert_eq!(edit(&trak(&[[40, u32::MAX, rate], [3000, 1024, rate]])), Ok(Some(wanted)));
-        assert!(edit(&trak(&[[40, 0, rate], [3000, 1024, rate]])).unwrap_err().contains("elst"));
-        assert_eq!(edit(b""), Ok(None));
+        let wanted = TrackEdit { wait: 40, start: 1024, length: 3000 };
+        assert_eq!(read_edit(&trak(&[[40, u32::MAX, rate], [3000, 1024, rate]])), Ok(Some(wanted)));
+        assert!(read_edit(&trak(&[[40, 0, rate], [3000, 1024, rate]])).unwrap_err().contains("elst"));
+        assert_eq!(read_edit(b""), Ok(None));
     }
 }

@@ -1,14 +1,14 @@
 //! Reads the sample entry of a track, which names the codec of its pictures (ISO/IEC 14496-12, section 8.5.2).
 
 use super::{
-    boxes::{Atom, Fields, boxes, find, name, need, within},
-    colour::Colour,
+    boxes::{BoxFields, Mp4Box, boxes_in, find_box, in_box, kind_name, need_box},
+    colour::StreamColour,
 };
 
 /// Bytes of a `VisualSampleEntry` before its boxes.
 const BEFORE_BOXES: usize = 78;
 /// Common codecs that cannot be read, with their names.
-const KNOWN: [(&[u8; 4], &str); 14] = [
+const KNOWN_CODECS: [(&[u8; 4], &str); 14] = [
     (b"hvc1", "HEVC (H.265)"),
     (b"hev1", "HEVC (H.265)"),
     (b"dvh1", "Dolby Vision (HEVC)"),
@@ -38,51 +38,51 @@ pub(super) enum NamedCodec {
 
 /// A sample entry.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Entry {
+pub(super) struct SampleEntry {
     pub(super) codec: NamedCodec,
     pub(super) width_px: u16,
     pub(super) height_px: u16,
     /// The colours that the container gives.
-    pub(super) colour: Colour,
+    pub(super) colour: StreamColour,
 }
 
 /// The sample entry in a track's `stsd`.
-pub(super) fn entry(stsd: &[u8]) -> Result<Entry, String> {
-    let (mut fields, ..) = Fields::full(stsd)?;
-    let count = fields.u32()?;
+pub(super) fn read_entry(stsd: &[u8]) -> Result<SampleEntry, String> {
+    let (mut fields, ..) = BoxFields::with_version(stsd)?;
+    let count = fields.read_u32()?;
     if count != 1 {
         return Err(format!("lists {count} sample entries, but exactly one can be read"));
     }
-    let Atom { kind, body } = boxes(fields.rest()).next().ok_or("lists no sample entry")?;
-    let mut fields = Fields::new(body);
-    fields.bytes(24)?;
-    let (width_px, height_px) = (fields.u16()?, fields.u16()?);
+    let Mp4Box { kind, body } = boxes_in(fields.remaining_bytes()).next().ok_or("lists no sample entry")?;
+    let mut fields = BoxFields::new(body);
+    fields.read_bytes(24)?;
+    let (width_px, height_px) = (fields.read_u16()?, fields.read_u16()?);
     let within_entry = body.get(BEFORE_BOXES..).unwrap_or_default();
     let codec = match &kind {
-        b"avc1" | b"avc3" => NamedCodec::H264(need(within_entry, b"avcC")?.to_vec()),
+        b"avc1" | b"avc3" => NamedCodec::H264(need_box(within_entry, b"avcC")?.to_vec()),
         b"av01" => NamedCodec::Av1,
-        other => NamedCodec::Other(named(other)),
+        other => NamedCodec::Other(codec_name(other)),
     };
-    Ok(Entry { codec, width_px, height_px, colour: colour(within_entry).map_err(within("colr"))? })
+    Ok(SampleEntry { codec, width_px, height_px, colour: read_colour(within_entry).map_err(in_box("colr"))? })
 }
 
-fn named(kind: &[u8; 4]) -> String {
-    KNOWN
+fn codec_name(kind: &[u8; 4]) -> String {
+    KNOWN_CODECS
         .iter()
         .find(|(known, _)| *known == kind)
-        .map_or_else(|| format!("`{}`", name(kind)), |(_, name)| (*name).to_owned())
+        .map_or_else(|| format!("`{}`", kind_name(kind)), |(_, name)| (*name).to_owned())
 }
 
 /// Reads the colours in a `colr` box. ISO's `nclx` contains the range, QuickTime's `nclc` does not.
-fn colour(within_entry: &[u8]) -> Result<Colour, String> {
-    let Some(colr) = find(within_entry, b"colr") else { return Ok(Colour::default()) };
-    let mut fields = Fields::new(colr);
-    let kind = fields.array::<4>()?;
+fn read_colour(within_entry: &[u8]) -> Result<StreamColour, String> {
+    let Some(colr) = find_box(within_entry, b"colr") else { return Ok(StreamColour::default()) };
+    let mut fields = BoxFields::new(colr);
+    let kind = fields.read_array::<4>()?;
     if kind != *b"nclx" && kind != *b"nclc" {
-        return Ok(Colour::default());
+        return Ok(StreamColour::default());
     }
-    fields.bytes(4)?;
-    let matrix = Colour::coded(fields.u16()?.into());
-    let full_range = if kind == *b"nclx" { Some(fields.u8()? & 0x80 != 0) } else { None };
-    Ok(Colour { matrix, full_range })
+    fields.read_bytes(4)?;
+    let matrix = StreamColour::matrix_from_code(fields.read_u16()?.into());
+    let full_range = if kind == *b"nclx" { Some(fields.read_u8()? & 0x80 != 0) } else { None };
+    Ok(StreamColour { matrix, full_range })
 }

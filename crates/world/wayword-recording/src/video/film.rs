@@ -2,18 +2,18 @@
 
 use super::{
     colour,
-    decoder::{Coded, Decode},
-    edits::Shown,
-    movie::{HINT, Movie, bytes_at},
+    decoder::{CodedSample, SampleDecoder},
+    edits::ShownPicture,
+    movie::{Mp4Movie, VIDEO_HINT, bytes_at},
 };
-use crate::{kind, reel::Take};
+use crate::{kind, reel::TakePicture};
 use std::{
     collections::{BTreeMap, btree_map::Entry},
     fs::File,
     ops::Range,
     path::{Path, PathBuf},
 };
-use wayword_core::{Image, PlatformError, contain::decoded};
+use wayword_core::{Image, PlatformError, contain::run_decoder};
 use wayword_world::files;
 
 /// Most pictures that decoders hold back (ITU-T H.264, annex A.3.1).
@@ -21,22 +21,22 @@ const MAX_HELD: usize = 17;
 
 /// One camera's pictures in an MP4 file.
 #[derive(Debug)]
-pub(crate) struct Film {
+pub(crate) struct Mp4Film {
     file: PathBuf,
-    movie: Movie,
+    movie: Mp4Movie,
     times_s: Vec<f64>,
 }
 
-impl Film {
+impl Mp4Film {
     /// Opens a file and reads the list of its pictures, but decodes none. `camera` is the number of the track as the
     /// file counts them (`"1"`); it is needed only if there are several.
     ///
     /// # Errors
     /// When it is not an MP4 file, is broken, has no such camera, or its pictures are in a codec that cannot be read.
     pub(crate) fn open(file: &Path, camera: Option<&str>) -> Result<Self, PlatformError> {
-        let mut opened = files::open(file, HINT)?;
-        let movie = Movie::read(&mut opened, camera);
-        let movie = movie.map_err(|refusal| kind::refusal(file, "an MP4 video", (refusal.reason, refusal.hint)))?;
+        let mut opened = files::open_plain_file(file, VIDEO_HINT)?;
+        let movie = Mp4Movie::read(&mut opened, camera);
+        let movie = movie.map_err(|refusal| kind::refuse_file(file, "an MP4 video", (refusal.reason, refusal.hint)))?;
         let times_s = movie.shown.iter().map(|shown| shown.time_s).collect();
         Ok(Self { file: file.to_owned(), movie, times_s })
     }
@@ -46,60 +46,60 @@ impl Film {
         &self.times_s
     }
 
-    /// Hands out the wanted pictures: indices into [`Film::times_s`], ascending and without repetition. Decodes from
+    /// Hands out the wanted pictures: indices into [`Mp4Film::times_s`], ascending and without repetition. Decodes from
     /// the key picture before the first of them to the last, but skips stretches without a wanted picture.
     ///
     /// # Errors
     /// When the file has changed or is broken there, or `take` fails.
-    pub(crate) fn pictures(&self, wanted: &[usize], take: &mut Take<'_>) -> Result<(), PlatformError> {
-        let wrong = |reason: String| files::wrong(&self.file, reason, HINT);
+    pub(crate) fn decode_pictures(&self, wanted: &[usize], take: &mut TakePicture<'_>) -> Result<(), PlatformError> {
+        let wrong = |reason: String| files::file_error(&self.file, reason, VIDEO_HINT);
         let mut file = File::open(&self.file).map_err(|error| wrong(error.to_string()))?;
-        let mut desk = Desk::new(&self.movie, wanted);
-        let mut decoder = self.movie.codec.decoder().map_err(wrong)?;
-        for run in self.runs(&mut file, wanted).map_err(wrong)? {
+        let mut desk = PictureBuffer::new(&self.movie, wanted);
+        let mut decoder = self.movie.codec.new_decoder().map_err(wrong)?;
+        for run in self.decode_runs(&mut file, wanted).map_err(wrong)? {
             for sample in run {
-                let fed = self.feed(&mut file, sample, decoder.as_mut(), &mut desk);
+                let fed = self.feed_sample(&mut file, sample, decoder.as_mut(), &mut desk);
                 fed.map_err(|reason| {
                     wrong(format!("picture at byte {}: {reason}", self.movie.samples[sample].offset))
                 })?;
                 desk.hand_over(take)?;
             }
         }
-        decoded(|| decoder.finish(&mut |sample, planes| desk.put(sample, planes))).map_err(wrong)?;
+        run_decoder(|| decoder.finish(&mut |sample, planes| desk.put_picture(sample, planes))).map_err(wrong)?;
         desk.hand_over(take)?;
-        match desk.missing() {
+        match desk.first_missing() {
             Some(number) => Err(wrong(format!("picture {number} (counted from 0) could not be decoded"))),
             None => Ok(()),
         }
     }
 
     /// Feeds one sample to a decoder.
-    fn feed(
+    fn feed_sample(
         &self,
         file: &mut File,
         sample: usize,
-        decoder: &mut dyn Decode,
-        desk: &mut Desk<'_>,
+        decoder: &mut dyn SampleDecoder,
+        desk: &mut PictureBuffer<'_>,
     ) -> Result<(), String> {
-        let bytes = self.sample(file, sample)?;
-        let coded = Coded { sample, shown: self.movie.samples[sample].shown, bytes: &bytes };
-        decoded(|| decoder.feed(coded, &mut |sample, planes| desk.put(sample, planes)))
+        let bytes = self.read_sample(file, sample)?;
+        let coded = CodedSample { sample, shown: self.movie.samples[sample].shown, bytes: &bytes };
+        run_decoder(|| decoder.feed(coded, &mut |sample, planes| desk.put_picture(sample, planes)))
     }
 
-    fn sample(&self, file: &mut File, sample: usize) -> Result<Vec<u8>, String> {
+    fn read_sample(&self, file: &mut File, sample: usize) -> Result<Vec<u8>, String> {
         let sample = self.movie.samples[sample];
         bytes_at(file, sample.offset, sample.bytes.into())
     }
 
     /// The samples to decode for the wanted pictures.
-    fn runs(&self, file: &mut File, wanted: &[usize]) -> Result<Vec<Range<usize>>, String> {
+    fn decode_runs(&self, file: &mut File, wanted: &[usize]) -> Result<Vec<Range<usize>>, String> {
         let mut runs: Vec<Range<usize>> = Vec::new();
-        for Shown { sample, .. } in wanted.iter().filter_map(|number| self.movie.shown.get(*number)) {
+        for ShownPicture { sample, .. } in wanted.iter().filter_map(|number| self.movie.shown.get(*number)) {
             let fed = runs.last().map_or(0, |run| run.end);
             if *sample < fed {
                 continue;
             }
-            let key = self.key(file, *sample, fed)?;
+            let key = self.key_before(file, *sample, fed)?;
             match runs.last_mut() {
                 // The samples between them have to be decoded.
                 Some(run) if key <= fed => run.end = sample + 1,
@@ -110,9 +110,9 @@ impl Film {
     }
 
     /// The last sample from which the wanted one can be decoded; `fed` if there is none after `fed`.
-    fn key(&self, file: &mut File, wanted: usize, fed: usize) -> Result<usize, String> {
+    fn key_before(&self, file: &mut File, wanted: usize, fed: usize) -> Result<usize, String> {
         for key in (fed..=wanted).rev().filter(|at| self.movie.samples[*at].is_key) {
-            if self.movie.codec.can_begin_with(&self.sample(file, key)?) {
+            if self.movie.codec.can_begin_with(&self.read_sample(file, key)?) {
                 return Ok(key);
             }
         }
@@ -121,8 +121,8 @@ impl Film {
 }
 
 /// Holds decoded pictures until it is their turn to be handed out.
-struct Desk<'a> {
-    movie: &'a Movie,
+struct PictureBuffer<'a> {
+    movie: &'a Mp4Movie,
     /// The numbers of the wanted pictures, by sample.
     numbers: BTreeMap<usize, usize>,
     /// Wanted numbers that have not been handed over, in order.
@@ -130,27 +130,27 @@ struct Desk<'a> {
     done: BTreeMap<usize, Image>,
 }
 
-impl<'a> Desk<'a> {
-    fn new(movie: &'a Movie, wanted: &'a [usize]) -> Self {
+impl<'a> PictureBuffer<'a> {
+    fn new(movie: &'a Mp4Movie, wanted: &'a [usize]) -> Self {
         let number = |number: &usize| movie.shown.get(*number).map(|shown| (shown.sample, *number));
         let numbers = wanted.iter().filter_map(number).collect();
         Self { movie, numbers, due: wanted.iter().copied().peekable(), done: BTreeMap::new() }
     }
 
     /// Takes a picture from a decoder.
-    fn put(&mut self, sample: usize, planes: &colour::Planes<'_>) -> Result<(), String> {
+    fn put_picture(&mut self, sample: usize, planes: &colour::PicturePlanes<'_>) -> Result<(), String> {
         let Some(number) = self.numbers.get(&sample) else { return Ok(()) };
         if self.done.len() > MAX_HELD {
             return Err("shows its pictures in another order than it says".to_owned());
         }
         if let Entry::Vacant(place) = self.done.entry(*number) {
-            place.insert(self.movie.turn.apply(colour::picture(planes)?));
+            place.insert(self.movie.turn.apply_to(colour::rgb_picture(planes)?));
         }
         Ok(())
     }
 
     /// Hands over the pictures that are next in order.
-    fn hand_over(&mut self, take: &mut Take<'_>) -> Result<(), PlatformError> {
+    fn hand_over(&mut self, take: &mut TakePicture<'_>) -> Result<(), PlatformError> {
         while let Some(number) = self.due.peek() {
             let Some(picture) = self.done.remove(number) else { break };
             take(*number, picture)?;
@@ -160,7 +160,7 @@ impl<'a> Desk<'a> {
     }
 
     /// The first wanted number that has not been decoded.
-    fn missing(&mut self) -> Option<usize> {
+    fn first_missing(&mut self) -> Option<usize> {
         self.due.peek().copied()
     }
 }

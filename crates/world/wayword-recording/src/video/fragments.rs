@@ -2,8 +2,8 @@
 //! 14496-12, section 8.8).
 
 use super::{
-    boxes::{Atom, Fields, boxes, find, need, within},
-    tables::{Sample, believable},
+    boxes::{BoxFields, Mp4Box, boxes_in, find_box, in_box, need_box},
+    tables::{TrackSample, check_count},
 };
 
 const BASE_OFFSET: u32 = 0x1;
@@ -13,29 +13,29 @@ const DEFAULT_FLAGS: u32 = 0x20;
 const DEFAULT_BASE_IS_MOOF: u32 = 0x2_0000;
 const DATA_OFFSET: u32 = 0x1;
 const FIRST_FLAGS: u32 = 0x4;
-const DURATIONS: u32 = 0x100;
-const SIZES: u32 = 0x200;
-const FLAGS: u32 = 0x400;
-const LATER: u32 = 0x800;
+const HAS_DURATIONS: u32 = 0x100;
+const HAS_SIZES: u32 = 0x200;
+const HAS_FLAGS: u32 = 0x400;
+const HAS_DELAYS: u32 = 0x800;
 /// `sample_is_non_sync_sample` among a sample's flags.
 const NOT_A_KEY: u32 = 0x1_0000;
 
 /// Values for samples without their own.
 #[derive(Debug, Clone, Copy, Default)]
-struct Usual {
+struct SampleDefaults {
     duration: u32,
     bytes: u32,
     flags: u32,
 }
 
-impl Usual {
+impl SampleDefaults {
     /// The defaults in `mvex` of a movie.
     fn of_movie(moov: &[u8], track: u32) -> Result<Self, String> {
-        for trex in find(moov, b"mvex").into_iter().flat_map(boxes).filter(|found| found.kind == *b"trex") {
-            let (mut fields, ..) = Fields::full(trex.body)?;
-            if fields.u32()? == track {
-                fields.u32()?;
-                return Ok(Self { duration: fields.u32()?, bytes: fields.u32()?, flags: fields.u32()? });
+        for trex in find_box(moov, b"mvex").into_iter().flat_map(boxes_in).filter(|found| found.kind == *b"trex") {
+            let (mut fields, ..) = BoxFields::with_version(trex.body)?;
+            if fields.read_u32()? == track {
+                fields.read_u32()?;
+                return Ok(Self { duration: fields.read_u32()?, bytes: fields.read_u32()?, flags: fields.read_u32()? });
             }
         }
         Ok(Self::default())
@@ -44,9 +44,9 @@ impl Usual {
 
 /// Adds the samples of one track, fragment by fragment.
 #[derive(Debug)]
-pub(super) struct Fragments {
+pub(super) struct FragmentReader {
     track: u32,
-    usual: Usual,
+    usual: SampleDefaults,
     file_bytes: u64,
     /// Time at which the next sample is decoded, ticks.
     decoded: i64,
@@ -54,72 +54,83 @@ pub(super) struct Fragments {
     end: u64,
 }
 
-impl Fragments {
+impl FragmentReader {
     pub(super) fn new(moov: &[u8], track: u32, file_bytes: u64) -> Result<Self, String> {
-        let usual = Usual::of_movie(moov, track).map_err(within("trex"))?;
+        let usual = SampleDefaults::of_movie(moov, track).map_err(in_box("trex"))?;
         Ok(Self { track, usual, file_bytes, decoded: 0, end: 0 })
     }
 
     /// Adds the samples of a fragment; its box `moof` begins at `start`.
-    pub(super) fn add(&mut self, moof: &[u8], start: u64, samples: &mut Vec<Sample>) -> Result<(), String> {
+    pub(super) fn add_fragment(
+        &mut self,
+        moof: &[u8],
+        start: u64,
+        samples: &mut Vec<TrackSample>,
+    ) -> Result<(), String> {
         self.end = start;
-        for traf in boxes(moof).filter(|found| found.kind == *b"traf") {
+        for traf in boxes_in(moof).filter(|found| found.kind == *b"traf") {
             self.add_track(traf.body, start, samples)?;
         }
         Ok(())
     }
 
-    fn add_track(&mut self, traf: &[u8], start: u64, samples: &mut Vec<Sample>) -> Result<(), String> {
-        let (mut fields, _, flags) = Fields::full(need(traf, b"tfhd")?)?;
-        if fields.u32()? != self.track {
+    fn add_track(&mut self, traf: &[u8], start: u64, samples: &mut Vec<TrackSample>) -> Result<(), String> {
+        let (mut fields, _, flags) = BoxFields::with_version(need_box(traf, b"tfhd")?)?;
+        if fields.read_u32()? != self.track {
             return Ok(());
         }
-        let mut optional = |flag: u32| if flags & flag != 0 { fields.u32().map(Some) } else { Ok(None) };
+        let mut optional = |flag: u32| if flags & flag != 0 { fields.read_u32().map(Some) } else { Ok(None) };
         let base = match (optional(BASE_OFFSET)?, flags & BASE_OFFSET) {
             (Some(high), _) => u64::from(high) << 32 | u64::from(optional(BASE_OFFSET)?.unwrap_or(0)),
             (None, _) if flags & DEFAULT_BASE_IS_MOOF != 0 => start,
             (None, _) => self.end,
         };
         optional(0x2)?;
-        let usual = Usual {
+        let usual = SampleDefaults {
             duration: optional(DEFAULT_DURATION)?.unwrap_or(self.usual.duration),
             bytes: optional(DEFAULT_SIZE)?.unwrap_or(self.usual.bytes),
             flags: optional(DEFAULT_FLAGS)?.unwrap_or(self.usual.flags),
         };
-        if let Some(tfdt) = find(traf, b"tfdt") {
-            let (mut fields, version, _) = Fields::full(tfdt)?;
+        if let Some(tfdt) = find_box(traf, b"tfdt") {
+            let (mut fields, version, _) = BoxFields::with_version(tfdt)?;
             // Larger numbers could overflow in the additions later.
-            let decoded = fields.long(version).map_err(within("tfdt"))?.min(1 << 56);
+            let decoded = fields.read_versioned(version).map_err(in_box("tfdt"))?.min(1 << 56);
             self.decoded = decoded.cast_signed();
         }
         self.end = base;
-        for Atom { body, .. } in boxes(traf).filter(|found| found.kind == *b"trun") {
-            self.add_run(body, base, usual, samples).map_err(within("trun"))?;
+        for Mp4Box { body, .. } in boxes_in(traf).filter(|found| found.kind == *b"trun") {
+            self.add_run(body, base, usual, samples).map_err(in_box("trun"))?;
         }
         Ok(())
     }
 
-    fn add_run(&mut self, trun: &[u8], base: u64, usual: Usual, samples: &mut Vec<Sample>) -> Result<(), String> {
-        let (mut fields, _, flags) = Fields::full(trun)?;
-        let count = fields.u32()?;
-        if flags & SIZES == 0 && usual.bytes == 0 {
+    fn add_run(
+        &mut self,
+        trun: &[u8],
+        base: u64,
+        usual: SampleDefaults,
+        samples: &mut Vec<TrackSample>,
+    ) -> Result<(), String> {
+        let (mut fields, _, flags) = BoxFields::with_version(trun)?;
+        let count = fields.read_u32()?;
+        if flags & HAS_SIZES == 0 && usual.bytes == 0 {
             return Ok(());
         }
         // A run without sizes claims bytes of the file; a run with sizes has four bytes for each sample.
-        believable(u64::from(count) + samples.len() as u64, 1, self.file_bytes)?;
+        check_count(u64::from(count) + samples.len() as u64, 1, self.file_bytes)?;
         if flags & DATA_OFFSET != 0 {
-            self.end = base.saturating_add_signed(i64::from(fields.i32()?));
+            self.end = base.saturating_add_signed(i64::from(fields.read_i32()?));
         }
-        let first = if flags & FIRST_FLAGS != 0 { Some(fields.u32()?) } else { None };
+        let first = if flags & FIRST_FLAGS != 0 { Some(fields.read_u32()?) } else { None };
         for at in 0..count {
-            let mut field = |flag: u32| if flags & flag != 0 { fields.u32().map(Some) } else { Ok(None) };
-            let duration = field(DURATIONS)?.unwrap_or(usual.duration);
-            let bytes = field(SIZES)?.unwrap_or(usual.bytes);
-            let own = field(FLAGS)?.or(first.filter(|_| at == 0)).unwrap_or(usual.flags);
-            let later = field(LATER)?.unwrap_or(0).cast_signed();
+            let mut field = |flag: u32| if flags & flag != 0 { fields.read_u32().map(Some) } else { Ok(None) };
+            let duration = field(HAS_DURATIONS)?.unwrap_or(usual.duration);
+            let bytes = field(HAS_SIZES)?.unwrap_or(usual.bytes);
+            let own = field(HAS_FLAGS)?.or(first.filter(|_| at == 0)).unwrap_or(usual.flags);
+            let later = field(HAS_DELAYS)?.unwrap_or(0).cast_signed();
             if bytes > 0 {
                 let shown = self.decoded + i64::from(later);
-                samples.push(Sample { offset: self.end, bytes, shown, is_key: own & NOT_A_KEY == 0 });
+                samples.push(TrackSample { offset: self.end, bytes, shown, is_key: own & NOT_A_KEY == 0 });
             }
             self.decoded += i64::from(duration);
             self.end = self.end.saturating_add(u64::from(bytes));

@@ -1,10 +1,10 @@
 //! Decodes H.264 with Cisco's OpenH264.
 
 use super::{
-    boxes::{Fields, within},
-    colour::{Chroma, Colour, Plane, Planes},
-    decoder::{Coded, Decode, Out, size_is_possible},
-    sps::Sps,
+    boxes::{BoxFields, in_box},
+    colour::{ChromaPlanes, PicturePlane, PicturePlanes, StreamColour},
+    decoder::{CodedSample, SampleDecoder, TakePlanes, size_is_possible},
+    sps::SequenceParameters,
 };
 use h264_reader::nal::sps::ChromaFormat;
 use openh264::{
@@ -14,50 +14,50 @@ use openh264::{
 };
 use std::collections::BTreeSet;
 
-const START: [u8; 4] = [0, 0, 0, 1];
+const START_CODE: [u8; 4] = [0, 0, 0, 1];
 /// Types of NAL units (ITU-T H.264, table 7-1).
-const IDR: u8 = 5;
-const SPS: u8 = 7;
+const IDR_UNIT: u8 = 5;
+const SPS_UNIT: u8 = 7;
 
 /// The settings before the stream: `AVCDecoderConfigurationRecord` (ISO/IEC 14496-15, section 5.3.3.1).
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Setup {
+pub(super) struct H264Setup {
     /// Bytes in which the length of a NAL unit is written.
     length_bytes: usize,
     /// Parameter sets, each after a start code.
     parameters: Vec<u8>,
-    colour: Colour,
+    colour: StreamColour,
 }
 
-impl Setup {
+impl H264Setup {
     /// Reads an `avcC` box. `colour` has the container's colours; they count if the stream leaves them open.
-    pub(super) fn read(record: &[u8], colour: Colour) -> Result<Self, String> {
-        let (length_bytes, units) = taken_apart(record).map_err(within("avcC"))?;
+    pub(super) fn read(record: &[u8], colour: StreamColour) -> Result<Self, String> {
+        let (length_bytes, units) = taken_apart(record).map_err(in_box("avcC"))?;
         let mut setup = Self { length_bytes, parameters: Vec::new(), colour };
         for unit in units {
-            if kind(unit) == SPS {
-                setup.colour = possible(unit)?.colour.or(setup.colour);
+            if unit_kind(unit) == SPS_UNIT {
+                setup.colour = possible_sps(unit)?.colour.or(setup.colour);
             }
-            setup.parameters.extend_from_slice(&START);
+            setup.parameters.extend_from_slice(&START_CODE);
             setup.parameters.extend_from_slice(unit);
         }
         Ok(setup)
     }
 
     /// The NAL units of a sample.
-    fn units<'a>(&self, sample: &'a [u8]) -> impl Iterator<Item = Result<&'a [u8], String>> {
-        let mut fields = Fields::new(sample);
+    fn nal_units<'a>(&self, sample: &'a [u8]) -> impl Iterator<Item = Result<&'a [u8], String>> {
+        let mut fields = BoxFields::new(sample);
         let length_bytes = self.length_bytes;
         std::iter::from_fn(move || {
-            if fields.rest().is_empty() {
+            if fields.remaining_bytes().is_empty() {
                 return None;
             }
-            let unit = fields.bytes(length_bytes).and_then(|length| {
+            let unit = fields.read_bytes(length_bytes).and_then(|length| {
                 let length = length.iter().fold(0, |length, byte| length << 8 | usize::from(*byte));
-                fields.bytes(length)
+                fields.read_bytes(length)
             });
             if unit.is_err() {
-                fields = Fields::new(&[]);
+                fields = BoxFields::new(&[]);
             }
             Some(unit.map_err(|_| "holds a NAL unit that is longer than the sample".to_owned()))
         })
@@ -66,46 +66,46 @@ impl Setup {
     /// Whether decoding can begin with a sample. The container's mark is not enough, because it also marks samples that are
     /// followed by wrong pictures at first.
     pub(super) fn can_begin_with(&self, sample: &[u8]) -> bool {
-        self.units(sample).any(|unit| unit.is_ok_and(|unit| kind(unit) == IDR))
+        self.nal_units(sample).any(|unit| unit.is_ok_and(|unit| unit_kind(unit) == IDR_UNIT))
     }
 }
 
 /// The number of bytes of a length, and the parameter sets.
 fn taken_apart(record: &[u8]) -> Result<(usize, Vec<&[u8]>), String> {
-    let mut fields = Fields::new(record);
-    fields.bytes(4)?;
-    let length_bytes = usize::from(fields.u8()? & 3) + 1;
+    let mut fields = BoxFields::new(record);
+    fields.read_bytes(4)?;
+    let length_bytes = usize::from(fields.read_u8()? & 3) + 1;
     let mut units = Vec::new();
     // Sequence parameter sets, then picture parameter sets.
     for mask in [31, 255] {
-        for _ in 0..fields.u8()? & mask {
-            let length = fields.u16()?;
-            units.push(fields.bytes(length.into())?);
+        for _ in 0..fields.read_u8()? & mask {
+            let length = fields.read_u16()?;
+            units.push(fields.read_bytes(length.into())?);
         }
     }
     Ok((length_bytes, units))
 }
 
-fn kind(unit: &[u8]) -> u8 {
+fn unit_kind(unit: &[u8]) -> u8 {
     unit.first().map_or(0, |first| first & 31)
 }
 
 /// Reads a parameter set; an error if OpenH264 cannot decode the stream, or its pictures are too large.
-fn possible(unit: &[u8]) -> Result<Sps, String> {
-    let sps = Sps::read(unit).ok_or("has a broken sequence parameter set")?;
+fn possible_sps(unit: &[u8]) -> Result<SequenceParameters, String> {
+    let sps = SequenceParameters::read(unit).ok_or("has a broken sequence parameter set")?;
     size_is_possible(sps.width_px, sps.height_px)?;
     let cannot = |what: &str| Err(format!("is H.264 {what}, which is not read"));
     match sps {
-        Sps { bits: 9.., .. } => cannot(&format!("with {} bits", sps.bits)),
-        Sps { is_interlaced: true, .. } => cannot("with interlaced pictures"),
-        Sps { chroma_format: ChromaFormat::Monochrome | ChromaFormat::YUV420, .. } => Ok(sps),
+        SequenceParameters { bits: 9.., .. } => cannot(&format!("with {} bits", sps.bits)),
+        SequenceParameters { is_interlaced: true, .. } => cannot("with interlaced pictures"),
+        SequenceParameters { chroma_format: ChromaFormat::Monochrome | ChromaFormat::YUV420, .. } => Ok(sps),
         _ => cannot("with 4:2:2 or 4:4:4 colours"),
     }
 }
 
 /// A decoder of one stream.
-pub(super) struct H264 {
-    setup: Setup,
+pub(super) struct H264Decoder {
+    setup: H264Setup,
     decoder: Decoder,
     /// Samples that were fed and have not come out as pictures, in the order in which they are shown. OpenH264 returns no
     /// times, but its pictures come in this order.
@@ -113,8 +113,8 @@ pub(super) struct H264 {
     has_begun: bool,
 }
 
-impl H264 {
-    pub(super) fn new(setup: &Setup) -> Result<Self, String> {
+impl H264Decoder {
+    pub(super) fn new(setup: &H264Setup) -> Result<Self, String> {
         // Flushing after each picture would give the pictures in the order of decoding, and lose some.
         let config = DecoderConfig::new().flush_after_decode(Flush::NoFlush);
         let decoder = Decoder::with_api_config(OpenH264API::from_source(), config);
@@ -126,12 +126,12 @@ impl H264 {
     fn annex_b(&mut self, sample: &[u8]) -> Result<Vec<u8>, String> {
         let mut stream = if self.has_begun { Vec::new() } else { self.setup.parameters.clone() };
         let mut colour = self.setup.colour;
-        for unit in self.setup.units(sample) {
+        for unit in self.setup.nal_units(sample) {
             let unit = unit?;
-            if kind(unit) == SPS {
-                colour = possible(unit)?.colour.or(colour);
+            if unit_kind(unit) == SPS_UNIT {
+                colour = possible_sps(unit)?.colour.or(colour);
             }
-            stream.extend_from_slice(&START);
+            stream.extend_from_slice(&START_CODE);
             stream.extend_from_slice(unit);
         }
         self.setup.colour = colour;
@@ -140,8 +140,8 @@ impl H264 {
     }
 }
 
-impl Decode for H264 {
-    fn feed(&mut self, coded: Coded<'_>, out: &mut Out<'_>) -> Result<(), String> {
+impl SampleDecoder for H264Decoder {
+    fn feed(&mut self, coded: CodedSample<'_>, out: &mut TakePlanes<'_>) -> Result<(), String> {
         let stream = self.annex_b(coded.bytes)?;
         self.inside.insert((coded.shown, coded.sample));
         let decoded = self.decoder.decode(&stream).map_err(|error| format!("cannot be decoded: {error}"))?;
@@ -151,7 +151,7 @@ impl Decode for H264 {
         }
     }
 
-    fn finish(&mut self, out: &mut Out<'_>) -> Result<(), String> {
+    fn finish(&mut self, out: &mut TakePlanes<'_>) -> Result<(), String> {
         let rest = self.decoder.flush_remaining().map_err(|error| format!("cannot be decoded: {error}"))?;
         for decoded in &rest {
             hand_out(&mut self.inside, self.setup.colour, decoded, out)?;
@@ -168,20 +168,20 @@ impl Decode for H264 {
 /// Hands out a picture as that of the sample that is shown next.
 fn hand_out(
     inside: &mut BTreeSet<(i64, usize)>,
-    colour: Colour,
+    colour: StreamColour,
     decoded: &DecodedYUV<'_>,
-    out: &mut Out<'_>,
+    out: &mut TakePlanes<'_>,
 ) -> Result<(), String> {
     let (_, sample) = inside.pop_first().ok_or("its decoder gave more pictures than it was fed")?;
     let (width, height) = decoded.dimensions();
     let (stride, stride_blue, stride_red) = decoded.strides();
-    let chroma = Chroma {
-        blue: Plane { bytes: decoded.u(), stride: stride_blue },
-        red: Plane { bytes: decoded.v(), stride: stride_red },
+    let chroma = ChromaPlanes {
+        blue: PicturePlane { bytes: decoded.u(), stride: stride_blue },
+        red: PicturePlane { bytes: decoded.v(), stride: stride_red },
         shift_x: 1,
         shift_y: 1,
     };
-    let brightness = Plane { bytes: decoded.y(), stride };
+    let brightness = PicturePlane { bytes: decoded.y(), stride };
     let (width_px, height_px) = (width as u32, height as u32);
-    out(sample, &Planes { width_px, height_px, bits: 8, brightness, chroma: Some(chroma), colour })
+    out(sample, &PicturePlanes { width_px, height_px, bits: 8, brightness, chroma: Some(chroma), colour })
 }

@@ -17,13 +17,13 @@ mod tables;
 mod tests;
 mod turn;
 
-pub(crate) use film::Film;
+pub(crate) use film::Mp4Film;
 
 use crate::{
-    describe::Description,
-    names::{plain, scene_of, unknown},
+    describe::RecordingDescription,
+    names::{plain_files, scene_of, unknown_scene},
     poses,
-    reel::{Recording, Reel, Source, Take},
+    reel::{PictureReel, Recording, RecordingSource, TakePicture},
 };
 use std::path::{Path, PathBuf};
 use wayword_core::{PlatformError, SceneId};
@@ -32,7 +32,7 @@ use wayword_core::{PlatformError, SceneId};
 pub(crate) struct FilmFile {
     path: PathBuf,
     scene: SceneId,
-    described: Description,
+    described: RecordingDescription,
 }
 
 impl FilmFile {
@@ -40,46 +40,47 @@ impl FilmFile {
     ///
     /// # Errors
     /// When its name cannot be the name of a scene.
-    pub(crate) fn open(path: &Path, described: Description) -> Result<Self, PlatformError> {
+    pub(crate) fn open(path: &Path, described: RecordingDescription) -> Result<Self, PlatformError> {
         Ok(Self { path: path.to_owned(), scene: scene_of(path)?, described })
     }
 }
 
-impl Source for FilmFile {
+impl RecordingSource for FilmFile {
     fn scenes(&self) -> Vec<SceneId> {
         vec![self.scene.clone()]
     }
 
     fn open(&self, scene: &SceneId) -> Result<Recording, PlatformError> {
         if *scene != self.scene {
-            return Err(unknown(scene, &self.scenes()));
+            return Err(unknown_scene(scene, &self.scenes()));
         }
         let described = self.described.clone();
-        let reel = Film::open(&self.path, described.camera.as_deref())?;
-        let poses = poses::beside(&self.path, &described)?;
-        let track = poses.map(|file| poses::track(&file, &described, reel.times_s(), &|number| reel.name(number)));
+        let reel = Mp4Film::open(&self.path, described.camera.as_deref())?;
+        let poses = poses::find_pose_file(&self.path, &described)?;
+        let track =
+            poses.map(|file| poses::read_track(&file, &described, reel.times_s(), &|number| reel.picture_name(number)));
         Ok(Recording { track: track.transpose()?, reel: Box::new(reel), horizontal_fov_rad: None, described })
     }
 
     fn files(&self, scene: &SceneId) -> Result<Vec<PathBuf>, PlatformError> {
         if *scene != self.scene {
-            return Err(unknown(scene, &self.scenes()));
+            return Err(unknown_scene(scene, &self.scenes()));
         }
-        let own = [self.path.clone(), Description::file_beside(&self.path)];
-        Ok(plain(own.into_iter().chain(poses::beside(&self.path, &self.described)?)))
+        let own = [self.path.clone(), RecordingDescription::file_beside(&self.path)];
+        Ok(plain_files(own.into_iter().chain(poses::find_pose_file(&self.path, &self.described)?)))
     }
 }
 
-impl Reel for Film {
+impl PictureReel for Mp4Film {
     fn times_s(&self) -> &[f64] {
         self.times_s()
     }
 
-    fn name(&self, number: usize) -> String {
+    fn picture_name(&self, number: usize) -> String {
         number.to_string()
     }
 
-    fn pictures(&self, wanted: &[usize], take: &mut Take<'_>) -> Result<(), PlatformError> {
-        self.pictures(wanted, take)
+    fn hand_out_pictures(&self, wanted: &[usize], take: &mut TakePicture<'_>) -> Result<(), PlatformError> {
+        self.decode_pictures(wanted, take)
     }
 }

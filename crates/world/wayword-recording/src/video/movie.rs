@@ -1,14 +1,14 @@
 //! Reads an MP4 file's video tracks and chooses one of them.
 
 use super::{
-    boxes::{Fields, Header, boxes, find, need, within},
-    codec::Codec,
-    edits::{self, Clocks, Shown},
-    entry::{self, Entry, entry},
-    fragments::Fragments,
+    boxes::{BoxFields, BoxHeader, boxes_in, find_box, in_box, need_box},
+    codec::ReadableCodec,
+    edits::{self, ShownPicture, TickRates},
+    entry::{self, SampleEntry, read_entry},
+    fragments::FragmentReader,
     h264,
-    tables::{self, Sample},
-    turn::Turn,
+    tables::{self, TrackSample},
+    turn::PictureTurn,
 };
 use std::{
     fs::File,
@@ -22,55 +22,55 @@ const MAX_DESCRIBING_BYTES: u64 = 512 << 20;
 const MAX_BOXES: u64 = 2 * tables::MAX_SAMPLES;
 
 /// The way out of a file that cannot be read.
-pub(super) const HINT: &str = crate::kind::ENCODE;
+pub(super) const VIDEO_HINT: &str = crate::kind::ENCODE_HINT;
 const CAMERA_HINT: &str = "write `camera = \"NUMBER\"` into the .toml file beside it";
 
 /// A video track.
 #[derive(Debug)]
-pub(super) struct Movie {
-    pub(super) codec: Codec,
-    pub(super) turn: Turn,
+pub(super) struct Mp4Movie {
+    pub(super) codec: ReadableCodec,
+    pub(super) turn: PictureTurn,
     /// In the order of decoding.
-    pub(super) samples: Vec<Sample>,
+    pub(super) samples: Vec<TrackSample>,
     /// In the order in which they are shown.
-    pub(super) shown: Vec<Shown>,
+    pub(super) shown: Vec<ShownPicture>,
 }
 
-impl Movie {
+impl Mp4Movie {
     /// Reads a file's description of one camera: the track of that number, or the only one there is.
-    pub(super) fn read(file: &mut File, camera: Option<&str>) -> Result<Self, Refusal> {
+    pub(super) fn read(file: &mut File, camera: Option<&str>) -> Result<Self, Mp4Error> {
         let file_bytes = file.metadata().map_err(|error| error.to_string())?.len();
-        let parts = Parts::read(file, file_bytes)?;
+        let parts = MovieBoxes::read(file, file_bytes)?;
         let mut tracks = Vec::new();
-        for trak in boxes(&parts.moov).filter(|found| found.kind == *b"trak") {
+        for trak in boxes_in(&parts.moov).filter(|found| found.kind == *b"trak") {
             tracks.extend(VideoTrack::read(trak.body)?);
         }
-        let track = chosen(&tracks, camera).map_err(|reason| Refusal { reason, hint: CAMERA_HINT })?;
-        Ok(track.movie(&parts, file_bytes).map_err(|reason| format!("track {} {reason}", track.number))?)
+        let track = choose_track(&tracks, camera).map_err(|reason| Mp4Error { reason, hint: CAMERA_HINT })?;
+        Ok(track.read_movie(&parts, file_bytes).map_err(|reason| format!("track {} {reason}", track.number))?)
     }
 }
 
 /// The reason why a file cannot be read, and a way out.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Refusal {
+pub(super) struct Mp4Error {
     pub(super) reason: String,
     pub(super) hint: &'static str,
 }
 
-impl From<String> for Refusal {
+impl From<String> for Mp4Error {
     fn from(reason: String) -> Self {
-        Self { reason, hint: HINT }
+        Self { reason, hint: VIDEO_HINT }
     }
 }
 
 /// The boxes that describe the pictures of a file.
-struct Parts {
+struct MovieBoxes {
     moov: Vec<u8>,
     /// Each `moof`, and where it begins.
     moofs: Vec<(u64, Vec<u8>)>,
 }
 
-impl Parts {
+impl MovieBoxes {
     fn read(file: &mut File, file_bytes: u64) -> Result<Self, String> {
         let (mut moov, mut moofs) = (None, Vec::new());
         let (mut start, mut describing, mut count) = (0, 0, 0);
@@ -103,10 +103,10 @@ impl Parts {
 }
 
 /// The header of the box at a place of a file; `None` if there is none.
-fn header_at(file: &mut File, start: u64, file_bytes: u64) -> Result<Option<Header>, String> {
+fn header_at(file: &mut File, start: u64, file_bytes: u64) -> Result<Option<BoxHeader>, String> {
     let left = file_bytes - start;
-    let bytes = bytes_at(file, start, left.min(Header::MOST as u64))?;
-    Ok(Header::read(&bytes, left))
+    let bytes = bytes_at(file, start, left.min(BoxHeader::MAX_BYTES as u64))?;
+    Ok(BoxHeader::read(&bytes, left))
 }
 
 /// Bytes of a file. The caller has checked that the file has them.
@@ -126,54 +126,57 @@ struct VideoTrack<'a> {
     trak: &'a [u8],
     stbl: &'a [u8],
     ticks_per_s: u32,
-    entry: Entry,
+    entry: SampleEntry,
 }
 
 impl<'a> VideoTrack<'a> {
     /// Reads a track; `None` if it holds sound or other things.
     fn read(trak: &'a [u8]) -> Result<Option<Self>, String> {
-        let Some(mdia) = find(trak, b"mdia") else { return Ok(None) };
-        let Some(hdlr) = find(mdia, b"hdlr") else { return Ok(None) };
+        let Some(mdia) = find_box(trak, b"mdia") else { return Ok(None) };
+        let Some(hdlr) = find_box(mdia, b"hdlr") else { return Ok(None) };
         if hdlr.get(8..12) != Some(b"vide") {
             return Ok(None);
         }
         let number = || -> Result<u32, String> {
-            let (mut fields, version, _) = Fields::full(need(trak, b"tkhd")?)?;
-            fields.bytes(if version == 0 { 8 } else { 16 })?;
-            fields.u32()
+            let (mut fields, version, _) = BoxFields::with_version(need_box(trak, b"tkhd")?)?;
+            fields.read_bytes(if version == 0 { 8 } else { 16 })?;
+            fields.read_u32()
         };
-        let number = number().map_err(within("tkhd"))?;
+        let number = number().map_err(in_box("tkhd"))?;
         let read = || -> Result<Self, String> {
-            let ticks_per_s = ticks_per_s(need(mdia, b"mdhd")?).map_err(within("mdhd"))?;
-            let stbl = need(need(mdia, b"minf")?, b"stbl")?;
-            let entry = entry(need(stbl, b"stsd")?).map_err(within("stsd"))?;
+            let ticks_per_s = ticks_per_s(need_box(mdia, b"mdhd")?).map_err(in_box("mdhd"))?;
+            let stbl = need_box(need_box(mdia, b"minf")?, b"stbl")?;
+            let entry = read_entry(need_box(stbl, b"stsd")?).map_err(in_box("stsd"))?;
             Ok(Self { number, trak, stbl, ticks_per_s, entry })
         };
         read().map(Some).map_err(|reason| format!("track {number}: {reason}"))
     }
 
-    fn movie(&self, parts: &Parts, file_bytes: u64) -> Result<Movie, String> {
+    fn read_movie(&self, parts: &MovieBoxes, file_bytes: u64) -> Result<Mp4Movie, String> {
         let codec = match &self.entry.codec {
-            entry::NamedCodec::H264(record) => Codec::H264(h264::Setup::read(record, self.entry.colour)?),
-            entry::NamedCodec::Av1 => Codec::Av1(self.entry.colour),
+            entry::NamedCodec::H264(record) => ReadableCodec::H264(h264::H264Setup::read(record, self.entry.colour)?),
+            entry::NamedCodec::Av1 => ReadableCodec::Av1(self.entry.colour),
             entry::NamedCodec::Other(name) => return Err(format!("is in {name}, but only H.264 and AV1 can be read")),
         };
-        let mut samples = tables::samples(self.stbl, file_bytes)?;
-        let mut fragments = Fragments::new(&parts.moov, self.number, file_bytes)?;
+        let mut samples = tables::read_samples(self.stbl, file_bytes)?;
+        let mut fragments = FragmentReader::new(&parts.moov, self.number, file_bytes)?;
         for (start, moof) in &parts.moofs {
-            fragments.add(moof, *start, &mut samples).map_err(|reason| format!("byte {start}: box `moof` {reason}"))?;
+            fragments
+                .add_fragment(moof, *start, &mut samples)
+                .map_err(|reason| format!("byte {start}: box `moof` {reason}"))?;
         }
-        whole(&mut samples, file_bytes, !parts.moofs.is_empty())?;
-        let movie = find(&parts.moov, b"mvhd").map_or(Ok(self.ticks_per_s), ticks_per_s).map_err(within("mvhd"))?;
-        let shown = edits::shown(&samples, edits::edit(self.trak)?, Clocks { movie, track: self.ticks_per_s });
+        check_whole(&mut samples, file_bytes, !parts.moofs.is_empty())?;
+        let movie = find_box(&parts.moov, b"mvhd").map_or(Ok(self.ticks_per_s), ticks_per_s).map_err(in_box("mvhd"))?;
+        let shown =
+            edits::shown_pictures(&samples, edits::read_edit(self.trak)?, TickRates { movie, track: self.ticks_per_s });
         if shown.is_empty() {
             return Err("holds no pictures".to_owned());
         }
-        let turn = Turn::read(need(self.trak, b"tkhd")?).map_err(within("tkhd"))?;
-        Ok(Movie { codec, turn, samples, shown })
+        let turn = PictureTurn::read(need_box(self.trak, b"tkhd")?).map_err(in_box("tkhd"))?;
+        Ok(Mp4Movie { codec, turn, samples, shown })
     }
 
-    fn described(&self) -> String {
+    fn describe_track(&self) -> String {
         let codec = match &self.entry.codec {
             entry::NamedCodec::H264(_) => "H.264",
             entry::NamedCodec::Av1 => "AV1",
@@ -185,17 +188,17 @@ impl<'a> VideoTrack<'a> {
 
 /// Ticks per second from `mdhd` or `mvhd`, which begin alike: times, then this number.
 fn ticks_per_s(header: &[u8]) -> Result<u32, String> {
-    let (mut fields, version, _) = Fields::full(header)?;
-    fields.bytes(if version == 0 { 8 } else { 16 })?;
-    match fields.u32()? {
+    let (mut fields, version, _) = BoxFields::with_version(header)?;
+    fields.read_bytes(if version == 0 { 8 } else { 16 })?;
+    match fields.read_u32()? {
         0 => Err("says that a second has 0 ticks".to_owned()),
         ticks => Ok(ticks),
     }
 }
 
 /// The track that the user named, else the only one.
-fn chosen<'a, 'b>(tracks: &'b [VideoTrack<'a>], camera: Option<&str>) -> Result<&'b VideoTrack<'a>, String> {
-    let names = || tracks.iter().map(VideoTrack::described).collect::<Vec<_>>().join(", ");
+fn choose_track<'a, 'b>(tracks: &'b [VideoTrack<'a>], camera: Option<&str>) -> Result<&'b VideoTrack<'a>, String> {
+    let names = || tracks.iter().map(VideoTrack::describe_track).collect::<Vec<_>>().join(", ");
     let wanted = camera.map(str::trim);
     let mut meant = tracks.iter().filter(|track| match wanted {
         Some(wanted) => track.number.to_string() == wanted,
@@ -211,8 +214,8 @@ fn chosen<'a, 'b>(tracks: &'b [VideoTrack<'a>], camera: Option<&str>) -> Result<
 }
 
 /// Checks that all samples lie in the file. A fragmented file that was cut off is read as far as it goes.
-fn whole(samples: &mut Vec<Sample>, file_bytes: u64, is_fragmented: bool) -> Result<(), String> {
-    let outside = |sample: &Sample| sample.offset.saturating_add(u64::from(sample.bytes)) > file_bytes;
+fn check_whole(samples: &mut Vec<TrackSample>, file_bytes: u64, is_fragmented: bool) -> Result<(), String> {
+    let outside = |sample: &TrackSample| sample.offset.saturating_add(u64::from(sample.bytes)) > file_bytes;
     let Some(first) = samples.iter().position(outside) else { return Ok(()) };
     if is_fragmented && first > 0 {
         samples.truncate(first);

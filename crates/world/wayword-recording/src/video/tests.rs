@@ -1,7 +1,7 @@
 //! Tests with videos that ffmpeg made (`fixtures/make_video.py`): each picture shows its number in bars.
 
-use super::{Film, FilmFile};
-use crate::{describe::Description, reel::Source};
+use super::{FilmFile, Mp4Film};
+use crate::{describe::RecordingDescription, reel::RecordingSource};
 use proptest::prelude::*;
 use rand::Rng;
 use std::path::{Path, PathBuf};
@@ -11,14 +11,14 @@ fn fixture(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/video").join(name)
 }
 
-fn film(name: &str) -> Film {
-    Film::open(&fixture(name), None).unwrap()
+fn film(name: &str) -> Mp4Film {
+    Mp4Film::open(&fixture(name), None).unwrap()
 }
 
 /// Pictures with their numbers.
-fn pictures(film: &Film, wanted: &[usize]) -> Result<Vec<(usize, Image)>, String> {
+fn pictures(film: &Mp4Film, wanted: &[usize]) -> Result<Vec<(usize, Image)>, String> {
     let mut taken = Vec::new();
-    let done = film.pictures(wanted, &mut |number, picture| {
+    let done = film.decode_pictures(wanted, &mut |number, picture| {
         taken.push((number, picture));
         Ok(())
     });
@@ -29,7 +29,7 @@ fn pictures(film: &Film, wanted: &[usize]) -> Result<Vec<(usize, Image)>, String
 fn is_white(picture: &Image, bar: usize, height: f64) -> bool {
     let (width, rows) = (picture.width_px() as usize, f64::from(picture.height_px()));
     let at = ((rows * height) as usize * width + (2 * bar + 1) * width / 12) * 3;
-    picture.rgb()[at] > 127
+    picture.rgb_bytes()[at] > 127
 }
 
 /// The number that the bars of a picture show; both halves have to agree.
@@ -121,7 +121,7 @@ fn a_video_of_an_upright_phone_is_shown_upright() {
     let lying = pictures(&film("baseline.mp4"), &[5]).unwrap().remove(0).1;
     assert_eq!((turned.width_px(), turned.height_px()), (64, 96));
     // ffmpeg's rotate=90: the left becomes the top, and the top becomes the right.
-    let pixel = |picture: &Image, x: u32, y: u32| picture.rgb()[((y * picture.width_px() + x) * 3) as usize];
+    let pixel = |picture: &Image, x: u32, y: u32| picture.rgb_bytes()[((y * picture.width_px() + x) * 3) as usize];
     for (x, y) in [(0, 0), (10, 5), (95, 63), (40, 50)] {
         assert_eq!(pixel(&turned, 63 - y, x), pixel(&lying, x, y));
     }
@@ -133,7 +133,7 @@ fn colours_follow_the_stream() {
         let picture = pictures(&film(name), &[0]).unwrap().remove(0).1;
         for (bar, x) in [16, 48, 80].into_iter().enumerate() {
             let at = (16 * 96 + x) * 3;
-            let pixel = &picture.rgb()[at..at + 3];
+            let pixel = &picture.rgb_bytes()[at..at + 3];
             for (channel, value) in pixel.iter().enumerate() {
                 let wanted = if channel == bar { 255 } else { 0 };
                 assert!(value.abs_diff(wanted) < 12, "{name}: {pixel:?} in bar {bar}");
@@ -144,26 +144,26 @@ fn colours_follow_the_stream() {
 
 #[test]
 fn unreadable_videos_are_named_with_a_hint() {
-    let said = |name: &str, camera| Film::open(&fixture(name), camera).unwrap_err().to_string();
+    let said = |name: &str, camera| Mp4Film::open(&fixture(name), camera).unwrap_err().to_string();
     let hevc = said("hevc.mp4", None);
     assert!(hevc.contains("HEVC (H.265)") && hevc.contains("ffmpeg -i IN -c:v libx264"), "{hevc}");
     assert!(said("interlaced.mp4", None).contains("interlaced"));
     let two = said("two_cameras.mp4", None);
     assert!(two.contains("1 (H.264, 98 x 66), 2 (H.264, 96 x 64)") && two.contains("camera ="), "{two}");
     assert!(said("two_cameras.mp4", Some("3")).contains("no video track \"3\""));
-    let second = Film::open(&fixture("two_cameras.mp4"), Some("2")).unwrap();
+    let second = Mp4Film::open(&fixture("two_cameras.mp4"), Some("2")).unwrap();
     assert_eq!(pictures(&second, &[4]).unwrap()[0].1.width_px(), 96);
     assert!(said("../make_video.py", None).contains("is text, not an MP4 video"));
 }
 
 #[test]
 fn a_video_is_a_recording_of_one_scene() {
-    let file = FilmFile::open(&fixture("uneven.mp4"), Description::default()).unwrap();
+    let file = FilmFile::open(&fixture("uneven.mp4"), RecordingDescription::default()).unwrap();
     let scenes = file.scenes();
     assert_eq!(scenes.iter().map(ToString::to_string).collect::<Vec<_>>(), ["uneven"]);
     let recording = file.open(&scenes[0]).unwrap();
     assert!(recording.track.is_none());
-    assert_eq!((recording.reel.times_s().len(), recording.reel.name(7)), (12, "7".to_owned()));
+    assert_eq!((recording.reel.times_s().len(), recording.reel.picture_name(7)), (12, "7".to_owned()));
 }
 
 #[test]
@@ -172,9 +172,9 @@ fn poses_beside_a_video_count_from_its_start() {
     let path = folder.path().join("walk.mp4");
     std::fs::copy(fixture("uneven.mp4"), &path).unwrap();
     std::fs::write(folder.path().join("walk.tum"), "0.0 0 0 0 0 0 0 1\n2.0 4 0 0 0 0 0 1\n").unwrap();
-    let file = FilmFile::open(&path, Description::default()).unwrap();
+    let file = FilmFile::open(&path, RecordingDescription::default()).unwrap();
     let recording = file.open(&file.scenes()[0]).unwrap();
-    let fix = recording.track.unwrap().at(recording.reel.times_s()[4]).unwrap();
+    let fix = recording.track.unwrap().fix_at(recording.reel.times_s()[4]).unwrap();
     assert!((fix.position.x - 1.2).abs() < 1e-3, "{fix:?}");
 }
 
@@ -183,7 +183,7 @@ fn read(bytes: &[u8]) -> Result<usize, String> {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("video.mp4");
     std::fs::write(&file, bytes).unwrap();
-    let film = Film::open(&file, None).map_err(|error| error.to_string())?;
+    let film = Mp4Film::open(&file, None).map_err(|error| error.to_string())?;
     let all: Vec<usize> = (0..film.times_s().len()).collect();
     pictures(&film, &all).map(|taken| taken.len())
 }
@@ -208,7 +208,7 @@ fn a_table_that_claims_four_thousand_million_pictures_is_refused() {
 
 #[test]
 fn a_thousand_broken_files_are_read_or_refused() {
-    let mut rng = wayword_core::rng(6, &["broken videos"]);
+    let mut rng = wayword_core::seeded_rng(6, &["broken videos"]);
     let names = [
         "high.mp4",
         "uneven.mp4",
@@ -238,7 +238,7 @@ fn a_thousand_broken_files_are_read_or_refused() {
 proptest! {
     #[test]
     fn any_bytes_are_a_parameter_set_or_none(unit in prop::collection::vec(any::<u8>(), 0..80)) {
-        let _ = super::sps::Sps::read(&unit);
+        let _ = super::sps::SequenceParameters::read(&unit);
     }
 }
 
@@ -256,7 +256,7 @@ fn files_that_are_no_mp4_are_named_by_their_kind() {
     ] {
         let file = folder.path().join("walk.mp4");
         std::fs::write(&file, bytes).unwrap();
-        let error = Film::open(&file, None).unwrap_err().to_string();
+        let error = Mp4Film::open(&file, None).unwrap_err().to_string();
         assert!(error.contains(told), "{error}");
         assert!(!error.contains("-c copy"), "{error}");
     }

@@ -1,48 +1,48 @@
 //! Turns a picture before it is shown. Phones do not turn their pictures, but record how the camera was turned
 //! (ISO/IEC 14496-12, section 8.3.2, `matrix`).
 
-use super::boxes::Fields;
+use super::boxes::BoxFields;
 use wayword_core::Image;
 
 /// A turn by quarters, with or without a mirror. The fields are the steps in the shown picture, as (right, down), that
 /// correspond to a step to the right and a step down in the coded one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Turn {
+pub(super) struct PictureTurn {
     right: (i8, i8),
     down: (i8, i8),
 }
 
-impl Turn {
-    pub(super) const NONE: Self = Self { right: (1, 0), down: (0, 1) };
+impl PictureTurn {
+    pub(super) const NO_TURN: Self = Self { right: (1, 0), down: (0, 1) };
 
     /// Reads the turn from `tkhd`; a matrix that is no turn by quarters counts as no turn.
     pub(super) fn read(tkhd: &[u8]) -> Result<Self, String> {
-        let (mut fields, version, _) = Fields::full(tkhd)?;
+        let (mut fields, version, _) = BoxFields::with_version(tkhd)?;
         // Times, number, duration; then layer, group, volume.
-        fields.bytes(if version == 0 { 20 } else { 32 } + 16)?;
-        let (a, b) = (fields.i32()?, fields.i32()?);
-        fields.i32()?;
-        let (c, d) = (fields.i32()?, fields.i32()?);
+        fields.read_bytes(if version == 0 { 20 } else { 32 } + 16)?;
+        let (a, b) = (fields.read_i32()?, fields.read_i32()?);
+        fields.read_i32()?;
+        let (c, d) = (fields.read_i32()?, fields.read_i32()?);
         let sign = |number: i32| number.signum() as i8;
         let turn = Self { right: (sign(a), sign(b)), down: (sign(c), sign(d)) };
         let is_turn = (b == 0 && c == 0 && a != 0 && d != 0) || (a == 0 && d == 0 && b != 0 && c != 0);
-        Ok(if is_turn { turn } else { Self::NONE })
+        Ok(if is_turn { turn } else { Self::NO_TURN })
     }
 
     /// The picture as it should be shown.
-    pub(super) fn apply(self, coded: Image) -> Image {
-        if self == Self::NONE {
+    pub(super) fn apply_to(self, coded: Image) -> Image {
+        if self == Self::NO_TURN {
             return coded;
         }
         let (width, height) = (coded.width_px() as usize, coded.height_px() as usize);
         let (shown_width, shown_height) = if self.right.0 == 0 { (height, width) } else { (width, height) };
         // The inverse of a turn is its transpose; where a step leads backwards, counting starts from the far end.
-        let (x, y) = (Axis::new(self.right, width), Axis::new(self.down, height));
-        let mut rgb = Vec::with_capacity(coded.rgb().len());
+        let (x, y) = (TurnAxis::new(self.right, width), TurnAxis::new(self.down, height));
+        let mut rgb = Vec::with_capacity(coded.rgb_bytes().len());
         for shown_y in 0..shown_height {
             for shown_x in 0..shown_width {
-                let at = (y.at(shown_x, shown_y) * width + x.at(shown_x, shown_y)) * 3;
-                rgb.extend_from_slice(&coded.rgb()[at..at + 3]);
+                let at = (y.coded_at(shown_x, shown_y) * width + x.coded_at(shown_x, shown_y)) * 3;
+                rgb.extend_from_slice(&coded.rgb_bytes()[at..at + 3]);
             }
         }
         Image::new(shown_width as u32, shown_height as u32, rgb).unwrap_or(coded)
@@ -50,19 +50,19 @@ impl Turn {
 }
 
 /// One coordinate of the coded picture.
-struct Axis {
+struct TurnAxis {
     /// Whether it runs along the rows of the shown picture.
     along_x: bool,
     /// The last coordinate, where it runs backwards.
     from_end: Option<usize>,
 }
 
-impl Axis {
+impl TurnAxis {
     fn new((x, y): (i8, i8), length: usize) -> Self {
         Self { along_x: x != 0, from_end: (x + y < 0).then(|| length.saturating_sub(1)) }
     }
 
-    fn at(&self, shown_x: usize, shown_y: usize) -> usize {
+    fn coded_at(&self, shown_x: usize, shown_y: usize) -> usize {
         let at = if self.along_x { shown_x } else { shown_y };
         self.from_end.map_or(at, |end| end - at)
     }
@@ -76,9 +76,9 @@ mod tests {
     fn turned(matrix: [i32; 4]) -> (u32, Vec<u8>) {
         let [a, b, c, d] = matrix;
         let words = [a, b, 0, c, d, 0, 0, 0, 1 << 30].map(i32::to_be_bytes).concat();
-        let turn = Turn::read(&[vec![0; 40], words].concat()).unwrap();
-        let shown = turn.apply(Image::new(3, 1, vec![1, 1, 1, 2, 2, 2, 3, 3, 3]).unwrap());
-        (shown.width_px(), shown.rgb().chunks(3).map(|pixel| pixel[0]).collect())
+        let turn = PictureTurn::read(&[vec![0; 40], words].concat()).unwrap();
+        let shown = turn.apply_to(Image::new(3, 1, vec![1, 1, 1, 2, 2, 2, 3, 3, 3]).unwrap());
+        (shown.width_px(), shown.rgb_bytes().chunks(3).map(|pixel| pixel[0]).collect())
     }
 
     #[test]

@@ -5,18 +5,18 @@
 use glam::{DMat3, DVec3, Vec3};
 use proptest::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI};
-use wayword_render::{Camera, CubeMap, CubeMapError, Face, sample_view};
+use wayword_render::{CubeFace, CubeMap, CubeMapError, PinholeCamera, sample_view};
 
 const SIDE: u32 = 16;
 
 /// Faces of noise, so that no face looks like another or like itself turned.
-fn noise() -> [Face; 6] {
+fn noise() -> [CubeFace; 6] {
     let mut state = 1u32;
     let mut byte = || {
         state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
         (state >> 24) as u8
     };
-    std::array::from_fn(|_| Face { side_px: SIDE, rgb: (0..SIDE * SIDE * 3).map(|_| byte()).collect() })
+    std::array::from_fn(|_| CubeFace { side_px: SIDE, rgb: (0..SIDE * SIDE * 3).map(|_| byte()).collect() })
 }
 
 /// The pose of a skybox with x to the east, y down and z to the north.
@@ -82,7 +82,7 @@ fn refuses_torn_faces_and_impossible_views() {
 }
 
 /// The colour in a direction as the definition has it: one ray at a time, between the four nearest pixels of its side.
-fn looked_up(faces: &[Face; 6], direction: Vec3) -> [u8; 3] {
+fn looked_up(faces: &[CubeFace; 6], direction: Vec3) -> [u8; 3] {
     let Vec3 { x, y, z } = direction;
     let size = direction.abs();
     let (face, s, t, major) = if size.x >= size.y && size.x >= size.z {
@@ -94,7 +94,7 @@ fn looked_up(faces: &[Face; 6], direction: Vec3) -> [u8; 3] {
     } else {
         (3, -x, -y, size.z)
     };
-    let Face { side_px, rgb } = &faces[face];
+    let CubeFace { side_px, rgb } = &faces[face];
     let side = *side_px as usize;
     let split = |place: f32| {
         let at = ((place * (0.5 / major) + 0.5) * side as f32 - 0.5).clamp(0.0, (side - 1) as f32);
@@ -116,9 +116,9 @@ proptest! {
     fn a_view_is_its_rays_one_by_one(
         heading in 0.0..6.3f64, elevation in -1.57..1.57f64, fov in 0.2..2.8f64, width in 1..150u32, side_px in 1..20u32,
     ) {
-        let faces = noise().map(|face| Face { side_px, rgb: face.rgb.repeat(2)[..3 * (side_px * side_px) as usize].into() });
+        let faces = noise().map(|face| CubeFace { side_px, rgb: face.rgb.repeat(2)[..3 * (side_px * side_px) as usize].into() });
         let height = 3;
-        let camera = Camera {
+        let camera = PinholeCamera {
             position: DVec3::ZERO, heading_rad: heading, elevation_rad: elevation, vertical_fov_rad: fov, width, height,
         };
         let axes = -(upright().transpose() * camera.world_from_camera());
@@ -136,7 +136,7 @@ proptest! {
 
     #[test]
     fn every_direction_finds_its_face(heading in 0.0..6.3f64, elevation in -1.57..1.57f64) {
-        let faces = std::array::from_fn(|n| Face { side_px: 4, rgb: vec![40 * n as u8; 48] });
+        let faces = std::array::from_fn(|n| CubeFace { side_px: 4, rgb: vec![40 * n as u8; 48] });
         let cube = CubeMap::new(faces).unwrap();
         let centre = sample_view(&cube, &upright(), heading, elevation, 0.01, 1, 1).unwrap()[0];
         let (east, north) = (heading.sin() * elevation.cos(), heading.cos() * elevation.cos());

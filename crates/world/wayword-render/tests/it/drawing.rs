@@ -5,14 +5,15 @@
 use glam::{DVec2, DVec3, Vec2, Vec3};
 use proptest::prelude::*;
 use wayword_render::{
-    Background, Camera, Filter, Material, Mesh, Picture, Scene, Texture, render, render_ids, top_down, visible_objects,
+    Mesh, MeshMaterial, PictureBackground, PinholeCamera, RenderScene, RenderedPicture, Texture, TextureFilter,
+    render_ids, render_scene, top_down, visible_objects,
 };
 
-const BOTH_SIDES: Material = Material { base_colour: [1.0; 4], texture: None, double_sided: true };
+const BOTH_SIDES: MeshMaterial = MeshMaterial { base_colour: [1.0; 4], texture: None, double_sided: true };
 
-fn camera(heading_rad: f64, elevation_rad: f64) -> Camera {
+fn camera(heading_rad: f64, elevation_rad: f64) -> PinholeCamera {
     let position = DVec3::new(0.0, 0.0, 1.5);
-    Camera { position, heading_rad, elevation_rad, vertical_fov_rad: 1.0, width: 160, height: 120 }
+    PinholeCamera { position, heading_rad, elevation_rad, vertical_fov_rad: 1.0, width: 160, height: 120 }
 }
 
 /// A mesh of one colour per id, drawn from both sides.
@@ -22,11 +23,11 @@ fn mesh(id: u32, positions: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Mesh {
     Mesh { positions, colours, triangles, id, ..Mesh::default() }
 }
 
-fn draw(meshes: Vec<Mesh>, camera: &Camera) -> Picture {
-    render(&Scene::new(meshes, vec![BOTH_SIDES], vec![]).unwrap(), camera).unwrap()
+fn draw(meshes: Vec<Mesh>, camera: &PinholeCamera) -> RenderedPicture {
+    render_scene(&RenderScene::new(meshes, vec![BOTH_SIDES], vec![]).unwrap(), camera).unwrap()
 }
 
-fn covered(picture: &Picture) -> usize {
+fn covered(picture: &RenderedPicture) -> usize {
     picture.ids.iter().filter(|&&id| id != 0).count()
 }
 
@@ -42,8 +43,8 @@ fn a_square_falls_where_the_camera_projects_it() {
     let camera = camera(0.0, 0.0);
     let picture = draw(vec![square(5, Vec3::new(0.5, 4.0, 1.5), 0.5)], &camera);
     let seen = visible_objects(&picture);
-    let (left, bottom, depth) = camera.project(DVec3::new(0.0, 4.0, 1.0)).unwrap();
-    let (right, top, _) = camera.project(DVec3::new(1.0, 4.0, 2.0)).unwrap();
+    let (left, bottom, depth) = camera.project_point(DVec3::new(0.0, 4.0, 1.0)).unwrap();
+    let (right, top, _) = camera.project_point(DVec3::new(1.0, 4.0, 2.0)).unwrap();
     let [x, y, width, height] = seen[0].bbox.map(f64::from);
     for (pixel, edge) in [(x, left), (y, top), (x + width, right), (y + height, bottom)] {
         assert!((pixel - edge).abs() <= 0.51, "{pixel} against {edge}");
@@ -57,19 +58,19 @@ fn a_square_falls_where_the_camera_projects_it() {
 fn depths_and_ids_are_the_same_without_colours() {
     let camera = camera(0.1, 0.05);
     let meshes = vec![square(5, Vec3::new(0.5, 4.0, 1.5), 0.5), square(8, Vec3::new(-0.3, 6.0, 1.2), 0.9)];
-    let scene = Scene::new(meshes, vec![BOTH_SIDES], vec![]).unwrap();
-    let (coloured, plain) = (render(&scene, &camera).unwrap(), render_ids(&scene, &camera).unwrap());
+    let scene = RenderScene::new(meshes, vec![BOTH_SIDES], vec![]).unwrap();
+    let (coloured, plain) = (render_scene(&scene, &camera).unwrap(), render_ids(&scene, &camera).unwrap());
     assert!(covered(&plain) > 0 && plain.rgb.is_empty());
-    assert_eq!(plain, Picture { rgb: Vec::new(), ..coloured });
+    assert_eq!(plain, RenderedPicture { rgb: Vec::new(), ..coloured });
 }
 
 #[test]
 fn only_front_faces_show_unless_double_sided() {
-    let front = Material { double_sided: false, ..BOTH_SIDES };
+    let front = MeshMaterial { double_sided: false, ..BOTH_SIDES };
     let mut wall = square(5, Vec3::new(0.0, 4.0, 1.5), 0.5);
-    let shown = |wall: &Mesh, material: &Material| {
-        let scene = Scene::new(vec![wall.clone()], vec![material.clone()], vec![]).unwrap();
-        covered(&render(&scene, &camera(0.0, 0.0)).unwrap())
+    let shown = |wall: &Mesh, material: &MeshMaterial| {
+        let scene = RenderScene::new(vec![wall.clone()], vec![material.clone()], vec![]).unwrap();
+        covered(&render_scene(&scene, &camera(0.0, 0.0)).unwrap())
     };
     let whole = shown(&wall, &front);
     assert!(whole > 0);
@@ -96,12 +97,12 @@ fn a_floor_that_runs_under_the_camera_keeps_its_visible_half() {
     let picture = draw(vec![floor], &camera);
     for y in 0..120 {
         for x in 0..160 {
-            let ray = camera.ray(f64::from(x) + 0.5, f64::from(y) + 0.5);
+            let ray = camera.ray_through(f64::from(x) + 0.5, f64::from(y) + 0.5);
             let hit = camera.position + ray * (camera.position.z / -ray.z);
             let on_floor = ray.z < 0.0 && hit.x.abs() < 99.0 && hit.y.abs() < 99.0;
             let index = (y * 160 + x) as usize;
             if on_floor {
-                let (_, _, depth) = camera.project(hit).unwrap();
+                let (_, _, depth) = camera.project_point(hit).unwrap();
                 assert_eq!(picture.ids[index], 3, "pixel {x}, {y}");
                 assert!((f64::from(picture.depth_m[index]) / depth - 1.0).abs() < 1e-3, "pixel {x}, {y}");
             } else if ray.z >= 0.0 {
@@ -121,13 +122,13 @@ fn textures_lie_the_right_way_up_and_in_perspective() {
         vec![Vec3::new(-1.0, 2.0, 0.5), Vec3::new(3.0, 8.0, 0.5), Vec3::new(3.0, 8.0, 2.5), Vec3::new(-1.0, 2.0, 2.5)];
     let uvs = [(0.0, 1.0), (1.0, 1.0), (1.0, 0.0), (0.0, 0.0)].map(Vec2::from).to_vec();
     let wall = Mesh { positions, uvs, triangles: vec![[0, 1, 2], [0, 2, 3]], id: 1, ..Mesh::default() };
-    let material = Material { texture: Some(0), ..Material::default() };
-    for filter in [Filter::Bilinear, Filter::Trilinear] {
-        let scene = Scene::new(vec![wall.clone()], vec![material.clone()], vec![texture.clone()]).unwrap();
-        let picture = render(&scene.with_filter(filter), &camera(0.2, 0.0)).unwrap();
+    let material = MeshMaterial { texture: Some(0), ..MeshMaterial::default() };
+    for filter in [TextureFilter::Bilinear, TextureFilter::Trilinear] {
+        let scene = RenderScene::new(vec![wall.clone()], vec![material.clone()], vec![texture.clone()]).unwrap();
+        let picture = render_scene(&scene.with_filter(filter), &camera(0.2, 0.0)).unwrap();
         let at = |u: f64, v: f64| {
             let point = DVec3::new(-1.0 + 4.0 * u, 2.0 + 6.0 * u, 2.5 - 2.0 * v);
-            let (x, y, _) = camera(0.2, 0.0).project(point).unwrap();
+            let (x, y, _) = camera(0.2, 0.0).project_point(point).unwrap();
             let index = y as usize * 160 + x as usize;
             [0, 1, 2].map(|c| picture.rgb[3 * index + c])
         };
@@ -142,17 +143,17 @@ fn textures_lie_the_right_way_up_and_in_perspective() {
 fn light_multiplies_and_saturates() {
     let mut wall = square(1, Vec3::new(0.0, 4.0, 1.5), 3.0);
     wall.colours = vec![[0.5, 1.0, 3.0]; 4];
-    let material = Material { base_colour: [0.5, 0.5, 0.5, 1.0], ..BOTH_SIDES };
-    let scene = Scene::new(vec![wall], vec![material], vec![]).unwrap();
-    let picture = render(&scene, &camera(0.0, 0.0)).unwrap();
+    let material = MeshMaterial { base_colour: [0.5, 0.5, 0.5, 1.0], ..BOTH_SIDES };
+    let scene = RenderScene::new(vec![wall], vec![material], vec![]).unwrap();
+    let picture = render_scene(&scene, &camera(0.0, 0.0)).unwrap();
     assert_eq!(picture.rgb[..3], [64, 128, 255]);
 }
 
 #[test]
 fn the_sky_is_lighter_where_it_is_higher() {
-    let background = Background::Sky { zenith: [0, 0, 255], horizon: [0; 3], nadir: [255, 0, 0] };
-    let scene = Scene::new(vec![], vec![], vec![]).unwrap().with_background(background);
-    let picture = render(&scene, &camera(1.0, 0.0)).unwrap();
+    let background = PictureBackground::Sky { zenith: [0, 0, 255], horizon: [0; 3], nadir: [255, 0, 0] };
+    let scene = RenderScene::new(vec![], vec![], vec![]).unwrap().with_background(background);
+    let picture = render_scene(&scene, &camera(1.0, 0.0)).unwrap();
     let rows: Vec<&[u8]> = picture.rgb.chunks(3 * 160).collect();
     assert!(rows.windows(2).all(|pair| pair[0][2] >= pair[1][2] && pair[0][0] <= pair[1][0]));
     assert!(rows[0][2] > 100 && rows[119][0] > 100);
@@ -169,7 +170,8 @@ fn a_map_shows_what_is_below_the_cut() {
         )
     };
     let scene =
-        Scene::new(vec![slab(1, 0.0, 0.0), slab(2, 0.5, 0.5), slab(3, 0.0, 2.5)], vec![BOTH_SIDES], vec![]).unwrap();
+        RenderScene::new(vec![slab(1, 0.0, 0.0), slab(2, 0.5, 0.5), slab(3, 0.0, 2.5)], vec![BOTH_SIDES], vec![])
+            .unwrap();
     let map = top_down(&scene, DVec2::new(-1.0, -1.0), DVec2::new(3.0, 2.0), 2.0, 0.1).unwrap();
     assert_eq!((map.width, map.height), (40, 30));
     let id = |x: f64, y: f64| map.ids[((2.0 - y) / 0.1) as usize * 40 + ((x + 1.0) / 0.1) as usize];
@@ -197,7 +199,7 @@ proptest! {
     fn a_triangle_covers_about_its_projected_area(a in front_point(), b in front_point(), c in front_point()) {
         let camera = camera(0.0, 0.0);
         let picture = draw(vec![mesh(1, vec![a, b, c], vec![[0, 1, 2]])], &camera);
-        let [a, b, c] = [a, b, c].map(|p| camera.project(p.as_dvec3()).map(|(x, y, _)| DVec2::new(x, y)).unwrap());
+        let [a, b, c] = [a, b, c].map(|p| camera.project_point(p.as_dvec3()).map(|(x, y, _)| DVec2::new(x, y)).unwrap());
         let area = (b - a).perp_dot(c - a).abs() / 2.0;
         let outline = a.distance(b) + b.distance(c) + c.distance(a);
         prop_assert!((covered(&picture) as f64 - area).abs() <= outline / 2.0 + 2.0);
@@ -259,10 +261,10 @@ proptest! {
             let corner = |i: usize| Vec3::new(c[i] * scale, c[i + 1], c[i + 2] * scale);
             mesh(1, vec![corner(0), corner(3), corner(6)], vec![[0, 1, 2]])
         }).collect();
-        let scene = Scene::new(meshes, vec![BOTH_SIDES], vec![]).unwrap();
-        let view = Camera { vertical_fov_rad: fov, ..camera(heading, 0.1) };
+        let scene = RenderScene::new(meshes, vec![BOTH_SIDES], vec![]).unwrap();
+        let view = PinholeCamera { vertical_fov_rad: fov, ..camera(heading, 0.1) };
         let map = top_down(&scene, DVec2::splat(-3.0), DVec2::splat(3.0), 2.0, 0.1).unwrap();
-        for picture in [render(&scene, &view).unwrap(), map] {
+        for picture in [render_scene(&scene, &view).unwrap(), map] {
             prop_assert!(picture.depth_m.iter().all(|d| *d > -0.2));
             prop_assert!(picture.ids.iter().zip(&picture.depth_m).all(|(id, d)| (*id == 0) == d.is_infinite()));
         }

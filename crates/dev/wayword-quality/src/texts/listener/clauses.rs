@@ -1,24 +1,24 @@
 //! Splits a text into clauses, and decides which of them give the task ("clean the sink") and which only lead the way.
 
 use super::{
-    super::names::{Named, named_with, words},
-    vocabulary::{FILLERS, LOOKS, MOVES, NO_VERBS, OPENERS},
+    super::names::{LexiconName, named_with, split_words},
+    vocabulary::{FILLER_WORDS, LOOK_WORDS, MOVE_VERBS, NO_VERBS, NON_TASK_OPENERS},
 };
 use std::collections::BTreeSet;
 
 /// A text as words with its marks and its names.
-pub(super) struct Text {
+pub(super) struct ListenerText {
     pub words: Vec<String>,
     /// For each word, whether it is the first of the text or after a mark.
     pub(super) after_mark: Vec<bool>,
-    pub(super) names: Vec<Named>,
+    pub(super) names: Vec<LexiconName>,
 }
 
-impl Text {
-    pub(super) fn of(text: &str, known: &BTreeSet<String>) -> Self {
+impl ListenerText {
+    pub(super) fn from_text(text: &str, known: &BTreeSet<String>) -> Self {
         let (mut all, mut after_mark) = (Vec::new(), Vec::new());
         for part in text.split(['.', ',', ';', ':', '!', '?']) {
-            let part = words(part);
+            let part = split_words(part);
             after_mark.extend((0..part.len()).map(|at| at == 0));
             all.extend(part);
         }
@@ -27,7 +27,7 @@ impl Text {
     }
 
     /// The clauses, as ranges of words: first word, and the word after the last.
-    pub(super) fn clauses(&self) -> Vec<[usize; 2]> {
+    pub(super) fn clause_ranges(&self) -> Vec<[usize; 2]> {
         let begins = |at: &usize| {
             let before = at.checked_sub(1).map(|at| self.words[at].as_str());
             *at == 0
@@ -43,12 +43,12 @@ impl Text {
     pub(super) fn is_verb(&self, at: usize, before: Option<&str>) -> bool {
         let word = self.words[at].as_str();
         let in_name = self.names.iter().any(|name| (name.start..name.end).contains(&at));
-        let is_free = !NO_VERBS.contains(&word) && !in_name && !LOOKS.contains(&word) && word != "then";
+        let is_free = !NO_VERBS.contains(&word) && !in_name && !LOOK_WORDS.contains(&word) && word != "then";
         let is_known = is_free || self.has_object(at);
         // "Go to the kitchen to clean the sink" begins a task; "go to the kitchen" does not.
         let has_object = || self.words.get(at + 1).is_some_and(|next| next == "the" || next == "me");
-        let follows_move = || self.words[..at - 1].last().is_some_and(|word| MOVES.contains(&word.as_str()));
-        is_known && (before != Some("to") || (has_object() && !MOVES.contains(&word) && !follows_move()))
+        let follows_move = || self.words[..at - 1].last().is_some_and(|word| MOVE_VERBS.contains(&word.as_str()));
+        is_known && (before != Some("to") || (has_object() && !MOVE_VERBS.contains(&word) && !follows_move()))
     }
 
     /// Whether a word is a verb by the word after it: "switch on", "water the".
@@ -59,7 +59,7 @@ impl Text {
     }
 
     pub(super) fn is_task(&self, [from, to]: [usize; 2]) -> bool {
-        let Some(at) = (from..to).find(|at| !FILLERS.contains(&self.words[*at].as_str())) else { return false };
+        let Some(at) = (from..to).find(|at| !FILLER_WORDS.contains(&self.words[*at].as_str())) else { return false };
         let next = self.words.get(at + 1).filter(|_| at + 1 < to).map_or("", String::as_str);
         let has_thing =
             self.names.iter().any(|name| name.is_thing && !name.is_room && name.start > at && name.end <= to);
@@ -71,7 +71,9 @@ impl Text {
             "the" | "a" | "an" | "it" | "that" | "which" | "is" | "where" => false,
             "there" => false,
             word => {
-                !MOVES.contains(&word) && !OPENERS.contains(&word) && !self.names.iter().any(|name| name.start == at)
+                !MOVE_VERBS.contains(&word)
+                    && !NON_TASK_OPENERS.contains(&word)
+                    && !self.names.iter().any(|name| name.start == at)
             }
         }
     }

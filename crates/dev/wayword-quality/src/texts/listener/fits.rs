@@ -1,8 +1,10 @@
 //! Finds the objects of a building that a description fits. Each statement narrows the set of objects; one that fits none is skipped.
 
 use super::{
-    said::{How, Landmark, Level, Rank, Relation, Said, Side},
-    scene::Scene,
+    said::{
+        ArrivalSide, LevelMention, NamesakeRank, RelationKind, RelationLandmark, TargetDescription, TargetRelation,
+    },
+    scene::ListenerScene,
 };
 use std::{collections::BTreeSet, f64::consts::PI};
 use wayword_core::{DVec3, Heading};
@@ -26,7 +28,7 @@ pub(super) const SLACK_HEIGHT_M: f64 = 0.25;
 
 /// The end of a walk: the viewpoint, the position of the eye, the heading on arrival, the storey of the start and the highest storey.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Arrival {
+pub(super) struct ListenerArrival {
     pub(super) at: usize,
     pub(super) eye: DVec3,
     pub(super) heading: Heading,
@@ -35,114 +37,115 @@ pub(super) struct Arrival {
 }
 
 /// A listener at the end of a walk, who compares a description with the objects of a building.
-pub(super) struct Listener<'a> {
-    pub(super) scene: &'a Scene,
-    pub(super) said: &'a Said,
-    pub(super) arrival: Arrival,
+pub(super) struct TargetListener<'a> {
+    pub(super) scene: &'a ListenerScene,
+    pub(super) said: &'a TargetDescription,
+    pub(super) arrival: ListenerArrival,
 }
 
 /// The objects that still fit, and the number of statements that were skipped because no object fits them.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Left {
+pub(super) struct RemainingObjects {
     pub(super) objects: BTreeSet<usize>,
     pub(super) left_out: usize,
 }
 
-impl Left {
+impl RemainingObjects {
     /// Keeps the objects that a statement fits. Keeps all where it fits none, because labels cannot confirm the statement then.
-    pub(super) fn narrowed(self, fits: impl Fn(usize, &BTreeSet<usize>) -> bool) -> Self {
+    pub(super) fn narrow_by(self, fits: impl Fn(usize, &BTreeSet<usize>) -> bool) -> Self {
         let kept: BTreeSet<usize> =
             self.objects.iter().copied().filter(|object| fits(*object, &self.objects)).collect();
         if kept.is_empty() { Self { left_out: self.left_out + 1, ..self } } else { Self { objects: kept, ..self } }
     }
 }
 
-impl Listener<'_> {
+impl TargetListener<'_> {
     /// The objects that fit the whole description, as far as labels can confirm it.
-    pub(super) fn fitting(&self) -> Left {
-        let mut left = self.placed();
+    pub(super) fn fitting_objects(&self) -> RemainingObjects {
+        let mut left = self.related_objects();
         if !self.said.ranks.is_empty() {
             let has_all = |object: usize, among: &BTreeSet<usize>| {
                 let seen = among.iter().copied().filter(|object| self.is_in_view(*object)).collect();
                 let mut ranks = self.said.ranks.iter();
                 self.is_in_view(object) && ranks.all(|rank| self.has_rank(object, *rank, &seen, false))
             };
-            left = left.narrowed(has_all);
+            left = left.narrow_by(has_all);
         }
         let Some(side) = self.said.side else { return left };
-        left.narrowed(|object, among| self.on_side(among, side).contains(&object))
+        left.narrow_by(|object, among| self.on_side(among, side).contains(&object))
     }
 
     /// The objects that fit the name, the level and the room.
-    pub(super) fn housed(&self) -> Left {
-        let left = Left { objects: self.scene.called(&self.said.name).collect(), left_out: 0 };
-        let left = left.narrowed(|object, _| self.fits_level(object));
+    pub(super) fn objects_in_room(&self) -> RemainingObjects {
+        let left = RemainingObjects { objects: self.scene.objects_called(&self.said.name).collect(), left_out: 0 };
+        let left = left.narrow_by(|object, _| self.fits_level(object));
         let Some(said) = &self.said.room else { return left };
         let rooms = |object: usize| &self.scene.objects[object].rooms;
         let mut left = left;
         if !said.name.is_empty() {
             let kinds = self.scene.rooms_called(&said.name);
-            left = left.narrowed(|object, _| !rooms(object).is_disjoint(&kinds));
+            left = left.narrow_by(|object, _| !rooms(object).is_disjoint(&kinds));
         }
         for thing in &said.things {
-            left = left.narrowed(|object, _| rooms(object).iter().any(|room| self.has(*room, thing)));
+            left = left.narrow_by(|object, _| rooms(object).iter().any(|room| self.room_has(*room, thing)));
         }
         for name in &said.beside {
             let kinds = self.scene.rooms_called(name);
             let is_beside = |room: &usize| !kinds.is_disjoint(&self.scene.rooms[*room].beside);
-            left = left.narrowed(|object, _| rooms(object).iter().any(is_beside));
+            left = left.narrow_by(|object, _| rooms(object).iter().any(is_beside));
         }
         left
     }
 
     /// Whether a room has a thing.
-    pub(super) fn has(&self, room: usize, thing: &str) -> bool {
-        self.scene.called(thing).any(|object| self.scene.objects[object].rooms.contains(&room))
+    pub(super) fn room_has(&self, room: usize, thing: &str) -> bool {
+        self.scene.objects_called(thing).any(|object| self.scene.objects[object].rooms.contains(&room))
     }
 
     /// The objects that fit the relations too. A relation after the first may belong to the thing before it: in "the vase on the table by
     /// the window" the table is by the window.
-    pub(super) fn placed(&self) -> Left {
-        let mut left = self.housed();
+    pub(super) fn related_objects(&self) -> RemainingObjects {
+        let mut left = self.objects_in_room();
         for at in 0..self.said.relations.len() {
             left = if self.is_unknown(&self.said.relations[at]) {
-                Left { left_out: left.left_out + 1, ..left }
+                RemainingObjects { left_out: left.left_out + 1, ..left }
             } else {
-                left.narrowed(|object, among| self.relates(object, at, among))
+                left.narrow_by(|object, among| self.fits_relation(object, at, among))
             };
         }
         left
     }
 
-    pub(super) fn relates(&self, object: usize, at: usize, namesakes: &BTreeSet<usize>) -> bool {
+    pub(super) fn fits_relation(&self, object: usize, at: usize, namesakes: &BTreeSet<usize>) -> bool {
         let relation = &self.said.relations[at];
         let place = self.scene.objects[object].position;
         let before = self.said.relations[..at].iter().flat_map(|relation| &relation.to).filter(|to| !to.is_room);
         let near = |other: &usize| self.scene.objects[*other].position.distance(place) <= NEAR_M;
-        let mut holders = before.flat_map(|to| self.scene.called(&to.name)).filter(near);
-        self.holds(object, relation, namesakes) || holders.any(|holder| self.holds(holder, relation, &BTreeSet::new()))
+        let mut holders = before.flat_map(|to| self.scene.objects_called(&to.name)).filter(near);
+        self.relation_holds(object, relation, namesakes)
+            || holders.any(|holder| self.relation_holds(holder, relation, &BTreeSet::new()))
     }
 
     /// Whether labels cannot judge a relation, or the building does not list one of its landmarks.
-    pub(super) fn is_unknown(&self, relation: &Relation) -> bool {
-        let lists = |landmark: &Landmark| !self.spots(landmark, None).is_empty();
-        relation.how == How::Unknown || !relation.to.iter().all(lists)
+    pub(super) fn is_unknown(&self, relation: &TargetRelation) -> bool {
+        let lists = |landmark: &RelationLandmark| !self.landmark_positions(landmark, None).is_empty();
+        relation.how == RelationKind::Unknown || !relation.to.iter().all(lists)
     }
 
     pub(super) fn fits_level(&self, object: usize) -> bool {
         let (Some(said), Some(level)) = (self.said.level, self.scene.objects[object].level) else { return true };
         let than_start = |fits: &dyn Fn(u32) -> bool| self.arrival.start_level.is_none_or(fits);
         match said {
-            Level::Number(number) => level == number,
-            Level::Up => than_start(&|start| level > start),
-            Level::Down => than_start(&|start| level < start),
-            Level::Same => than_start(&|start| level == start),
-            Level::Top => self.arrival.top_level.is_none_or(|top| level == top),
+            LevelMention::Number(number) => level == number,
+            LevelMention::Up => than_start(&|start| level > start),
+            LevelMention::Down => than_start(&|start| level < start),
+            LevelMention::Same => than_start(&|start| level == start),
+            LevelMention::Top => self.arrival.top_level.is_none_or(|top| level == top),
         }
     }
 
     /// The positions of a landmark's objects except one, or the viewpoints of its rooms.
-    pub(super) fn spots(&self, landmark: &Landmark, but: Option<usize>) -> Vec<DVec3> {
+    pub(super) fn landmark_positions(&self, landmark: &RelationLandmark, but: Option<usize>) -> Vec<DVec3> {
         if landmark.is_room {
             let rooms = self.scene.rooms_called(&landmark.name).into_iter();
             return rooms
@@ -150,37 +153,37 @@ impl Listener<'_> {
                 .map(|at| self.scene.viewpoints[*at])
                 .collect();
         }
-        let called = self.scene.called(&landmark.name).filter(|object| Some(*object) != but);
+        let called = self.scene.objects_called(&landmark.name).filter(|object| Some(*object) != but);
         called.map(|object| self.scene.objects[object].position).collect()
     }
 
-    pub(super) fn holds(&self, object: usize, relation: &Relation, namesakes: &BTreeSet<usize>) -> bool {
+    pub(super) fn relation_holds(&self, object: usize, relation: &TargetRelation, namesakes: &BTreeSet<usize>) -> bool {
         let place = self.scene.objects[object].position;
-        let spots = self.spots(&relation.to[0], Some(object));
+        let spots = self.landmark_positions(&relation.to[0], Some(object));
         let near_m = if relation.to[0].is_room { NEAR_ROOM_M } else { NEAR_M };
         let near = |spot: &DVec3| spot.distance(place) <= near_m;
         let flat = |spot: &DVec3| (*spot - place).truncate().length();
         match relation.how {
-            How::Unknown => true,
-            How::Near => spots.iter().any(near),
-            How::Closest => {
+            RelationKind::Unknown => true,
+            RelationKind::Near => spots.iter().any(near),
+            RelationKind::Closest => {
                 spots.iter().filter(|spot| near(spot)).any(|spot| self.is_nearest(object, *spot, namesakes, 0.0))
             }
-            How::Farthest => self.is_farthest(object, &spots, namesakes, 0.0),
-            How::Above => spots.iter().any(|spot| flat(spot) <= near_m && place.z - spot.z > ABOVE_M),
-            How::Under => spots.iter().any(|spot| flat(spot) <= near_m && spot.z - place.z > ABOVE_M),
-            How::On => spots.iter().any(|spot| flat(spot) <= near_m),
-            How::LeftOf => spots.iter().any(|spot| near(spot) && self.turn_from(*spot, place) < 0.0),
-            How::RightOf => spots.iter().any(|spot| near(spot) && self.turn_from(*spot, place) > 0.0),
-            How::Between => {
-                let others = relation.to.get(1).map(|to| self.spots(to, Some(object))).unwrap_or_default();
+            RelationKind::Farthest => self.is_farthest(object, &spots, namesakes, 0.0),
+            RelationKind::Above => spots.iter().any(|spot| flat(spot) <= near_m && place.z - spot.z > ABOVE_M),
+            RelationKind::Under => spots.iter().any(|spot| flat(spot) <= near_m && spot.z - place.z > ABOVE_M),
+            RelationKind::On => spots.iter().any(|spot| flat(spot) <= near_m),
+            RelationKind::LeftOf => spots.iter().any(|spot| near(spot) && self.turn_from(*spot, place) < 0.0),
+            RelationKind::RightOf => spots.iter().any(|spot| near(spot) && self.turn_from(*spot, place) > 0.0),
+            RelationKind::Between => {
+                let others = relation.to.get(1).map(|to| self.landmark_positions(to, Some(object))).unwrap_or_default();
                 spots.iter().any(|a| others.iter().any(|b| is_between(place, *a, *b, BETWEEN_M)))
             }
         }
     }
 
     /// The positions of an object's namesakes in the same room.
-    pub(super) fn rivals<'s>(
+    pub(super) fn rival_positions<'s>(
         &'s self,
         object: usize,
         namesakes: &'s BTreeSet<usize>,
@@ -192,7 +195,7 @@ impl Listener<'_> {
 
     pub(super) fn is_nearest(&self, object: usize, spot: DVec3, namesakes: &BTreeSet<usize>, slack_m: f64) -> bool {
         let own_m = self.scene.objects[object].position.distance(spot);
-        self.rivals(object, namesakes).all(|other| other.distance(spot) > own_m - slack_m)
+        self.rival_positions(object, namesakes).all(|other| other.distance(spot) > own_m - slack_m)
     }
 
     pub(super) fn is_farthest(
@@ -204,7 +207,7 @@ impl Listener<'_> {
     ) -> bool {
         let off = |place: DVec3| spots.iter().map(|spot| spot.distance(place)).fold(f64::INFINITY, f64::min);
         let own_m = off(self.scene.objects[object].position);
-        self.rivals(object, namesakes).all(|other| off(other) < own_m + slack_m)
+        self.rival_positions(object, namesakes).all(|other| off(other) < own_m + slack_m)
     }
 
     /// The turn from one spot to another, seen from the end of the walk, radians, positive to the right.
@@ -214,7 +217,7 @@ impl Listener<'_> {
     }
 
     /// The turn from the heading on arrival to an object, radians, positive to the right.
-    pub(super) fn turn(&self, object: usize) -> f64 {
+    pub(super) fn turn_to_object(&self, object: usize) -> f64 {
         let towards = Heading::towards(self.arrival.eye, self.scene.objects[object].position);
         towards.map_or(0.0, |towards| self.arrival.heading.turn_to(towards))
     }
@@ -231,9 +234,9 @@ impl Listener<'_> {
     }
 
     /// The objects on a side. "On the left" may mean the leftmost of several.
-    pub(super) fn on_side(&self, objects: &BTreeSet<usize>, side: Side) -> BTreeSet<usize> {
+    pub(super) fn on_side(&self, objects: &BTreeSet<usize>, side: ArrivalSide) -> BTreeSet<usize> {
         let on = |object: &usize| {
-            let turn = self.turn(*object) * if side.is_left { -1.0 } else { 1.0 };
+            let turn = self.turn_to_object(*object) * if side.is_left { -1.0 } else { 1.0 };
             self.is_in_view(*object) && (AHEAD_RAD..PI - AHEAD_RAD).contains(&turn)
         };
         let there: BTreeSet<usize> = objects.iter().copied().filter(on).collect();
@@ -241,14 +244,14 @@ impl Listener<'_> {
             return there;
         }
         let seen: BTreeSet<usize> = objects.iter().copied().filter(|object| self.is_in_view(*object)).collect();
-        let rank = if side.is_left { Rank::Leftmost } else { Rank::Rightmost };
+        let rank = if side.is_left { NamesakeRank::Leftmost } else { NamesakeRank::Rightmost };
         seen.iter().copied().filter(|object| self.has_rank(*object, rank, &seen, false)).collect()
     }
 
     /// Whether an object has a rank among others. With `slack` only a clear violation counts.
-    pub(super) fn has_rank(&self, object: usize, rank: Rank, among: &BTreeSet<usize>, slack: bool) -> bool {
+    pub(super) fn has_rank(&self, object: usize, rank: NamesakeRank, among: &BTreeSet<usize>, slack: bool) -> bool {
         let slack_of = |amount: f64| if slack { amount } else { 0.0 };
-        let middle = self.middle(among);
+        let middle = self.middle_heading(among);
         let bearing = |object: usize| middle.turn_to(self.heading_to(object));
         let range_m = |object: usize| (self.scene.objects[object].position - self.arrival.eye).length();
         let height_m = |object: usize| self.scene.objects[object].position.z;
@@ -259,13 +262,13 @@ impl Listener<'_> {
         in_order.sort_by(|a, b| bearing(*a).total_cmp(&bearing(*b)));
         let at = in_order.iter().position(|other| *other == object).unwrap_or(usize::MAX);
         match rank {
-            Rank::Leftmost => first(&bearing, slack_of(SLACK_RAD)),
-            Rank::Rightmost => first(&|other| -bearing(other), slack_of(SLACK_RAD)),
-            Rank::Nearest => first(&range_m, slack_of(SLACK_M)),
-            Rank::Farthest => first(&|other| -range_m(other), slack_of(SLACK_M)),
-            Rank::Highest => first(&|other| -height_m(other), slack_of(SLACK_HEIGHT_M)),
-            Rank::Lowest => first(&height_m, slack_of(SLACK_HEIGHT_M)),
-            Rank::Middle => {
+            NamesakeRank::Leftmost => first(&bearing, slack_of(SLACK_RAD)),
+            NamesakeRank::Rightmost => first(&|other| -bearing(other), slack_of(SLACK_RAD)),
+            NamesakeRank::Nearest => first(&range_m, slack_of(SLACK_M)),
+            NamesakeRank::Farthest => first(&|other| -range_m(other), slack_of(SLACK_M)),
+            NamesakeRank::Highest => first(&|other| -height_m(other), slack_of(SLACK_HEIGHT_M)),
+            NamesakeRank::Lowest => first(&height_m, slack_of(SLACK_HEIGHT_M)),
+            NamesakeRank::Middle => {
                 let is_inner = at > 0 && at + 1 < in_order.len();
                 if slack {
                     is_inner || in_order.len() < 3
@@ -273,8 +276,8 @@ impl Listener<'_> {
                     in_order.len() % 2 == 1 && in_order.len() > 1 && at == in_order.len() / 2
                 }
             }
-            Rank::FromLeft(number) => at == number || slack && at.abs_diff(number) <= 1,
-            Rank::FromRight(number) => {
+            NamesakeRank::FromLeft(number) => at == number || slack && at.abs_diff(number) <= 1,
+            NamesakeRank::FromRight(number) => {
                 at + number + 1 == in_order.len() || slack && (at + number + 1).abs_diff(in_order.len()) <= 1
             }
         }
@@ -285,9 +288,9 @@ impl Listener<'_> {
     }
 
     /// The direction of the middle of some objects.
-    pub(super) fn middle(&self, objects: &BTreeSet<usize>) -> Heading {
+    pub(super) fn middle_heading(&self, objects: &BTreeSet<usize>) -> Heading {
         let sum =
-            objects.iter().map(|object| self.heading_to(*object).direction()).fold(DVec3::ZERO, |sum, one| sum + one);
+            objects.iter().map(|object| self.heading_to(*object).unit_vector()).fold(DVec3::ZERO, |sum, one| sum + one);
         Heading::towards(DVec3::ZERO, sum).unwrap_or(self.arrival.heading)
     }
 }

@@ -11,19 +11,19 @@ mod said;
 mod scene;
 mod vocabulary;
 
-use super::row::{Row, share};
-use fits::{Arrival, Listener};
-use scene::Scene;
+use super::row::{TextFigureRow, share_row};
+use fits::{ListenerArrival, TargetListener};
+use scene::ListenerScene;
 use serde::Serialize;
 use std::collections::BTreeMap;
-use wayword_core::{Platform, SceneId, Survey};
+use wayword_core::{Platform, SceneId, ViewpointSurvey};
 use wayword_formats::Episode;
-use wayword_run::error::Error;
+use wayword_run::error::CommandError;
 use wayword_world::path_of;
 
 /// The listener's result for one text.
 #[derive(Debug, Clone, Default, Serialize)]
-pub(super) struct Heard {
+pub(super) struct ListenerResult {
     pub(super) item: String,
     pub(super) text: String,
     /// Whether the text names the target.
@@ -44,7 +44,7 @@ pub(super) struct Heard {
     fits_namesake: bool,
 }
 
-impl Heard {
+impl ListenerResult {
     /// Whether only the target fits, and its geometry contradicts no part of the description.
     pub(super) fn is_pinned(&self) -> bool {
         self.fits_target && self.fitting == 1 && self.denied.is_none()
@@ -60,7 +60,7 @@ impl Heard {
     }
 
     /// The reason why the target is not pinned down, in words.
-    pub(super) fn fault(&self) -> String {
+    pub(super) fn describe_fault(&self) -> String {
         match self.denied {
             Some(what) => format!("{what} denied"),
             None if self.pins_another() => "another object fits".to_owned(),
@@ -74,11 +74,11 @@ impl Heard {
 }
 
 /// The listener's results for all texts of episodes that have a target and a path in one of the surveyed scenes.
-pub(super) fn hear(
+pub(super) fn hear_episodes(
     platform: &dyn Platform,
-    surveys: &BTreeMap<SceneId, Survey>,
+    surveys: &BTreeMap<SceneId, ViewpointSurvey>,
     episodes: &[Episode],
-) -> Result<Vec<Heard>, Error> {
+) -> Result<Vec<ListenerResult>, CommandError> {
     let mut by_scene: BTreeMap<&SceneId, Vec<&Episode>> = BTreeMap::new();
     for episode in episodes.iter().filter(|episode| episode.target_object.is_some()) {
         by_scene.entry(&episode.scene).or_default().push(episode);
@@ -87,37 +87,39 @@ pub(super) fn hear(
     for (scene, episodes) in by_scene {
         let Some(survey) = surveys.get(scene) else { continue };
         let top_level = survey.viewpoints().iter().filter_map(|viewpoint| viewpoint.level).max();
-        let known = Scene::of(survey);
+        let known = ListenerScene::from_survey(survey);
         for episode in episodes {
             let path = path_of(platform, &*episode.id, scene, &episode.viewpoints, episode.start_heading, None)?;
             let target = known.objects.iter().position(|object| Some(&object.id) == episode.target_object.as_ref());
             let last = path.frames.last();
-            let at = last.and_then(|frame| known.place(frame.viewpoint.as_ref()?.as_str()));
+            let at = last.and_then(|frame| known.viewpoint_index(frame.viewpoint.as_ref()?.as_str()));
             let (Some(target), Some(at), Some(last)) = (target, at, last) else { continue };
             let start_level = path.frames.first().and_then(|frame| frame.level);
-            let arrival = Arrival { at, eye: last.pose.position, heading: last.pose.heading, start_level, top_level };
-            let of = |text: &String| Heard { item: episode.id.clone(), ..one(&known, arrival, target, text) };
+            let arrival =
+                ListenerArrival { at, eye: last.pose.position, heading: last.pose.heading, start_level, top_level };
+            let of =
+                |text: &String| ListenerResult { item: episode.id.clone(), ..hear_text(&known, arrival, target, text) };
             heard.extend(episode.instructions.iter().map(of));
         }
     }
     Ok(heard)
 }
 
-fn one(scene: &Scene, arrival: Arrival, target: usize, text: &str) -> Heard {
-    let mut heard = Heard { text: text.to_owned(), ..Heard::default() };
-    let said = said::said(text, &scene.names).unwrap_or_default();
-    let listener = Listener { scene, said: &said, arrival };
+fn hear_text(scene: &ListenerScene, arrival: ListenerArrival, target: usize, text: &str) -> ListenerResult {
+    let mut heard = ListenerResult { text: text.to_owned(), ..ListenerResult::default() };
+    let said = said::describe_target(text, &scene.names).unwrap_or_default();
+    let listener = TargetListener { scene, said: &said, arrival };
     let namesakes = listener.namesakes_in_view(target);
     heard.has_namesake = !namesakes.is_empty();
-    heard.is_named = scene.called(&said.name).any(|object| object == target);
+    heard.is_named = scene.objects_called(&said.name).any(|object| object == target);
     if !heard.is_named {
         return heard;
     }
-    let left = listener.fitting();
+    let left = listener.fitting_objects();
     let fitting = left.objects;
     heard.fitting = fitting.len();
     heard.fits_target = fitting.contains(&target);
-    heard.denied = listener.denial(target);
+    heard.denied = listener.denied_part(target);
     heard.has_look = said.has_look || left.left_out > 0;
     heard.has_distinction =
         heard.has_look || !said.relations.is_empty() || !said.ranks.is_empty() || said.side.is_some();
@@ -125,17 +127,18 @@ fn one(scene: &Scene, arrival: Arrival, target: usize, text: &str) -> Heard {
     heard
 }
 
-pub(super) fn rows(heard: &[Heard]) -> Vec<Row> {
-    let of_all = |name: &str, is: &dyn Fn(&Heard) -> bool| share(name, heard.iter().map(is));
-    let with_namesake =
-        |name: &str, is: &dyn Fn(&Heard) -> bool| share(name, heard.iter().filter(|heard| heard.has_namesake).map(is));
+pub(super) fn listener_rows(heard: &[ListenerResult]) -> Vec<TextFigureRow> {
+    let of_all = |name: &str, is: &dyn Fn(&ListenerResult) -> bool| share_row(name, heard.iter().map(is));
+    let with_namesake = |name: &str, is: &dyn Fn(&ListenerResult) -> bool| {
+        share_row(name, heard.iter().filter(|heard| heard.has_namesake).map(is))
+    };
     vec![
         of_all("the target is named", &|heard| heard.is_named),
-        of_all("pinned down: it alone fits, by labels", &Heard::is_pinned),
+        of_all("pinned down: it alone fits, by labels", &ListenerResult::is_pinned),
         of_all("pinned down, or with a word that labels cannot judge", &|heard| {
             heard.is_pinned() || heard.has_look && heard.fits_target && heard.denied.is_none()
         }),
-        of_all("falsely pinned", &Heard::is_false),
+        of_all("falsely pinned", &ListenerResult::is_false),
         of_all("  the geometry denies what is said of it", &|heard| heard.denied.is_some()),
         of_all("  another object alone fits", &|heard| heard.denied.is_none() && heard.pins_another()),
         of_all("a namesake in view at the end", &|heard| heard.has_namesake),

@@ -1,19 +1,22 @@
 //! Reads the words around a target's name: ranks, sides, relations to other things, and its room.
 
-use super::super::names::Named;
+use super::super::names::LexiconName;
 use super::{
-    clauses::Text,
-    said::{How, InRoom, Landmark, Level, Rank, Relation, Said, Side},
-    vocabulary::{LOOKS, NUMBERS, OF_ROOMS, ORDINALS, RANKS, RELATIONS},
+    clauses::ListenerText,
+    said::{
+        ArrivalSide, InRoom, LevelMention, NamesakeRank, RelationKind, RelationLandmark, TargetDescription,
+        TargetRelation,
+    },
+    vocabulary::{LOOK_WORDS, NUMBER_WORDS, OF_ROOMS, ORDINAL_WORDS, RANK_WORDS, RELATION_PHRASES},
 };
 use wayword_language::lexicon::is_plural;
 
 /// The name of the other thing begins at most this many words after a relation.
-const GAP: usize = 5;
+const MAX_GAP_WORDS: usize = 5;
 
-impl Text {
+impl ListenerText {
     /// Adds the ranks and looks in the words before the target's name.
-    pub(super) fn before(&self, target: usize, [from, _]: [usize; 2], said: &mut Said) {
+    pub(super) fn read_before(&self, target: usize, [from, _]: [usize; 2], said: &mut TargetDescription) {
         let name = &self.names[target];
         let first = name.start.saturating_sub(6).max(from);
         let mut at = name.start;
@@ -25,21 +28,25 @@ impl Text {
         for at in at..name.start {
             let word = self.words[at].as_str();
             // An ordinal that counts ("the second picture from the left") is a rank and no look.
-            said.has_look |= LOOKS.contains(&word) && !self.is_ordinal_from(target, at);
-            let rank = RANKS.iter().find(|(other, _)| *other == word).map(|(_, rank)| *rank);
+            said.has_look |= LOOK_WORDS.contains(&word) && !self.is_ordinal_from(target, at);
+            let rank = RANK_WORDS.iter().find(|(other, _)| *other == word).map(|(_, rank)| *rank);
             // "The far left picture" is the leftmost.
             let is_far_side = word == "far" && matches!(self.words[at + 1].as_str(), "left" | "right");
             said.ranks.extend(rank.filter(|_| !is_far_side));
             if let (Some(number), Some(from_left)) =
-                (ORDINALS.iter().position(|one| *one == word), self.counts_from(target))
+                (ORDINAL_WORDS.iter().position(|one| *one == word), self.counts_from(target))
             {
-                said.ranks.push(if from_left { Rank::FromLeft(number) } else { Rank::FromRight(number) });
+                said.ranks.push(if from_left {
+                    NamesakeRank::FromLeft(number)
+                } else {
+                    NamesakeRank::FromRight(number)
+                });
             }
         }
     }
 
     pub(super) fn is_ordinal_from(&self, target: usize, at: usize) -> bool {
-        ORDINALS.contains(&self.words[at].as_str()) && self.counts_from(target).is_some()
+        ORDINAL_WORDS.contains(&self.words[at].as_str()) && self.counts_from(target).is_some()
     }
 
     /// "From the left" after a name: whether it counts from the left, or from the right.
@@ -52,7 +59,7 @@ impl Text {
     }
 
     /// Adds the sides, ranks and relations in the words after the target's name, up to the end of its clause.
-    pub(super) fn after(&self, target: usize, [_, to]: [usize; 2], said: &mut Said) {
+    pub(super) fn read_after(&self, target: usize, [_, to]: [usize; 2], said: &mut TargetDescription) {
         let mut at = self.names[target].end;
         let mut holder_is_room = false;
         while at < to {
@@ -69,21 +76,21 @@ impl Text {
             }
             said.has_look |= !holder_is_room
                 && at < self.names[target].end + 4
-                && LOOKS.contains(&self.words[at].as_str())
+                && LOOK_WORDS.contains(&self.words[at].as_str())
                 && !self.is_ordinal_from(target, at);
-            let found = RELATIONS.iter().find(|(phrase, _)| self.stands_at(phrase, at, to));
+            let found = RELATION_PHRASES.iter().find(|(phrase, _)| self.stands_at(phrase, at, to));
             let Some((phrase, how)) = found else {
                 at += 1;
                 continue;
             };
             let next = at + phrase.split(' ').count();
-            let Some((landmarks, end)) = self.landmarks(next, to, *how) else {
+            let Some((landmarks, end)) = self.read_landmarks(next, to, *how) else {
                 at = next;
                 continue;
             };
-            let in_room = matches!(how, How::On) && landmarks[0].is_room;
+            let in_room = matches!(how, RelationKind::On) && landmarks[0].is_room;
             if !holder_is_room && !in_room && !landmarks.is_empty() {
-                said.relations.push(Relation { how: *how, to: landmarks.clone() });
+                said.relations.push(TargetRelation { how: *how, to: landmarks.clone() });
             }
             holder_is_room = holder_is_room || in_room;
             at = end;
@@ -96,7 +103,7 @@ impl Text {
     }
 
     /// "On your left", "on the right side".
-    pub(super) fn side_at(&self, at: usize, to: usize) -> Option<(usize, Side)> {
+    pub(super) fn side_at(&self, at: usize, to: usize) -> Option<(usize, ArrivalSide)> {
         let [first, second, side] =
             [0, 1, 2].map(|next| self.words.get(at + next).filter(|_| at + next < to).map_or("", String::as_str));
         let is_left = match side {
@@ -106,22 +113,22 @@ impl Text {
         };
         let is_of = (3..6).any(|next| self.words.get(at + next).is_some_and(|word| word == "of") && next < 5);
         let is_side = matches!(first, "on" | "to" | "at") && matches!(second, "the" | "your") && !is_of;
-        is_side.then_some((3, Side { is_left, is_yours: second == "your" }))
+        is_side.then_some((3, ArrivalSide { is_left, is_yours: second == "your" }))
     }
 
     /// "Closest to you", "in the middle", "on top".
-    pub(super) fn rank_at(&self, at: usize, to: usize) -> Option<Rank> {
+    pub(super) fn rank_at(&self, at: usize, to: usize) -> Option<NamesakeRank> {
         let phrases = [
-            ("closest to you", Rank::Nearest),
-            ("nearest to you", Rank::Nearest),
-            ("nearest you", Rank::Nearest),
-            ("closest to me", Rank::Nearest),
-            ("furthest from you", Rank::Farthest),
-            ("farthest from you", Rank::Farthest),
-            ("furthest away", Rank::Farthest),
-            ("farthest away", Rank::Farthest),
-            ("in the middle", Rank::Middle),
-            ("in the center", Rank::Middle),
+            ("closest to you", NamesakeRank::Nearest),
+            ("nearest to you", NamesakeRank::Nearest),
+            ("nearest you", NamesakeRank::Nearest),
+            ("closest to me", NamesakeRank::Nearest),
+            ("furthest from you", NamesakeRank::Farthest),
+            ("farthest from you", NamesakeRank::Farthest),
+            ("furthest away", NamesakeRank::Farthest),
+            ("farthest away", NamesakeRank::Farthest),
+            ("in the middle", NamesakeRank::Middle),
+            ("in the center", NamesakeRank::Middle),
         ];
         let found = phrases.iter().find(|(phrase, _)| self.stands_at(phrase, at, to))?;
         let is_of = self.words.get(at + 3).is_some_and(|word| word == "of" || word == "from");
@@ -129,14 +136,21 @@ impl Text {
     }
 
     /// The things that follow a relation.
-    pub(super) fn landmarks(&self, from: usize, to: usize, how: How) -> Option<(Vec<Landmark>, usize)> {
-        let first = self.names.iter().position(|name| name.start >= from && name.start < (from + GAP).min(to))?;
-        let landmark = |name: &Named| Landmark { name: name.name.clone(), is_room: name.is_room && !name.is_thing };
+    pub(super) fn read_landmarks(
+        &self,
+        from: usize,
+        to: usize,
+        how: RelationKind,
+    ) -> Option<(Vec<RelationLandmark>, usize)> {
+        let first =
+            self.names.iter().position(|name| name.start >= from && name.start < (from + MAX_GAP_WORDS).min(to))?;
+        let landmark =
+            |name: &LexiconName| RelationLandmark { name: name.name.clone(), is_room: name.is_room && !name.is_thing };
         let name = &self.names[first];
         let mut landmarks = vec![landmark(name)];
         let mut end = name.end;
-        if how == How::Between {
-            let second = self.names.get(first + 1).filter(|next| next.start < (name.end + GAP).min(to));
+        if how == RelationKind::Between {
+            let second = self.names.get(first + 1).filter(|next| next.start < (name.end + MAX_GAP_WORDS).min(to));
             let joined = second.filter(|next| self.words[name.end..next.start].iter().any(|word| word == "and"));
             let several = is_plural(&self.words[name.end - 1]);
             match joined {
@@ -189,7 +203,11 @@ impl Text {
             let between = &self.words[end..name.start.max(end)];
             let run = format!(" {} ", between.join(" "));
             let is_told = OF_ROOMS.iter().any(|phrase| run.contains(&format!(" {phrase} ")));
-            if name.end > to || Some(at) == target || between.len() > GAP || !(is_told || run.contains(" and ")) {
+            if name.end > to
+                || Some(at) == target
+                || between.len() > MAX_GAP_WORDS
+                || !(is_told || run.contains(" and "))
+            {
                 break;
             }
             if name.is_floor() {
@@ -205,9 +223,10 @@ impl Text {
     }
 
     /// The level that the text ends on.
-    pub(super) fn level(&self) -> Option<Level> {
+    pub(super) fn read_level(&self) -> Option<LevelMention> {
         let number = |word: &str| {
-            let written = [&ORDINALS, &NUMBERS].into_iter().find_map(|list| list.iter().position(|one| *one == word));
+            let written =
+                [&ORDINAL_WORDS, &NUMBER_WORDS].into_iter().find_map(|list| list.iter().position(|one| *one == word));
             let digits = word.trim_end_matches(char::is_alphabetic);
             written.map(|at| at as u32 + 1).or_else(|| digits.parse().ok())
         };
@@ -216,20 +235,20 @@ impl Text {
             let word =
                 |step: isize| at.checked_add_signed(step).and_then(|at| self.words.get(at)).map_or("", String::as_str);
             level = match word(0) {
-                "upstairs" => Some(Level::Up),
-                "downstairs" => Some(Level::Down),
+                "upstairs" => Some(LevelMention::Up),
+                "downstairs" => Some(LevelMention::Down),
                 "level" | "floor" | "story" | "storey" => match word(-1) {
-                    "this" | "same" => Some(Level::Same),
-                    "top" | "upper" | "highest" => Some(Level::Top),
-                    "ground" => Some(Level::Number(1)),
+                    "this" | "same" => Some(LevelMention::Same),
+                    "top" | "upper" | "highest" => Some(LevelMention::Top),
+                    "ground" => Some(LevelMention::Number(1)),
                     before => number(before)
                         .or_else(|| number(word(1)).filter(|_| word(0) == "level" || word(0) == "floor"))
-                        .map(Level::Number)
+                        .map(LevelMention::Number)
                         .or(level),
                 },
                 _ => level,
             };
         }
-        level.filter(|level| !matches!(level, Level::Number(0 | 10..)))
+        level.filter(|level| !matches!(level, LevelMention::Number(0 | 10..)))
     }
 }

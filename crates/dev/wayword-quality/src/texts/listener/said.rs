@@ -1,28 +1,28 @@
 //! Reads the description of the target out of a text, by a grammar that only the listener uses.
 
-use super::clauses::Text;
+use super::clauses::ListenerText;
 use std::collections::BTreeSet;
 
 /// The description of the object of a text's task.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub(super) struct Said {
+pub(super) struct TargetDescription {
     /// The object's name.
     pub(super) name: String,
     /// Its relations to other things, such as "next to the lamp".
-    pub(super) relations: Vec<Relation>,
+    pub(super) relations: Vec<TargetRelation>,
     /// Its ranks among its namesakes, such as "the leftmost".
-    pub(super) ranks: Vec<Rank>,
+    pub(super) ranks: Vec<NamesakeRank>,
     /// The side on arrival. `is_yours` is the walker's own side ("on your left").
-    pub(super) side: Option<Side>,
+    pub(super) side: Option<ArrivalSide>,
     /// The room of the object, with the things in it and the rooms next to it.
     pub(super) room: Option<InRoom>,
-    pub(super) level: Option<Level>,
+    pub(super) level: Option<LevelMention>,
     /// Whether it has a word that labels cannot judge: a colour, a size, a material.
     pub(super) has_look: bool,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Side {
+pub(super) struct ArrivalSide {
     pub(super) is_left: bool,
     pub(super) is_yours: bool,
 }
@@ -36,7 +36,7 @@ pub(super) struct InRoom {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Level {
+pub(super) enum LevelMention {
     Number(u32),
     Up,
     Down,
@@ -45,7 +45,7 @@ pub(super) enum Level {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Rank {
+pub(super) enum NamesakeRank {
     Leftmost,
     Rightmost,
     Nearest,
@@ -58,20 +58,20 @@ pub(super) enum Rank {
 }
 
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Relation {
-    pub(super) how: How,
+pub(super) struct TargetRelation {
+    pub(super) how: RelationKind,
     /// The other thing or room; two for "between".
-    pub(super) to: Vec<Landmark>,
+    pub(super) to: Vec<RelationLandmark>,
 }
 
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Landmark {
+pub(super) struct RelationLandmark {
     pub(super) name: String,
     pub(super) is_room: bool,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum How {
+pub(super) enum RelationKind {
     Closest,
     Farthest,
     Near,
@@ -87,9 +87,9 @@ pub(super) enum How {
 
 /// The description of the object of a text's task; `None` where the text names no thing. `known` has names of things in addition to those
 /// of the lexicon.
-pub(super) fn said(text: &str, known: &BTreeSet<String>) -> Option<Said> {
-    let text = Text::of(text, known);
-    let clauses = text.clauses();
+pub(super) fn describe_target(text: &str, known: &BTreeSet<String>) -> Option<TargetDescription> {
+    let text = ListenerText::from_text(text, known);
+    let clauses = text.clause_ranges();
     let tasks: Vec<[usize; 2]> = clauses.iter().copied().filter(|clause| text.is_task(*clause)).collect();
     let moves: Vec<[usize; 2]> = clauses.iter().copied().filter(|clause| !text.is_task(*clause)).collect();
     let first_thing = |clauses: &[[usize; 2]]| {
@@ -102,9 +102,13 @@ pub(super) fn said(text: &str, known: &BTreeSet<String>) -> Option<Said> {
     let last_move = moves.last().copied().into_iter().collect::<Vec<_>>();
     let target = first_thing(&tasks).or_else(|| first_thing(&last_move))?;
     let of_target = clauses.iter().copied().find(|[from, to]| (*from..*to).contains(&text.names[target].start))?;
-    let mut said = Said { name: text.names[target].name.clone(), level: text.level(), ..Said::default() };
-    text.before(target, of_target, &mut said);
-    text.after(target, of_target, &mut said);
+    let mut said = TargetDescription {
+        name: text.names[target].name.clone(),
+        level: text.read_level(),
+        ..TargetDescription::default()
+    };
+    text.read_before(target, of_target, &mut said);
+    text.read_after(target, of_target, &mut said);
     let rooms_of = |clause: &[usize; 2]| text.room_in(*clause, (*clause == of_target).then_some(target));
     let in_moves = moves.iter().filter(|clause| **clause != of_target).filter_map(rooms_of).next_back();
     said.room = rooms_of(&of_target).or(in_moves);

@@ -1,8 +1,8 @@
 //! A building as a listener knows it: its objects with their positions, its rooms, and the objects in view of each viewpoint.
 
 use std::collections::{BTreeMap, BTreeSet};
-use wayword_core::{DVec3, ObjectId, Survey, survey::Surveyed};
-use wayword_language::lexicon::{kinds, normal, room_name, same_room};
+use wayword_core::{DVec3, ObjectId, ViewpointSurvey, survey::SurveyedViewpoint};
+use wayword_language::lexicon::{kinds_of, normalise_name, room_name, same_room};
 
 /// An object may lie in the room of the nearest viewpoint that shows it, and in those of viewpoints that are at most this much farther,
 /// metres.
@@ -12,12 +12,12 @@ const BESIDE_M: f64 = 3.0;
 /// The first guess of the distance between the eye and an object without a known position, metres.
 const GUESS_M: f64 = 1.5;
 /// How often the estimated position of an object is moved towards the rays from the eyes that see it.
-const ROUNDS: usize = 60;
+const CROSSING_ROUNDS: usize = 60;
 
 /// A building with its objects and rooms.
-pub(super) struct Scene {
-    pub(super) objects: Vec<Object>,
-    pub(super) rooms: Vec<Room>,
+pub(super) struct ListenerScene {
+    pub(super) objects: Vec<ListenerObject>,
+    pub(super) rooms: Vec<ListenerRoom>,
     pub(super) viewpoints: Vec<DVec3>,
     /// The room of each viewpoint.
     room_of: Vec<usize>,
@@ -27,7 +27,7 @@ pub(super) struct Scene {
 }
 
 /// An object.
-pub(super) struct Object {
+pub(super) struct ListenerObject {
     pub(super) id: ObjectId,
     pub(super) kinds: Vec<String>,
     pub(super) position: DVec3,
@@ -39,7 +39,7 @@ pub(super) struct Object {
 }
 
 /// A room: viewpoints of one storey that are joined and have the same name for it.
-pub(super) struct Room {
+pub(super) struct ListenerRoom {
     pub(super) name: String,
     pub(super) viewpoints: Vec<usize>,
     /// The neighbouring rooms.
@@ -47,49 +47,49 @@ pub(super) struct Room {
 }
 
 /// A sighting of an object: the viewpoint, and the direction.
-type Ray = (usize, DVec3);
+type SightingRay = (usize, DVec3);
 
-impl Scene {
-    pub(super) fn of(survey: &Survey) -> Self {
+impl ListenerScene {
+    pub(super) fn from_survey(survey: &ViewpointSurvey) -> Self {
         let viewpoints: Vec<DVec3> = survey.viewpoints().iter().map(|viewpoint| viewpoint.position).collect();
-        let (rooms, room_of) = rooms(survey);
-        let mut rays: BTreeMap<&ObjectId, (&str, Option<DVec3>, Vec<Ray>)> = BTreeMap::new();
+        let (rooms, room_of) = join_rooms(survey);
+        let mut rays: BTreeMap<&ObjectId, (&str, Option<DVec3>, Vec<SightingRay>)> = BTreeMap::new();
         for (at, viewpoint) in survey.viewpoints().iter().enumerate() {
             for label in viewpoint.known.things.iter().flatten() {
-                let flat = label.heading.direction() * libm::cos(label.elevation_rad);
+                let flat = label.heading.unit_vector() * libm::cos(label.elevation_rad);
                 let ray = flat + DVec3::Z * libm::sin(label.elevation_rad);
                 let entry = rays.entry(&label.object).or_insert((&label.name, label.position, Vec::new()));
                 entry.2.push((at, ray));
             }
         }
-        let object = |(id, (name, position, rays)): (&ObjectId, (&str, Option<DVec3>, Vec<Ray>))| {
-            let position = position.unwrap_or_else(|| crossing(&viewpoints, &rays));
-            let far = |(at, _): &Ray| (viewpoints[*at].distance(position), *at);
+        let object = |(id, (name, position, rays)): (&ObjectId, (&str, Option<DVec3>, Vec<SightingRay>))| {
+            let position = position.unwrap_or_else(|| crossing_point(&viewpoints, &rays));
+            let far = |(at, _): &SightingRay| (viewpoints[*at].distance(position), *at);
             let mut near: Vec<(f64, usize)> = rays.iter().map(far).collect();
             near.sort_by(|a, b| a.0.total_cmp(&b.0));
             let as_near = near.iter().take_while(|(far_m, _)| *far_m <= near[0].0 + AS_NEAR_M);
-            Object {
+            ListenerObject {
                 id: id.clone(),
-                kinds: kinds(name),
+                kinds: kinds_of(name),
                 position,
                 seen_from: rays.iter().map(|(at, _)| *at).collect(),
                 rooms: as_near.map(|(_, at)| room_of[*at]).collect(),
                 level: near.first().and_then(|(_, at)| survey.viewpoints()[*at].level),
             }
         };
-        let names = rays.values().map(|(name, ..)| normal(name)).collect();
+        let names = rays.values().map(|(name, ..)| normalise_name(name)).collect();
         let places = survey.viewpoints().iter().enumerate().map(|(at, one)| (one.id.to_string(), at)).collect();
         Self { objects: rays.into_iter().map(object).collect(), rooms, viewpoints, room_of, names, places }
     }
 
     /// The index of a viewpoint.
-    pub(super) fn place(&self, viewpoint: &str) -> Option<usize> {
+    pub(super) fn viewpoint_index(&self, viewpoint: &str) -> Option<usize> {
         self.places.get(viewpoint).copied()
     }
 
     /// The objects that a name may mean.
-    pub(super) fn called<'s>(&'s self, name: &str) -> impl Iterator<Item = usize> + 's {
-        let wanted = kinds(name);
+    pub(super) fn objects_called<'s>(&'s self, name: &str) -> impl Iterator<Item = usize> + 's {
+        let wanted = kinds_of(name);
         (0..self.objects.len()).filter(move |at| self.objects[*at].is_called(&wanted))
     }
 
@@ -110,7 +110,7 @@ impl Scene {
     }
 }
 
-impl Object {
+impl ListenerObject {
     /// Whether a name with these kinds may mean this object.
     pub(super) fn is_called(&self, wanted: &[String]) -> bool {
         let first = |a: &[String], b: &[String]| a.first().is_some_and(|kind| b.contains(kind));
@@ -119,10 +119,10 @@ impl Object {
 }
 
 /// The rooms, and the room of each viewpoint. Neighbouring viewpoints without a room name form a room without a name.
-fn rooms(survey: &Survey) -> (Vec<Room>, Vec<usize>) {
+fn join_rooms(survey: &ViewpointSurvey) -> (Vec<ListenerRoom>, Vec<usize>) {
     let all = survey.viewpoints();
     let key = |at: usize| (all[at].known.room.as_deref(), all[at].level);
-    let (mut rooms, mut room_of): (Vec<Room>, _) = (Vec::new(), vec![usize::MAX; all.len()]);
+    let (mut rooms, mut room_of): (Vec<ListenerRoom>, _) = (Vec::new(), vec![usize::MAX; all.len()]);
     for first in 0..all.len() {
         if room_of[first] != usize::MAX {
             continue;
@@ -139,7 +139,7 @@ fn rooms(survey: &Survey) -> (Vec<Room>, Vec<usize>) {
             }
         }
         let name = all[first].known.room.clone().unwrap_or_default();
-        rooms.push(Room { name, viewpoints: inside, beside: BTreeSet::new() });
+        rooms.push(ListenerRoom { name, viewpoints: inside, beside: BTreeSet::new() });
     }
     for at in 0..all.len() {
         let near = |other: &usize| is_beside(&all[at], &all[*other]) || all[at].neighbours.contains(other);
@@ -149,17 +149,17 @@ fn rooms(survey: &Survey) -> (Vec<Room>, Vec<usize>) {
     (rooms, room_of)
 }
 
-fn is_beside(a: &Surveyed, b: &Surveyed) -> bool {
+fn is_beside(a: &SurveyedViewpoint, b: &SurveyedViewpoint) -> bool {
     a.level == b.level && a.position.distance(b.position) <= BESIDE_M
 }
 
 /// The point nearest to all rays, which is where the object is. It is found by repeatedly averaging the projections onto the rays.
-fn crossing(eyes: &[DVec3], rays: &[Ray]) -> DVec3 {
+fn crossing_point(eyes: &[DVec3], rays: &[SightingRay]) -> DVec3 {
     let count = rays.len().max(1) as f64;
     let mean = |points: &mut dyn Iterator<Item = DVec3>| points.fold(DVec3::ZERO, |sum, point| sum + point) / count;
     let mut point = mean(&mut rays.iter().map(|(at, ray)| eyes[*at] + *ray * GUESS_M));
-    for _ in 0..ROUNDS {
-        let onto = |(at, ray): &Ray| eyes[*at] + *ray * (point - eyes[*at]).dot(*ray).max(0.3);
+    for _ in 0..CROSSING_ROUNDS {
+        let onto = |(at, ray): &SightingRay| eyes[*at] + *ray * (point - eyes[*at]).dot(*ray).max(0.3);
         point = mean(&mut rays.iter().map(onto));
     }
     point
@@ -173,8 +173,8 @@ mod tests {
     fn crossing_finds_the_point_where_the_rays_meet() {
         let eyes = [DVec3::ZERO, DVec3::new(2.0, 0.0, 0.0)];
         let thing = DVec3::new(1.0, 1.5, 0.5);
-        let rays: Vec<Ray> = (0..2).map(|at| (at, (thing - eyes[at]).normalize())).collect();
-        assert!(crossing(&eyes, &rays).distance(thing) < 0.01);
-        assert!((crossing(&eyes, &rays[..1]).length() - GUESS_M).abs() < 0.01);
+        let rays: Vec<SightingRay> = (0..2).map(|at| (at, (thing - eyes[at]).normalize())).collect();
+        assert!(crossing_point(&eyes, &rays).distance(thing) < 0.01);
+        assert!((crossing_point(&eyes, &rays[..1]).length() - GUESS_M).abs() < 0.01);
     }
 }

@@ -1,60 +1,60 @@
 //! The vocabulary of the listener. It is independent of the reader's lexicon.
 
-use super::said::{How, Rank};
+use super::said::{NamesakeRank, RelationKind};
 
 /// Phrases of relations, the longest first.
-pub(super) const RELATIONS: &[(&str, How)] = &[
-    ("on the left side of", How::LeftOf),
-    ("on the right side of", How::RightOf),
-    ("to the left side of", How::LeftOf),
-    ("to the right side of", How::RightOf),
-    ("to the left of", How::LeftOf),
-    ("to the right of", How::RightOf),
-    ("on the left of", How::LeftOf),
-    ("on the right of", How::RightOf),
-    ("furthest away from", How::Farthest),
-    ("farthest away from", How::Farthest),
-    ("furthest from", How::Farthest),
-    ("farthest from", How::Farthest),
-    ("left of", How::LeftOf),
-    ("right of", How::RightOf),
-    ("in front of", How::Unknown),
-    ("across from", How::Unknown),
-    ("opposite to", How::Unknown),
-    ("closest to", How::Closest),
-    ("nearest to", How::Closest),
-    ("closest", How::Closest),
-    ("nearest", How::Closest),
-    ("adjacent to", How::Near),
-    ("attached to", How::On),
-    ("on top of", How::On),
-    ("close to", How::Near),
-    ("next to", How::Near),
-    ("alongside", How::Near),
-    ("opposite", How::Unknown),
-    ("underneath", How::Under),
-    ("beneath", How::Under),
-    ("between", How::Between),
-    ("against", How::Unknown),
-    ("around", How::Near),
-    ("beside", How::Near),
-    ("behind", How::Unknown),
-    ("inside", How::On),
-    ("above", How::Above),
-    ("below", How::Under),
-    ("under", How::Under),
-    ("facing", How::Unknown),
-    ("outside", How::Unknown),
-    ("near", How::Near),
-    ("over", How::Above),
-    ("from", How::On),
-    ("with", How::Near),
-    ("by", How::Near),
-    ("on", How::On),
-    ("in", How::On),
-    ("at", How::Near),
-    ("of", How::On),
-    ("off", How::On),
+pub(super) const RELATION_PHRASES: &[(&str, RelationKind)] = &[
+    ("on the left side of", RelationKind::LeftOf),
+    ("on the right side of", RelationKind::RightOf),
+    ("to the left side of", RelationKind::LeftOf),
+    ("to the right side of", RelationKind::RightOf),
+    ("to the left of", RelationKind::LeftOf),
+    ("to the right of", RelationKind::RightOf),
+    ("on the left of", RelationKind::LeftOf),
+    ("on the right of", RelationKind::RightOf),
+    ("furthest away from", RelationKind::Farthest),
+    ("farthest away from", RelationKind::Farthest),
+    ("furthest from", RelationKind::Farthest),
+    ("farthest from", RelationKind::Farthest),
+    ("left of", RelationKind::LeftOf),
+    ("right of", RelationKind::RightOf),
+    ("in front of", RelationKind::Unknown),
+    ("across from", RelationKind::Unknown),
+    ("opposite to", RelationKind::Unknown),
+    ("closest to", RelationKind::Closest),
+    ("nearest to", RelationKind::Closest),
+    ("closest", RelationKind::Closest),
+    ("nearest", RelationKind::Closest),
+    ("adjacent to", RelationKind::Near),
+    ("attached to", RelationKind::On),
+    ("on top of", RelationKind::On),
+    ("close to", RelationKind::Near),
+    ("next to", RelationKind::Near),
+    ("alongside", RelationKind::Near),
+    ("opposite", RelationKind::Unknown),
+    ("underneath", RelationKind::Under),
+    ("beneath", RelationKind::Under),
+    ("between", RelationKind::Between),
+    ("against", RelationKind::Unknown),
+    ("around", RelationKind::Near),
+    ("beside", RelationKind::Near),
+    ("behind", RelationKind::Unknown),
+    ("inside", RelationKind::On),
+    ("above", RelationKind::Above),
+    ("below", RelationKind::Under),
+    ("under", RelationKind::Under),
+    ("facing", RelationKind::Unknown),
+    ("outside", RelationKind::Unknown),
+    ("near", RelationKind::Near),
+    ("over", RelationKind::Above),
+    ("from", RelationKind::On),
+    ("with", RelationKind::Near),
+    ("by", RelationKind::Near),
+    ("on", RelationKind::On),
+    ("in", RelationKind::On),
+    ("at", RelationKind::Near),
+    ("of", RelationKind::On),
+    ("off", RelationKind::On),
 ];
 /// Phrases after a room that introduce the things in it or the rooms next to it.
 pub(super) const OF_ROOMS: &[&str] = &[
@@ -86,46 +86,46 @@ pub(super) const OF_ROOMS: &[&str] = &[
 ];
 
 /// Verbs of moves.
-pub(super) const MOVES: &[&str] = &[
+pub(super) const MOVE_VERBS: &[&str] = &[
     "go", "walk", "head", "proceed", "move", "enter", "travel", "continue", "exit", "leave", "climb", "make", "come",
     "visit", "step", "pass", "turn", "return", "navigate", "run", "take", "find", "get", "follow", "reach", "locate",
 ];
 /// Words that begin a clause that gives no task.
-pub(super) const OPENERS: &[&str] =
+pub(super) const NON_TASK_OPENERS: &[&str] =
     &["in", "at", "on", "inside", "into", "to", "from", "up", "down", "upstairs", "downstairs", "through"];
 /// Words before the verb of a clause.
-pub(super) const FILLERS: &[&str] =
+pub(super) const FILLER_WORDS: &[&str] =
     &["please", "then", "and", "now", "next", "there", "you", "can", "could", "will", "kindly", "once"];
 /// Words that no clause begins with after "and".
 pub(super) const NO_VERBS: &[&str] = &[
     "the", "a", "an", "two", "three", "one", "other", "some", "its", "your", "is", "has", "with", "white", "black",
     "right", "left", "which", "that", "on", "in", "of", "next", "above", "below", "under", "by", "wood", "wooden",
 ];
-pub(super) const RANKS: &[(&str, Rank)] = &[
-    ("leftmost", Rank::Leftmost),
-    ("left", Rank::Leftmost),
-    ("rightmost", Rank::Rightmost),
-    ("right", Rank::Rightmost),
-    ("nearest", Rank::Nearest),
-    ("closest", Rank::Nearest),
-    ("furthest", Rank::Farthest),
-    ("farthest", Rank::Farthest),
-    ("far", Rank::Farthest),
-    ("top", Rank::Highest),
-    ("topmost", Rank::Highest),
-    ("upper", Rank::Highest),
-    ("highest", Rank::Highest),
-    ("bottom", Rank::Lowest),
-    ("lower", Rank::Lowest),
-    ("lowest", Rank::Lowest),
-    ("middle", Rank::Middle),
-    ("center", Rank::Middle),
-    ("centre", Rank::Middle),
+pub(super) const RANK_WORDS: &[(&str, NamesakeRank)] = &[
+    ("leftmost", NamesakeRank::Leftmost),
+    ("left", NamesakeRank::Leftmost),
+    ("rightmost", NamesakeRank::Rightmost),
+    ("right", NamesakeRank::Rightmost),
+    ("nearest", NamesakeRank::Nearest),
+    ("closest", NamesakeRank::Nearest),
+    ("furthest", NamesakeRank::Farthest),
+    ("farthest", NamesakeRank::Farthest),
+    ("far", NamesakeRank::Farthest),
+    ("top", NamesakeRank::Highest),
+    ("topmost", NamesakeRank::Highest),
+    ("upper", NamesakeRank::Highest),
+    ("highest", NamesakeRank::Highest),
+    ("bottom", NamesakeRank::Lowest),
+    ("lower", NamesakeRank::Lowest),
+    ("lowest", NamesakeRank::Lowest),
+    ("middle", NamesakeRank::Middle),
+    ("center", NamesakeRank::Middle),
+    ("centre", NamesakeRank::Middle),
 ];
-pub(super) const ORDINALS: [&str; 5] = ["first", "second", "third", "fourth", "fifth"];
-pub(super) const NUMBERS: [&str; 5] = ["one", "two", "three", "four", "five"];
+pub(super) const ORDINAL_WORDS: [&str; 5] = ["first", "second", "third", "fourth", "fifth"];
+pub(super) const NUMBER_WORDS: [&str; 5] = ["one", "two", "three", "four", "five"];
 /// Words for how something looks.
-pub(super) const LOOKS: &[&str] = &[
+pub(super) const LOOK_WORDS: &[&str] = &[
     "white",
     "black",
     "red",

@@ -4,31 +4,31 @@
 
 use serde_json::{Value, json};
 use std::path::Path;
-use wayword_formats::{Format, FormatError, jsonl, r2r, reverie, rxr, vlnce};
+use wayword_formats::{DatasetFormat, FormatError, jsonl, r2r, reverie, rxr, vlnce};
 
 /// Three items of a format, with the fields that every item has.
-pub(crate) fn items(format: Format) -> Vec<Value> {
+pub(crate) fn items(format: DatasetFormat) -> Vec<Value> {
     (0..3).map(|n| item(format, n)).collect()
 }
 
-fn item(format: Format, n: u64) -> Value {
+fn item(format: DatasetFormat, n: u64) -> Value {
     let path = json!(["hall", "door", format!("room{n}")]);
     match format {
-        Format::R2r => json!({
+        DatasetFormat::R2r => json!({
             "distance": 7.5, "scan": "house1", "path_id": n, "path": path, "heading": 1.5,
             "instructions": ["Leave the hall.", "Walk through the door.", "Go to the room and stop."],
         }),
-        Format::Reverie => json!({
+        DatasetFormat::Reverie => json!({
             "id": format!("{n}_66"), "scan": "house1", "path_id": n, "path": path, "objId": 66, "heading": 1.5,
             "instructions": ["Go to the room and water the plant"],
         }),
-        Format::Rxr => json!({
+        DatasetFormat::Rxr => json!({
             "split": "val_seen", "instruction_id": n, "annotator_id": 7, "language": "en-IN", "path_id": n,
             "scan": "house1", "path": path, "heading": 1.5, "instruction": "You are in a hall.",
             "timed_instruction": [{"word": "You", "start_time": 0.5, "end_time": 0.75}, {"word": "are"}],
             "edit_distance": 0.25,
         }),
-        Format::Vlnce => json!({
+        DatasetFormat::Vlnce => json!({
             "episode_id": n, "trajectory_id": n, "scene_id": "mp3d/house1/house1.glb",
             "start_position": [1.5, 0.125, -2.5], "start_rotation": [0.0, -0.6816387600233341, 0.0, 0.7316888688738209],
             "goals": [{"position": [4.0, 0.125, -2.5], "radius": 3.0}],
@@ -36,7 +36,7 @@ fn item(format: Format, n: u64) -> Value {
             "instruction": {"instruction_text": format!("Walk to door {n}."), "instruction_tokens": [4, 3, 2, 1, 0, 0]},
             "info": {"geodesic_distance": 2.5},
         }),
-        Format::Wayword => json!({
+        DatasetFormat::Wayword => json!({
             "format": "wayword/1", "platform": "house", "split": "train",
             "path": {"id": format!("house2-{n}"), "scene": "house1", "frames": [
                 {"pose": {"position": [0.0, 0.0, 1.5], "heading": 0.0, "elevation_rad": 0.0}, "viewpoint": "hall", "level": 1},
@@ -52,12 +52,12 @@ fn item(format: Format, n: u64) -> Value {
 }
 
 /// The text of a file with these items.
-pub(crate) fn text(format: Format, items: &[Value]) -> String {
+pub(crate) fn text(format: DatasetFormat, items: &[Value]) -> String {
     let lines = items.iter().map(|item| format!("{item}\n")).collect();
     match format {
-        Format::R2r | Format::Reverie => Value::from(items.to_vec()).to_string(),
-        Format::Rxr | Format::Wayword => lines,
-        Format::Vlnce => {
+        DatasetFormat::R2r | DatasetFormat::Reverie => Value::from(items.to_vec()).to_string(),
+        DatasetFormat::Rxr | DatasetFormat::Wayword => lines,
+        DatasetFormat::Vlnce => {
             let words = ["<pad>", "<unk>", "door", "to", "walk"];
             json!({"episodes": items, "instruction_vocab": {"word_list": words}}).to_string()
         }
@@ -65,12 +65,14 @@ pub(crate) fn text(format: Format, items: &[Value]) -> String {
 }
 
 /// The items of a file.
-pub(crate) fn items_of(format: Format, file: &Path) -> Vec<Value> {
+pub(crate) fn items_of(format: DatasetFormat, file: &Path) -> Vec<Value> {
     let text = std::fs::read_to_string(file).unwrap();
     match format {
-        Format::Rxr | Format::Wayword => text.lines().map(|line| serde_json::from_str(line).unwrap()).collect(),
-        Format::R2r | Format::Reverie => serde_json::from_str(&text).unwrap(),
-        Format::Vlnce => {
+        DatasetFormat::Rxr | DatasetFormat::Wayword => {
+            text.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
+        }
+        DatasetFormat::R2r | DatasetFormat::Reverie => serde_json::from_str(&text).unwrap(),
+        DatasetFormat::Vlnce => {
             let mut dataset: Value = serde_json::from_str(&text).unwrap();
             serde_json::from_value(dataset["episodes"].take()).unwrap()
         }
@@ -78,12 +80,12 @@ pub(crate) fn items_of(format: Format, file: &Path) -> Vec<Value> {
 }
 
 /// Reads a file and writes what was read to another.
-pub(crate) fn copy(format: Format, from: &Path, to: &Path) -> Result<(), FormatError> {
+pub(crate) fn copy(format: DatasetFormat, from: &Path, to: &Path) -> Result<(), FormatError> {
     match format {
-        Format::R2r => r2r::write(to, &r2r::read(from)?),
-        Format::Reverie => reverie::write(to, &reverie::read(from)?),
-        Format::Rxr => rxr::write(to, &rxr::read(from)?),
-        Format::Vlnce => vlnce::write(to, &vlnce::read(from)?),
-        Format::Wayword => jsonl::write(to, &jsonl::read(from)?),
+        DatasetFormat::R2r => r2r::write_r2r_file(to, &r2r::read_r2r_file(from)?),
+        DatasetFormat::Reverie => reverie::write_reverie_file(to, &reverie::read_reverie_file(from)?),
+        DatasetFormat::Rxr => rxr::write_rxr_file(to, &rxr::read_rxr_file(from)?),
+        DatasetFormat::Vlnce => vlnce::write_vlnce_file(to, &vlnce::read_vlnce_file(from)?),
+        DatasetFormat::Wayword => jsonl::write_records(to, &jsonl::read_records(from)?),
     }
 }

@@ -1,12 +1,19 @@
 //! Tests of reading climbs and storeys, on wordings of people.
 
 use super::*;
-use crate::reading::read;
+use crate::reading::read_instruction;
 use std::collections::BTreeSet;
 
-fn told(text: &str) -> Vec<What> {
-    let events = read(text, &BTreeSet::new()).events.into_iter().map(|event| event.what);
-    events.filter(|what| matches!(what, What::Climb(_) | What::Steps(_) | What::Storey(_) | What::Floor(_))).collect()
+fn told(text: &str) -> Vec<EventContent> {
+    let events = read_instruction(text, &BTreeSet::new()).events.into_iter().map(|event| event.what);
+    events
+        .filter(|what| {
+            matches!(
+                what,
+                EventContent::Climb(_) | EventContent::Steps(_) | EventContent::Storey(_) | EventContent::Floor(_)
+            )
+        })
+        .collect()
 }
 
 #[test]
@@ -31,7 +38,7 @@ fn commands_to_climb_differ_from_places_up_there() {
         "Ascend.",
         "Ascend to the bedroom and wait.",
     ] {
-        assert_eq!(told(text), [What::Climb(Climb::Up)], "{text}");
+        assert_eq!(told(text), [EventContent::Climb(ClimbDirection::Up)], "{text}");
     }
     for text in [
         "Go to the bathroom upstairs.",
@@ -41,13 +48,13 @@ fn commands_to_climb_differ_from_places_up_there() {
         "Go to the floor above.",
         "Take the elevator to the level above and wait.",
     ] {
-        assert_eq!(told(text), [What::Storey(Climb::Up)], "{text}");
+        assert_eq!(told(text), [EventContent::Storey(ClimbDirection::Up)], "{text}");
     }
     for text in ["Go down.", "Descend and turn left.", "Head back down.", "Descend the ramp."] {
-        assert_eq!(told(text), [What::Climb(Climb::Down)], "{text}");
+        assert_eq!(told(text), [EventContent::Climb(ClimbDirection::Down)], "{text}");
     }
     for text in ["Walk down two steps.", "Go down the few steps to the sofa."] {
-        assert_eq!(told(text), [What::Steps(Climb::Down)], "{text}");
+        assert_eq!(told(text), [EventContent::Steps(ClimbDirection::Down)], "{text}");
     }
     for text in [
         "Stop at the top of the stairs leading down to another floor.",
@@ -83,7 +90,7 @@ fn commands_to_climb_differ_from_places_up_there() {
 #[test]
 fn floors_have_numbers_and_are_left_or_mentioned_aside() {
     let floor = |text: &str| match told(text).pop() {
-        Some(What::Floor(floor)) => (floor.number, floor.leaves),
+        Some(EventContent::Floor(floor)) => (floor.number, floor.leaves),
         other => panic!("{text}: {other:?}"),
     };
     assert_eq!(floor("Go to the bedroom on the 7th floor"), (Some(7), false));
@@ -94,5 +101,5 @@ fn floors_have_numbers_and_are_left_or_mentioned_aside() {
     assert_eq!(floor("Start on the second floor"), (Some(2), true));
     assert_eq!(told("Clean the rug on the floor"), []);
     let aside = told("Wait by the stairs going up to the second level.");
-    assert_eq!(aside, [What::Floor(Floor { number: Some(2), leaves: false, aside: true })]);
+    assert_eq!(aside, [EventContent::Floor(StoreyMention { number: Some(2), leaves: false, aside: true })]);
 }

@@ -1,16 +1,16 @@
 //! How a step relates to a place that it names: into it, past it, near it.
 
 use crate::{
-    reading::{Going, Place},
-    text::Token,
+    reading::{PlaceMention, PlaceMotion},
+    text::TextToken,
 };
 
 /// How far before a place the word for the relation may be, words.
-const REACH: usize = 7;
+const RELATION_REACH_WORDS: usize = 7;
 
 /// How a step relates to a place that it names.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Relation {
+pub enum StepRelation {
     /// No word expresses a relation.
     Plain,
     /// The step leaves it.
@@ -41,7 +41,7 @@ pub enum Relation {
     Of,
 }
 
-impl Relation {
+impl StepRelation {
     /// All of them.
     pub const ALL: [Self; 14] = [
         Self::Plain,
@@ -62,16 +62,16 @@ impl Relation {
 
     /// The relation of a place. `words` are those of its step before it; `earlier` is the place before it in the step, by
     /// its first word, and that place's relation.
-    pub(super) fn of(place: &Place, words: &[Token], earlier: Option<(usize, Self)>) -> Self {
-        let said = Self::said(words, earlier);
+    pub(super) fn from_place(place: &PlaceMention, words: &[TextToken], earlier: Option<(usize, Self)>) -> Self {
+        let said = Self::from_words(words, earlier);
         match place.going {
             None => said,
-            Some(Going::Leaving) => Self::OutOf,
-            Some(Going::Entering) => Self::Into,
-            Some(Going::Through) => Self::Through,
-            Some(Going::Along | Going::Around) => Self::Along,
-            Some(Going::Past) => Self::Past,
-            Some(Going::Towards | Going::Until) => match said {
+            Some(PlaceMotion::Leaving) => Self::OutOf,
+            Some(PlaceMotion::Entering) => Self::Into,
+            Some(PlaceMotion::Through) => Self::Through,
+            Some(PlaceMotion::Along | PlaceMotion::Around) => Self::Along,
+            Some(PlaceMotion::Past) => Self::Past,
+            Some(PlaceMotion::Towards | PlaceMotion::Until) => match said {
                 Self::At | Self::Near | Self::Before | Self::In => said,
                 _ => Self::To,
             },
@@ -79,8 +79,8 @@ impl Relation {
     }
 
     /// The relation by the last word before a place that expresses one.
-    fn said(words: &[Token], earlier: Option<(usize, Self)>) -> Self {
-        let from = earlier.map_or(0, |(at, _)| at + 1).max(words.len().saturating_sub(REACH));
+    fn from_words(words: &[TextToken], earlier: Option<(usize, Self)>) -> Self {
+        let from = earlier.map_or(0, |(at, _)| at + 1).max(words.len().saturating_sub(RELATION_REACH_WORDS));
         let mut is_joined = false;
         for at in (from..words.len()).rev() {
             let before = at.checked_sub(1).map_or("", |before| words[before].word.as_str());

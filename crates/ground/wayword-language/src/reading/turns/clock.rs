@@ -1,45 +1,45 @@
 //! Finds turns by the clock: "turn clockwise", "turn to your 3 o'clock".
 
-use crate::reading::{numbers::cardinal, tokens::Tokens, vocabulary as v};
+use crate::reading::{numbers::cardinal_number, tokens::TokenSlice, vocabulary as v};
 use wayword_core::Side;
 
 /// The side of the turn that ends at a token, its verb and its last token. `from` is the first of the words that may
 /// come between the verb and the token.
-pub(super) fn turn(tokens: Tokens<'_>, from: usize, at: usize) -> Option<(Side, Option<usize>, usize)> {
-    let spins = |verb: &usize| v::SPINNING.contains(&tokens.word(*verb));
-    let (side, last) = match tokens.word(at) {
+pub(super) fn clock_turn(tokens: TokenSlice<'_>, from: usize, at: usize) -> Option<(Side, Option<usize>, usize)> {
+    let spins = |verb: &usize| v::SPINNING.contains(&tokens.word_at(*verb));
+    let (side, last) = match tokens.word_at(at) {
         word @ ("clockwise" | "counterclockwise" | "anticlockwise") => {
-            let split = matches!(tokens.before(at), "counter" | "anti");
+            let split = matches!(tokens.word_before(at), "counter" | "anti");
             let first = at - usize::from(split);
-            let from = if split { first - gap(tokens, first) } else { from };
+            let from = if split { first - gap_words(tokens, first) } else { from };
             let verb = from.checked_sub(1).filter(spins)?;
-            let is_number = |at: &usize| tokens.word(*at).parse::<f64>().is_ok_and(f64::is_finite);
+            let is_number = |at: &usize| tokens.word_at(*at).parse::<f64>().is_ok_and(f64::is_finite);
             let behind = (at + 1..at + 3).find(is_number);
             let degrees = behind.or_else(|| (verb + 1..first).find(is_number));
-            let degrees = degrees.and_then(|at| tokens.word(at).parse().ok()).unwrap_or(90.0);
-            let side = about(degrees, split || word != "clockwise")?;
+            let degrees = degrees.and_then(|at| tokens.word_at(at).parse().ok()).unwrap_or(90.0);
+            let side = side_after_turn(degrees, split || word != "clockwise")?;
             return Some((side, Some(verb), behind.unwrap_or(at)));
         }
-        "o'clock" | "o’clock" | "oclock" => (by_hour(tokens.before(at))?, at),
+        "o'clock" | "o’clock" | "oclock" => (by_hour(tokens.word_before(at))?, at),
         _ => return None,
     };
     let hour = at - 1;
-    let verb = (hour - gap(tokens, hour)).checked_sub(1).filter(spins)?;
+    let verb = (hour - gap_words(tokens, hour)).checked_sub(1).filter(spins)?;
     Some((side, Some(verb), last))
 }
 
 /// How many words right before a token may come between a verb and it.
-fn gap(tokens: Tokens<'_>, at: usize) -> usize {
-    const MOST: usize = 4;
+fn gap_words(tokens: TokenSlice<'_>, at: usize) -> usize {
+    const MAX_GAP_WORDS: usize = 4;
     let is_number = |word: &str| word.parse::<f64>().is_ok();
     let may = |word: &str| {
         v::BEFORE_SIDE.contains(&word) || v::BEFORE_SIDE_OF_TURN.contains(&word) || word == "at" || is_number(word)
     };
-    (0..at).rev().take(MOST).take_while(|at| may(tokens.word(*at))).count()
+    (0..at).rev().take(MAX_GAP_WORDS).take_while(|at| may(tokens.word_at(*at))).count()
 }
 
 /// The side on which one looks after a turn of that many degrees; `None` after a full one.
-fn about(degrees: f64, against: bool) -> Option<Side> {
+fn side_after_turn(degrees: f64, against: bool) -> Option<Side> {
     match (degrees, against) {
         (150.0..210.0, _) => Some(Side::Behind),
         (330.0.., _) => None,
@@ -49,7 +49,7 @@ fn about(degrees: f64, against: bool) -> Option<Side> {
 }
 
 fn by_hour(word: &str) -> Option<Side> {
-    match cardinal(word)? {
+    match cardinal_number(word)? {
         2..=4 => Some(Side::Right),
         5..=7 => Some(Side::Behind),
         8..=10 => Some(Side::Left),

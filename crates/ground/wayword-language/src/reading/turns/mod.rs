@@ -6,29 +6,29 @@ mod clock;
 #[cfg(test)]
 mod tests;
 
-use super::{Event, What, tokens::Tokens, vocabulary as v};
+use super::{EventContent, TextEvent, tokens::TokenSlice, vocabulary as v};
 use crate::{
     lexicon::{is_room, is_thing, normal_word},
-    text::Token,
+    text::TextToken,
 };
 use wayword_core::Side;
 
 /// The turns of a text.
-pub(super) fn turns(tokens: Tokens<'_>, clauses: &[usize]) -> Vec<Event> {
-    let text = Text::of(tokens);
-    let mut turns: Vec<Event> = Vec::new();
+pub(super) fn read_turns(tokens: TokenSlice<'_>, clauses: &[usize]) -> Vec<TextEvent> {
+    let text = TurnText::from_tokens(tokens);
+    let mut turns: Vec<TextEvent> = Vec::new();
     let mut told_in_sentence = false;
     let mut verb_of_about = None;
     for (at, clause) in clauses.iter().enumerate() {
-        if tokens.get(at).is_some_and(Token::ends_sentence) {
+        if tokens.get(at).is_some_and(TextToken::ends_sentence) {
             (told_in_sentence, verb_of_about) = (false, None);
         }
-        let found = match text.about(at) {
+        let found = match text.turn_around_at(at) {
             Some(about) => Some((Side::Behind, about.verb, about.last)),
             None => text
-                .side(at, told_in_sentence)
+                .turn_side_at(at, told_in_sentence)
                 .map(|(side, verb)| (side, verb, at))
-                .or_else(|| clock::turn(tokens, text.before_side_of_turn[at], at)),
+                .or_else(|| clock::clock_turn(tokens, text.before_side_of_turn[at], at)),
         };
         let Some((side, verb, last)) = found else { continue };
         // "Turn 180 degrees to the right" is one turn.
@@ -39,14 +39,14 @@ pub(super) fn turns(tokens: Tokens<'_>, clauses: &[usize]) -> Vec<Event> {
             verb_of_about = verb;
         }
         told_in_sentence = true;
-        let event = |first, last| Event {
-            what: What::Turn(side),
-            span: tokens.span(first, last),
+        let event = |first, last| TextEvent {
+            what: EventContent::Turn(side),
+            span: tokens.span_of(first, last),
             clause: *clause,
             denied: false,
         };
         turns.push(event(at, last));
-        let (more, told_at) = again::more(tokens, at, last);
+        let (more, told_at) = again::more_turns(tokens, at, last);
         turns.extend((0..more).map(|_| event(told_at.0, told_at.1)));
     }
     turns
@@ -61,21 +61,21 @@ fn side_word(word: &str) -> Option<Side> {
 }
 
 /// A turn around: its verb, where it has one, and its last token.
-struct About {
+struct TurnAround {
     verb: Option<usize>,
     last: usize,
 }
 
 /// A text, and for each of its tokens the start of the run of words before it that may come between a verb and a turn.
-struct Text<'a> {
-    tokens: Tokens<'a>,
+struct TurnText<'a> {
+    tokens: TokenSlice<'a>,
     before_about: Vec<usize>,
     before_side: Vec<usize>,
     before_side_of_turn: Vec<usize>,
 }
 
-impl<'a> Text<'a> {
-    fn of(tokens: Tokens<'a>) -> Self {
+impl<'a> TurnText<'a> {
+    fn from_tokens(tokens: TokenSlice<'a>) -> Self {
         let is_number = |word: &str| word.chars().all(|c| c.is_ascii_digit() || c == '.');
         let may_of_turn =
             |word: &str| v::BEFORE_SIDE.contains(&word) || v::BEFORE_SIDE_OF_TURN.contains(&word) || is_number(word);
@@ -87,31 +87,32 @@ impl<'a> Text<'a> {
         }
     }
 
-    fn word(&self, at: usize) -> &'a str {
-        self.tokens.word(at)
+    fn word_at(&self, at: usize) -> &'a str {
+        self.tokens.word_at(at)
     }
 
-    fn before(&self, at: usize) -> &'a str {
-        self.tokens.before(at)
+    fn word_before(&self, at: usize) -> &'a str {
+        self.tokens.word_before(at)
     }
 
     /// The turn around that begins at a token.
-    fn about(&self, at: usize) -> Option<About> {
-        let next = self.word(at + 1);
+    fn turn_around_at(&self, at: usize) -> Option<TurnAround> {
+        let next = self.word_at(at + 1);
         let verb = || {
-            let verb = self.before_about[at].checked_sub(1).filter(|verb| v::SPINNING.contains(&self.word(*verb)))?;
-            Some(About { verb: Some(verb), last: at })
+            let verb =
+                self.before_about[at].checked_sub(1).filter(|verb| v::SPINNING.contains(&self.word_at(*verb)))?;
+            Some(TurnAround { verb: Some(verb), last: at })
         };
-        let by_itself = |last: usize| Some(About { verb: None, last });
-        match self.word(at) {
+        let by_itself = |last: usize| Some(TurnAround { verb: None, last });
+        match self.word_at(at) {
             "u" if next == "turn" => by_itself(at + 1),
             "uturn" => by_itself(at),
-            "face" if at > 0 && self.word(at - 1) == "about" => by_itself(at),
+            "face" if at > 0 && self.word_at(at - 1) == "about" => by_itself(at),
             // "Turn around the corner" does not mean to turn around.
             "around" if !matches!(next, "the" | "a" | "an" | "this" | "that") => verb(),
             "180" => {
-                let is_noun = [next, self.word(at + 2)].contains(&"turn");
-                let done = at > 1 && self.word(at - 1) == "a" && v::DOING.contains(&self.word(at - 2));
+                let is_noun = [next, self.word_at(at + 2)].contains(&"turn");
+                let done = at > 1 && self.word_at(at - 1) == "a" && v::DOING.contains(&self.word_at(at - 2));
                 if is_noun || done { by_itself(at) } else { verb() }
             }
             "back" if !matches!(next, "around" | "180" | "on" | "off" | "left" | "right") => {
@@ -120,7 +121,7 @@ impl<'a> Text<'a> {
             "opposite" | "other" if matches!(next, "direction" | "way") => verb(),
             "reverse" if matches!(next, "direction" | "course" | "directions") => by_itself(at),
             "about" if next == "turn" => by_itself(at + 1),
-            "one" if next == "eighty" && matches!(self.before(at), "a" | "turn" | "rotate" | "spin") => {
+            "one" if next == "eighty" && matches!(self.word_before(at), "a" | "turn" | "rotate" | "spin") => {
                 by_itself(at + 1)
             }
             _ => None,
@@ -128,20 +129,20 @@ impl<'a> Text<'a> {
     }
 
     /// The side of the turn that a token means, and its verb, where it has one.
-    fn side(&self, at: usize, told_before: bool) -> Option<(Side, Option<usize>)> {
-        let side = side_word(self.word(at))?;
-        let after = self.word(at + 1);
-        let is_counted = again::is_count(self.before(at));
+    fn turn_side_at(&self, at: usize, told_before: bool) -> Option<(Side, Option<usize>)> {
+        let side = side_word(self.word_at(at))?;
+        let after = self.word_at(at + 1);
+        let is_counted = again::is_count(self.word_before(at));
         let is_turn = |word: &str| word == "turn" || (word == "turns" && is_counted);
-        if is_turn(after) || (after == "hand" && is_turn(self.word(at + 2))) {
+        if is_turn(after) || (after == "hand" && is_turn(self.word_at(at + 2))) {
             return Some((side, None));
         }
-        if matches!(self.word(at), "lefts" | "rights") {
+        if matches!(self.word_at(at), "lefts" | "rights") {
             return is_counted.then_some((side, None));
         }
         // The starts of the runs of words that may come between a verb and the side.
         let (from, far) = (self.before_side[at], self.before_side_of_turn[at]);
-        let turning = far.checked_sub(1).filter(|verb| self.turns(*verb, far..at));
+        let turning = far.checked_sub(1).filter(|verb| self.is_turning(*verb, far..at));
         if self.tells_a_place(at, turning) || (side == Side::Right && self.is_adverb(at, turning, told_before)) {
             return None;
         }
@@ -153,20 +154,20 @@ impl<'a> Text<'a> {
     }
 
     /// Whether the word at `verb` is a verb of turning, with these words between it and the side.
-    fn turns(&self, verb: usize, mut between: std::ops::Range<usize>) -> bool {
-        let word = self.word(verb);
+    fn is_turning(&self, verb: usize, mut between: std::ops::Range<usize>) -> bool {
+        let word = self.word_at(verb);
         v::TURNING.contains(&word)
-            || (matches!(word, "round" | "rounding") && between.any(|at| self.word(at) == "corner"))
+            || (matches!(word, "round" | "rounding") && between.any(|at| self.word_at(at) == "corner"))
     }
 
     /// "The left wall", "left of the sofa": the side distinguishes a thing, or locates one.
     fn tells_a_place(&self, at: usize, turning: Option<usize>) -> bool {
-        let after = self.word(at + 1);
+        let after = self.word_at(at + 1);
         if matches!(after, "of" | "side" | "hand" | "wall" | "corner" | "most") {
             return true;
         }
         // "Turn left hallway" lacks a comma; "take left doorway" lacks an article.
-        let directly = |verb: usize| verb + 1 == at && !v::DOING.contains(&self.word(verb));
+        let directly = |verb: usize| verb + 1 == at && !v::DOING.contains(&self.word_at(verb));
         if turning.is_some_and(directly) {
             return false;
         }
@@ -174,8 +175,8 @@ impl<'a> Text<'a> {
             let name = normal_word(word);
             is_thing(&name) || is_room(&name) || v::HAVE_SIDES.contains(&word)
         };
-        let of_a_noun = is_noun(after) || (v::ADJECTIVES.contains(&after) && is_noun(self.word(at + 2)));
-        let definite = at > 0 && matches!(self.word(at - 1), "the" | "your" | "that" | "far");
+        let of_a_noun = is_noun(after) || (v::ADJECTIVES.contains(&after) && is_noun(self.word_at(at + 2)));
+        let definite = at > 0 && matches!(self.word_at(at - 1), "the" | "your" | "that" | "far");
         let unknown_noun = definite
             && self.tokens.is_word(at + 1)
             && !v::BREAKERS.contains(&after)
@@ -186,8 +187,8 @@ impl<'a> Text<'a> {
 
     /// "Right before the sofa", "walk right up to the table": not a side.
     fn is_adverb(&self, at: usize, turning: Option<usize>, told_before: bool) -> bool {
-        let after = self.word(at + 1);
-        let before = self.tokens.before(at);
+        let after = self.word_at(at + 1);
+        let before = self.tokens.word_before(at);
         // In "left, then right past the sofa" a second turn follows; in "stop, then right after the sofa" none does.
         let directly = !v::BEFORE_SIDE.contains(&before) || (matches!(before, "and" | "then") && !told_before);
         matches!(after, "away" | "now")
@@ -197,11 +198,11 @@ impl<'a> Text<'a> {
 
     /// "Go left", "head to your right": a verb of going before the side, with the words between them from `from` on.
     fn goes_there(&self, from: usize, at: usize) -> bool {
-        let verb = from.checked_sub(1).map_or("", |verb| self.word(verb));
-        let mut skipped = (from..at).map(|at| self.word(at));
+        let verb = from.checked_sub(1).map_or("", |verb| self.word_at(verb));
+        let mut skipped = (from..at).map(|at| self.word_at(at));
         // "Make your way left".
-        let is_way = verb == "way" && from > 2 && self.word(from - 2) == "your" && {
-            matches!(self.word(from - 3), "make" | "making" | "work" | "find" | "wind" | "continue")
+        let is_way = verb == "way" && from > 2 && self.word_at(from - 2) == "your" && {
+            matches!(self.word_at(from - 3), "make" | "making" | "work" | "find" | "wind" | "continue")
         };
         (v::GOING.contains(&verb) || is_way)
             && (skipped.clone().any(|word| word == "to")
@@ -210,15 +211,15 @@ impl<'a> Text<'a> {
 
     /// ", then left", "and left.", "Left at the sofa": a side that is a clause by itself.
     fn stands_alone(&self, from: usize, at: usize, told_before: bool) -> bool {
-        let skipped: Vec<&str> = (from..at).map(|at| self.word(at)).collect();
+        let skipped: Vec<&str> = (from..at).map(|at| self.word_at(at)).collect();
         let joined = skipped.iter().any(|word| matches!(*word, "and" | "then" | "but"));
         let again = skipped.iter().any(|word| matches!(*word, "another" | "again"));
         let begins = from == 0 || !self.tokens.is_word(from - 1);
         let to = skipped.contains(&"to");
         let ends = self.tokens.get(at + 1).is_none_or(|token| !token.is_word() && token.word != ")")
-            || v::AFTER_SIDE.contains(&self.word(at + 1));
+            || v::AFTER_SIDE.contains(&self.word_at(at + 1));
         // "On your left and right": not a turn where the side before was not one.
-        let lists_sides = joined && !told_before && from > 0 && side_word(self.word(from - 1)).is_some();
+        let lists_sides = joined && !told_before && from > 0 && side_word(self.word_at(from - 1)).is_some();
         if lists_sides {
             return false;
         }
@@ -227,13 +228,13 @@ impl<'a> Text<'a> {
 
     /// "Take the hallway left": a side after a way that is taken.
     fn follows_a_way(&self, at: usize) -> bool {
-        let ends =
-            self.tokens.get(at + 1).is_none_or(|token| !token.is_word()) || v::AFTER_SIDE.contains(&self.word(at + 1));
+        let ends = self.tokens.get(at + 1).is_none_or(|token| !token.is_word())
+            || v::AFTER_SIDE.contains(&self.word_at(at + 1));
         let Some(noun) = at.checked_sub(1).filter(|_| ends) else { return false };
-        let name = normal_word(self.word(noun));
-        let verb = (noun.saturating_sub(4)..noun).rev().find(|before| v::DETERMINERS.contains(&self.word(*before)));
-        let taken = verb.and_then(|article| article.checked_sub(1)).map_or("", |verb| self.word(verb));
-        (is_thing(&name) || is_room(&name) || matches!(self.word(noun), "path" | "way" | "passage"))
+        let name = normal_word(self.word_at(noun));
+        let verb = (noun.saturating_sub(4)..noun).rev().find(|before| v::DETERMINERS.contains(&self.word_at(*before)));
+        let taken = verb.and_then(|article| article.checked_sub(1)).map_or("", |verb| self.word_at(verb));
+        (is_thing(&name) || is_room(&name) || matches!(self.word_at(noun), "path" | "way" | "passage"))
             && matches!(taken, "take" | "taking" | "follow" | "following" | "use")
     }
 }

@@ -1,12 +1,12 @@
 //! Tests of reading turns, on wordings of people.
 
-use crate::reading::{What, read};
+use crate::reading::{EventContent, read_instruction};
 use std::collections::BTreeSet;
 use wayword_core::Side;
 
 fn turns(text: &str) -> Vec<Side> {
-    let turn = |what: What| if let What::Turn(side) = what { Some(side) } else { None };
-    read(text, &BTreeSet::new()).events.into_iter().filter_map(|event| turn(event.what)).collect()
+    let turn = |what: EventContent| if let EventContent::Turn(side) = what { Some(side) } else { None };
+    read_instruction(text, &BTreeSet::new()).events.into_iter().filter_map(|event| turn(event.what)).collect()
 }
 
 #[test]

@@ -1,28 +1,28 @@
 //! The dialect of Anthropic's messages API.
 
-use super::{End, Said, Wrong, parts};
-use crate::provider::Heard;
+use super::{ReplyEnding, ScriptReply, ServiceErrorKind, parts};
+use crate::provider::ScriptRequest;
 use serde_json::{Value, json};
-use wayword_core::Role;
+use wayword_core::MessageRole;
 
-pub(super) fn heard(body: &Value) -> Result<Heard, &'static str> {
-    let mut heard = Heard { model: parts::text(body, "model")?, ..Heard::default() };
+pub(super) fn read_request(body: &Value) -> Result<ScriptRequest, &'static str> {
+    let mut heard = ScriptRequest { model: parts::text_field(body, "model")?, ..ScriptRequest::default() };
     if let Some(system) = body.get("system") {
-        let text = content(system, &mut heard.pictures)?;
-        heard.messages.push((Role::System, text));
+        let text = read_content(system, &mut heard.pictures)?;
+        heard.messages.push((MessageRole::System, text));
     }
-    for message in parts::list(body, "messages")? {
-        let role = parts::role(message)?;
-        let text = content(message.get("content").unwrap_or(&Value::Null), &mut heard.pictures)?;
+    for message in parts::list_field(body, "messages")? {
+        let role = parts::message_role(message)?;
+        let text = read_content(message.get("content").unwrap_or(&Value::Null), &mut heard.pictures)?;
         heard.messages.push((role, text));
     }
-    parts::sampling(&mut heard, body, &["max_tokens"]);
+    parts::read_sampling(&mut heard, body, &["max_tokens"]);
     // The service refuses a request without it.
     heard.max_tokens.ok_or("max_tokens: Field required")?;
     Ok(heard)
 }
 
-fn content(content: &Value, pictures: &mut Vec<Vec<u8>>) -> Result<String, &'static str> {
+fn read_content(content: &Value, pictures: &mut Vec<Vec<u8>>) -> Result<String, &'static str> {
     let parts = match content {
         Value::String(text) => return Ok(text.clone()),
         Value::Array(parts) => parts,
@@ -31,10 +31,10 @@ fn content(content: &Value, pictures: &mut Vec<Vec<u8>>) -> Result<String, &'sta
     let mut texts = Vec::new();
     for part in parts {
         match part.get("type").and_then(Value::as_str) {
-            Some("text") => texts.push(parts::text(part, "text")?),
+            Some("text") => texts.push(parts::text_field(part, "text")?),
             Some("image") => {
                 let source = part.get("source").ok_or("An image has no source.")?;
-                pictures.push(parts::picture(&parts::text(source, "data")?)?);
+                pictures.push(parts::decode_picture(&parts::text_field(source, "data")?)?);
             }
             _ => return Err("A part of a message has no type that is known."),
         }
@@ -42,15 +42,15 @@ fn content(content: &Value, pictures: &mut Vec<Vec<u8>>) -> Result<String, &'sta
     Ok(texts.join("\n"))
 }
 
-pub(super) fn answer(said: &Said) -> Value {
+pub(super) fn reply_body(said: &ScriptReply) -> Value {
     let (content, reason) = match said.end {
-        End::Stop if !said.calls.is_empty() => {
+        ReplyEnding::Stop if !said.calls.is_empty() => {
             let call = |(at, (name, input)): (usize, &(String, Value))| json!({ "type": "tool_use", "id": format!("toolu_{at}"), "name": name, "input": input });
             (said.calls.iter().enumerate().map(call).collect(), "tool_use")
         }
-        End::Stop => (json!([{ "type": "text", "text": said.text }]), "end_turn"),
-        End::Length => (json!([{ "type": "text", "text": said.text }]), "max_tokens"),
-        End::Filtered | End::Refused => (json!([]), "refusal"),
+        ReplyEnding::Stop => (json!([{ "type": "text", "text": said.text }]), "end_turn"),
+        ReplyEnding::Length => (json!([{ "type": "text", "text": said.text }]), "max_tokens"),
+        ReplyEnding::Filtered | ReplyEnding::Refused => (json!([]), "refusal"),
     };
     json!({
         "id": "msg_test", "type": "message", "role": "assistant", "model": said.model, "content": content,
@@ -63,20 +63,20 @@ pub(super) fn no_choices() -> Value {
     json!({ "id": "msg_test", "type": "message", "role": "assistant" })
 }
 
-pub(super) fn models(names: &[&str]) -> Value {
+pub(super) fn model_list(names: &[&str]) -> Value {
     let model = |name: &&str| json!({ "type": "model", "id": name, "display_name": name });
     let data: Vec<Value> = names.iter().map(model).collect();
     json!({ "data": data, "has_more": false, "first_id": names.first(), "last_id": names.last() })
 }
 
-pub(super) fn error(wrong: Wrong, message: &str, details: Option<Value>) -> Value {
+pub(super) fn error_body(wrong: ServiceErrorKind, message: &str, details: Option<Value>) -> Value {
     let kind = match wrong {
-        Wrong::Request | Wrong::Quota => "invalid_request_error",
-        Wrong::Key => "authentication_error",
-        Wrong::Model => "not_found_error",
-        Wrong::TooMany => "rate_limit_error",
-        Wrong::Server | Wrong::Unavailable => "api_error",
-        Wrong::Overloaded => "overloaded_error",
+        ServiceErrorKind::Request | ServiceErrorKind::Quota => "invalid_request_error",
+        ServiceErrorKind::Key => "authentication_error",
+        ServiceErrorKind::Model => "not_found_error",
+        ServiceErrorKind::TooMany => "rate_limit_error",
+        ServiceErrorKind::Server | ServiceErrorKind::Unavailable => "api_error",
+        ServiceErrorKind::Overloaded => "overloaded_error",
     };
     let mut error = json!({ "type": kind, "message": message });
     if let (Some(details), Some(error)) = (details, error.as_object_mut()) {

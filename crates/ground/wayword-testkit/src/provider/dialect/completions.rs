@@ -1,24 +1,28 @@
 //! The dialect of OpenAI's legacy completions: the request has one prompt, and the model continues it.
 
-use super::{End, Said, openai, parts};
-use crate::provider::Heard;
+use super::{ReplyEnding, ScriptReply, openai, parts};
+use crate::provider::ScriptRequest;
 use serde_json::{Value, json};
-use wayword_core::Role;
+use wayword_core::MessageRole;
 
-pub(super) fn heard(body: &Value) -> Result<Heard, &'static str> {
-    let prompt = parts::text(body, "prompt")?;
-    let mut heard =
-        Heard { model: parts::text(body, "model")?, messages: vec![(Role::User, prompt)], ..Heard::default() };
-    parts::sampling(&mut heard, body, &["max_tokens"]);
+pub(super) fn read_request(body: &Value) -> Result<ScriptRequest, &'static str> {
+    let prompt = parts::text_field(body, "prompt")?;
+    let mut heard = ScriptRequest {
+        model: parts::text_field(body, "model")?,
+        messages: vec![(MessageRole::User, prompt)],
+        ..ScriptRequest::default()
+    };
+    parts::read_sampling(&mut heard, body, &["max_tokens"]);
     Ok(heard)
 }
 
-pub(super) fn answer(said: &Said) -> Value {
+pub(super) fn reply_body(said: &ScriptReply) -> Value {
     let text = match said.end {
-        End::Stop | End::Length => said.text.as_str(),
-        End::Filtered => "",
-        End::Refused => super::SORRY,
+        ReplyEnding::Stop | ReplyEnding::Length => said.text.as_str(),
+        ReplyEnding::Filtered => "",
+        ReplyEnding::Refused => super::REFUSAL_TEXT,
     };
-    let choice = json!({ "index": 0, "text": text, "logprobs": null, "finish_reason": openai::finish(said.end) });
-    openai::envelope(said, "text_completion", &choice)
+    let choice =
+        json!({ "index": 0, "text": text, "logprobs": null, "finish_reason": openai::finish_reason(said.end) });
+    openai::wrap_choice(said, "text_completion", &choice)
 }

@@ -1,47 +1,47 @@
 //! The dialect of Gemini's `generateContent`.
 
-use super::{End, Said, Wrong, parts};
-use crate::provider::Heard;
+use super::{ReplyEnding, ScriptReply, ServiceErrorKind, parts};
+use crate::provider::ScriptRequest;
 use serde_json::{Value, json};
-use wayword_core::Role;
+use wayword_core::MessageRole;
 
-pub(super) fn heard(body: &Value, model: &str) -> Result<Heard, &'static str> {
-    let mut heard = Heard { model: model.to_owned(), ..Heard::default() };
+pub(super) fn read_request(body: &Value, model: &str) -> Result<ScriptRequest, &'static str> {
+    let mut heard = ScriptRequest { model: model.to_owned(), ..ScriptRequest::default() };
     if let Some(system) = body.get("systemInstruction").or_else(|| body.get("system_instruction")) {
-        let text = content(system, &mut heard.pictures)?;
-        heard.messages.push((Role::System, text));
+        let text = read_content(system, &mut heard.pictures)?;
+        heard.messages.push((MessageRole::System, text));
     }
-    for message in parts::list(body, "contents")? {
+    for message in parts::list_field(body, "contents")? {
         // A single content may lack its role.
-        let role = if message.get("role").is_some() { parts::role(message)? } else { Role::User };
-        let text = content(message, &mut heard.pictures)?;
+        let role = if message.get("role").is_some() { parts::message_role(message)? } else { MessageRole::User };
+        let text = read_content(message, &mut heard.pictures)?;
         heard.messages.push((role, text));
     }
-    parts::sampling(&mut heard, body.get("generationConfig").unwrap_or(&Value::Null), &["maxOutputTokens"]);
+    parts::read_sampling(&mut heard, body.get("generationConfig").unwrap_or(&Value::Null), &["maxOutputTokens"]);
     Ok(heard)
 }
 
-fn content(content: &Value, pictures: &mut Vec<Vec<u8>>) -> Result<String, &'static str> {
+fn read_content(content: &Value, pictures: &mut Vec<Vec<u8>>) -> Result<String, &'static str> {
     let mut texts = Vec::new();
-    for part in parts::list(content, "parts")? {
+    for part in parts::list_field(content, "parts")? {
         match part.get("inlineData").or_else(|| part.get("inline_data")) {
-            Some(picture) => pictures.push(parts::picture(&parts::text(picture, "data")?)?),
-            None => texts.push(parts::text(part, "text")?),
+            Some(picture) => pictures.push(parts::decode_picture(&parts::text_field(picture, "data")?)?),
+            None => texts.push(parts::text_field(part, "text")?),
         }
     }
     Ok(texts.join("\n"))
 }
 
-pub(super) fn answer(said: &Said) -> Value {
+pub(super) fn reply_body(said: &ScriptReply) -> Value {
     let call = |(name, args): &(String, Value)| json!({ "functionCall": { "name": name, "args": args } });
     let words = [json!({ "text": said.text })];
     let parts: Vec<Value> = words.into_iter().chain(said.calls.iter().map(call)).collect();
     let content = json!({ "role": "model", "parts": parts });
     let candidate = match said.end {
-        End::Stop => json!({ "content": content, "finishReason": "STOP", "index": 0 }),
-        End::Length => json!({ "content": content, "finishReason": "MAX_TOKENS", "index": 0 }),
-        End::Filtered => json!({ "finishReason": "SAFETY", "index": 0 }),
-        End::Refused => json!({ "finishReason": "PROHIBITED_CONTENT", "index": 0 }),
+        ReplyEnding::Stop => json!({ "content": content, "finishReason": "STOP", "index": 0 }),
+        ReplyEnding::Length => json!({ "content": content, "finishReason": "MAX_TOKENS", "index": 0 }),
+        ReplyEnding::Filtered => json!({ "finishReason": "SAFETY", "index": 0 }),
+        ReplyEnding::Refused => json!({ "finishReason": "PROHIBITED_CONTENT", "index": 0 }),
     };
     json!({
         "candidates": [candidate],
@@ -57,21 +57,21 @@ pub(super) fn no_choices() -> Value {
     json!({ "candidates": [] })
 }
 
-pub(super) fn models(names: &[&str]) -> Value {
+pub(super) fn model_list(names: &[&str]) -> Value {
     let model = |name: &&str| json!({ "name": format!("models/{name}"), "displayName": name, "supportedGenerationMethods": ["generateContent"] });
     json!({ "models": names.iter().map(model).collect::<Vec<_>>() })
 }
 
-pub(super) fn error(wrong: Wrong, message: &str, details: Option<Value>, code: u16) -> Value {
+pub(super) fn error_body(wrong: ServiceErrorKind, message: &str, details: Option<Value>, code: u16) -> Value {
     let status = match wrong {
-        Wrong::Request => "INVALID_ARGUMENT",
-        Wrong::Key => "UNAUTHENTICATED",
-        Wrong::Model => "NOT_FOUND",
-        Wrong::Quota | Wrong::TooMany => "RESOURCE_EXHAUSTED",
-        Wrong::Server => "INTERNAL",
-        Wrong::Unavailable | Wrong::Overloaded => "UNAVAILABLE",
+        ServiceErrorKind::Request => "INVALID_ARGUMENT",
+        ServiceErrorKind::Key => "UNAUTHENTICATED",
+        ServiceErrorKind::Model => "NOT_FOUND",
+        ServiceErrorKind::Quota | ServiceErrorKind::TooMany => "RESOURCE_EXHAUSTED",
+        ServiceErrorKind::Server => "INTERNAL",
+        ServiceErrorKind::Unavailable | ServiceErrorKind::Overloaded => "UNAVAILABLE",
     };
-    let details = if wrong == Wrong::Quota { Some(day_is_over()) } else { details };
+    let details = if wrong == ServiceErrorKind::Quota { Some(day_is_over()) } else { details };
     let mut error = json!({ "code": code, "message": message, "status": status });
     if let (Some(details), Some(error)) = (details, error.as_object_mut()) {
         error.insert("details".to_owned(), details);

@@ -7,7 +7,7 @@ mod ollama;
 mod openai;
 mod parts;
 
-use super::{Heard, RetryAfter};
+use super::{RetryAfter, ScriptRequest};
 use axum::{
     http::{HeaderName, HeaderValue, StatusCode, header},
     response::{IntoResponse, Response},
@@ -17,7 +17,7 @@ use std::time::Duration;
 
 /// The API of a provider.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Dialect {
+pub enum ProviderDialect {
     /// OpenAI's chat completions.
     OpenAi,
     /// OpenAI's legacy completions.
@@ -32,12 +32,12 @@ pub enum Dialect {
 
 /// A script's reply before it is written in a dialect.
 #[derive(Debug, Clone)]
-pub(super) struct Said {
+pub(super) struct ScriptReply {
     pub(super) model: String,
     pub(super) text: String,
     /// Calls of tools: name and arguments. They are not in the text.
     pub(super) calls: Vec<(String, Value)>,
-    pub(super) end: End,
+    pub(super) end: ReplyEnding,
     /// Tokens of the request that are billed: one for four bytes of text, and a fixed number for each picture.
     pub(super) tokens_in: u64,
     /// Tokens of the reply that are billed.
@@ -46,7 +46,7 @@ pub(super) struct Said {
 
 /// Why a reply ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum End {
+pub(super) enum ReplyEnding {
     Stop,
     Length,
     Filtered,
@@ -55,7 +55,7 @@ pub(super) enum End {
 
 /// The kinds of errors that a service reports, about a request or about itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Wrong {
+pub(super) enum ServiceErrorKind {
     Request,
     Key,
     Model,
@@ -83,9 +83,9 @@ pub(super) fn with_calls(text: String, request: &Value) -> (String, Vec<(String,
 }
 
 /// A refusal in words, for dialects without a field for refusals.
-const SORRY: &str = "I'm sorry, but I can't help with that.";
+const REFUSAL_TEXT: &str = "I'm sorry, but I can't help with that.";
 
-impl Dialect {
+impl ProviderDialect {
     /// All of them.
     pub const ALL: [Self; 5] = [Self::OpenAi, Self::Completions, Self::Anthropic, Self::Gemini, Self::Ollama];
 
@@ -118,23 +118,23 @@ impl Dialect {
         }
     }
 
-    pub(super) fn heard(self, body: &Value, model: Option<&str>) -> Result<Heard, &'static str> {
+    pub(super) fn read_request(self, body: &Value, model: Option<&str>) -> Result<ScriptRequest, &'static str> {
         match self {
-            Self::OpenAi => openai::heard(body),
-            Self::Completions => completions::heard(body),
-            Self::Anthropic => anthropic::heard(body),
-            Self::Gemini => gemini::heard(body, model.unwrap_or_default()),
-            Self::Ollama => ollama::heard(body),
+            Self::OpenAi => openai::read_request(body),
+            Self::Completions => completions::read_request(body),
+            Self::Anthropic => anthropic::read_request(body),
+            Self::Gemini => gemini::read_request(body, model.unwrap_or_default()),
+            Self::Ollama => ollama::read_request(body),
         }
     }
 
-    pub(super) fn answer(self, said: &Said) -> Value {
+    pub(super) fn reply_body(self, said: &ScriptReply) -> Value {
         match self {
-            Self::OpenAi => openai::answer(said),
-            Self::Completions => completions::answer(said),
-            Self::Anthropic => anthropic::answer(said),
-            Self::Gemini => gemini::answer(said),
-            Self::Ollama => ollama::answer(said),
+            Self::OpenAi => openai::reply_body(said),
+            Self::Completions => completions::reply_body(said),
+            Self::Anthropic => anthropic::reply_body(said),
+            Self::Gemini => gemini::reply_body(said),
+            Self::Ollama => ollama::reply_body(said),
         }
     }
 
@@ -148,44 +148,49 @@ impl Dialect {
         }
     }
 
-    pub(super) fn models(self, names: &[&str]) -> Value {
+    pub(super) fn model_list(self, names: &[&str]) -> Value {
         match self {
-            Self::OpenAi | Self::Completions => openai::models(names),
-            Self::Anthropic => anthropic::models(names),
-            Self::Gemini => gemini::models(names),
-            Self::Ollama => ollama::models(names),
+            Self::OpenAi | Self::Completions => openai::model_list(names),
+            Self::Anthropic => anthropic::model_list(names),
+            Self::Gemini => gemini::model_list(names),
+            Self::Ollama => ollama::model_list(names),
         }
     }
 
-    pub(super) fn error(self, wrong: Wrong, message: &str, details: Option<Value>) -> Value {
+    pub(super) fn error_body(self, wrong: ServiceErrorKind, message: &str, details: Option<Value>) -> Value {
         match self {
-            Self::OpenAi | Self::Completions => openai::error(wrong, message, details),
-            Self::Anthropic => anthropic::error(wrong, message, details),
-            Self::Gemini => gemini::error(wrong, message, details, self.status(wrong)),
-            Self::Ollama => ollama::error(message),
+            Self::OpenAi | Self::Completions => openai::error_body(wrong, message, details),
+            Self::Anthropic => anthropic::error_body(wrong, message, details),
+            Self::Gemini => gemini::error_body(wrong, message, details, self.status_code(wrong)),
+            Self::Ollama => ollama::error_body(message),
         }
     }
 
     /// An error as a response with its HTTP status.
-    pub(super) fn refuse(self, wrong: Wrong, message: &str) -> Response {
-        self.refusal(wrong, message, Vec::new(), None)
+    pub(super) fn error_response(self, wrong: ServiceErrorKind, message: &str) -> Response {
+        self.error_response_with(wrong, message, Vec::new(), None)
     }
 
     /// A 429 that announces the wait in the given form.
     pub(super) fn too_many(self, form: RetryAfter, wait: Duration) -> Response {
         let message = "Rate limit reached: too many requests.";
-        self.refusal(Wrong::TooMany, message, form.headers(wait, self), form.details(wait))
+        self.error_response_with(
+            ServiceErrorKind::TooMany,
+            message,
+            form.response_headers(wait, self),
+            form.error_details(wait),
+        )
     }
 
-    fn refusal(
+    fn error_response_with(
         self,
-        wrong: Wrong,
+        wrong: ServiceErrorKind,
         message: &str,
         headers: Vec<(&'static str, String)>,
         details: Option<Value>,
     ) -> Response {
-        let status = StatusCode::from_u16(self.status(wrong)).unwrap_or(StatusCode::INTERNAL_SERVER_ERROR);
-        let body = self.error(wrong, message, details).to_string();
+        let status = StatusCode::from_u16(self.status_code(wrong)).unwrap_or(StatusCode::INTERNAL_SERVER_ERROR);
+        let body = self.error_body(wrong, message, details).to_string();
         let mut response = (status, [(header::CONTENT_TYPE, "application/json")], body).into_response();
         for (name, value) in headers {
             if let Ok(value) = HeaderValue::from_str(&value) {
@@ -195,18 +200,18 @@ impl Dialect {
         response
     }
 
-    fn status(self, wrong: Wrong) -> u16 {
+    fn status_code(self, wrong: ServiceErrorKind) -> u16 {
         match wrong {
-            Wrong::Request => 400,
-            Wrong::Key => 401,
-            Wrong::Model => 404,
+            ServiceErrorKind::Request => 400,
+            ServiceErrorKind::Key => 401,
+            ServiceErrorKind::Model => 404,
             // Some services answer something other than 429 when the account is empty.
-            Wrong::Quota if self == Self::Anthropic => 400,
-            Wrong::Quota if self == Self::Ollama => 402,
-            Wrong::Quota | Wrong::TooMany => 429,
-            Wrong::Server => 500,
-            Wrong::Unavailable => 503,
-            Wrong::Overloaded => 529,
+            ServiceErrorKind::Quota if self == Self::Anthropic => 400,
+            ServiceErrorKind::Quota if self == Self::Ollama => 402,
+            ServiceErrorKind::Quota | ServiceErrorKind::TooMany => 429,
+            ServiceErrorKind::Server => 500,
+            ServiceErrorKind::Unavailable => 503,
+            ServiceErrorKind::Overloaded => 529,
         }
     }
 

@@ -1,30 +1,30 @@
 //! The dialect of Ollama's own chat endpoint.
 
-use super::{End, Said, parts};
-use crate::provider::Heard;
+use super::{ReplyEnding, ScriptReply, parts};
+use crate::provider::ScriptRequest;
 use serde_json::{Value, json};
 
-pub(super) fn heard(body: &Value) -> Result<Heard, &'static str> {
+pub(super) fn read_request(body: &Value) -> Result<ScriptRequest, &'static str> {
     if body.get("stream") != Some(&Value::Bool(false)) {
         return Err("Only whole answers are given here: set stream to false.");
     }
-    let mut heard = Heard { model: parts::text(body, "model")?, ..Heard::default() };
-    for message in parts::list(body, "messages")? {
-        heard.messages.push((parts::role(message)?, parts::text(message, "content")?));
+    let mut heard = ScriptRequest { model: parts::text_field(body, "model")?, ..ScriptRequest::default() };
+    for message in parts::list_field(body, "messages")? {
+        heard.messages.push((parts::message_role(message)?, parts::text_field(message, "content")?));
         for image in message.get("images").and_then(Value::as_array).into_iter().flatten() {
-            heard.pictures.push(parts::picture(image.as_str().ok_or("An image is not a text.")?)?);
+            heard.pictures.push(parts::decode_picture(image.as_str().ok_or("An image is not a text.")?)?);
         }
     }
-    parts::sampling(&mut heard, body.get("options").unwrap_or(&Value::Null), &["num_predict"]);
+    parts::read_sampling(&mut heard, body.get("options").unwrap_or(&Value::Null), &["num_predict"]);
     Ok(heard)
 }
 
-pub(super) fn answer(said: &Said) -> Value {
+pub(super) fn reply_body(said: &ScriptReply) -> Value {
     // Ollama has no filter and no field for refusals: a model refuses in its text.
     let (text, reason) = match said.end {
-        End::Stop => (said.text.as_str(), "stop"),
-        End::Length => (said.text.as_str(), "length"),
-        End::Filtered | End::Refused => (super::SORRY, "stop"),
+        ReplyEnding::Stop => (said.text.as_str(), "stop"),
+        ReplyEnding::Length => (said.text.as_str(), "length"),
+        ReplyEnding::Filtered | ReplyEnding::Refused => (super::REFUSAL_TEXT, "stop"),
     };
     let mut message = json!({ "role": "assistant", "content": text });
     if !said.calls.is_empty() {
@@ -43,11 +43,11 @@ pub(super) fn no_choices() -> Value {
     json!({ "model": "", "created_at": "2026-01-01T00:00:00Z", "done": true })
 }
 
-pub(super) fn models(names: &[&str]) -> Value {
+pub(super) fn model_list(names: &[&str]) -> Value {
     let model = |name: &&str| json!({ "name": name, "model": name });
     json!({ "models": names.iter().map(model).collect::<Vec<_>>() })
 }
 
-pub(super) fn error(message: &str) -> Value {
+pub(super) fn error_body(message: &str) -> Value {
     json!({ "error": message })
 }

@@ -1,21 +1,21 @@
 //! The dialect of OpenAI's chat completions.
 
-use super::{End, Said, Wrong, parts};
-use crate::provider::Heard;
+use super::{ReplyEnding, ScriptReply, ServiceErrorKind, parts};
+use crate::provider::ScriptRequest;
 use serde_json::{Value, json};
 
-pub(super) fn heard(body: &Value) -> Result<Heard, &'static str> {
-    let mut heard = Heard { model: parts::text(body, "model")?, ..Heard::default() };
-    for message in parts::list(body, "messages")? {
-        let role = parts::role(message)?;
-        let text = content(message.get("content").unwrap_or(&Value::Null), &mut heard.pictures)?;
+pub(super) fn read_request(body: &Value) -> Result<ScriptRequest, &'static str> {
+    let mut heard = ScriptRequest { model: parts::text_field(body, "model")?, ..ScriptRequest::default() };
+    for message in parts::list_field(body, "messages")? {
+        let role = parts::message_role(message)?;
+        let text = read_content(message.get("content").unwrap_or(&Value::Null), &mut heard.pictures)?;
         heard.messages.push((role, text));
     }
-    parts::sampling(&mut heard, body, &["max_completion_tokens", "max_tokens"]);
+    parts::read_sampling(&mut heard, body, &["max_completion_tokens", "max_tokens"]);
     Ok(heard)
 }
 
-fn content(content: &Value, pictures: &mut Vec<Vec<u8>>) -> Result<String, &'static str> {
+fn read_content(content: &Value, pictures: &mut Vec<Vec<u8>>) -> Result<String, &'static str> {
     let parts = match content {
         Value::String(text) => return Ok(text.clone()),
         Value::Array(parts) => parts,
@@ -24,12 +24,12 @@ fn content(content: &Value, pictures: &mut Vec<Vec<u8>>) -> Result<String, &'sta
     let mut texts = Vec::new();
     for part in parts {
         match part.get("type").and_then(Value::as_str) {
-            Some("text") => texts.push(parts::text(part, "text")?),
+            Some("text") => texts.push(parts::text_field(part, "text")?),
             Some("image_url") => {
                 let url = part.get("image_url").and_then(|image| image.get("url")?.as_str());
                 let data = url.and_then(|url| url.strip_prefix("data:image/")?.split_once(";base64,"));
                 let (_, base64) = data.ok_or("Only data URLs of images are read.")?;
-                pictures.push(parts::picture(base64)?);
+                pictures.push(parts::decode_picture(base64)?);
             }
             _ => return Err("A part of a message has no type that is known."),
         }
@@ -37,9 +37,9 @@ fn content(content: &Value, pictures: &mut Vec<Vec<u8>>) -> Result<String, &'sta
     Ok(texts.join("\n"))
 }
 
-pub(super) fn answer(said: &Said) -> Value {
+pub(super) fn reply_body(said: &ScriptReply) -> Value {
     let message = match said.end {
-        End::Stop if !said.calls.is_empty() => {
+        ReplyEnding::Stop if !said.calls.is_empty() => {
             let call = |(at, (name, arguments)): (usize, &(String, Value))| {
                 // The arguments are JSON within a text.
                 let function = json!({ "name": name, "arguments": arguments.to_string() });
@@ -48,24 +48,26 @@ pub(super) fn answer(said: &Said) -> Value {
             let calls: Vec<Value> = said.calls.iter().enumerate().map(call).collect();
             json!({ "role": "assistant", "content": said.text, "refusal": null, "tool_calls": calls })
         }
-        End::Stop | End::Length => json!({ "role": "assistant", "content": said.text, "refusal": null }),
-        End::Filtered => json!({ "role": "assistant", "content": "", "refusal": null }),
-        End::Refused => json!({ "role": "assistant", "content": null, "refusal": super::SORRY }),
+        ReplyEnding::Stop | ReplyEnding::Length => {
+            json!({ "role": "assistant", "content": said.text, "refusal": null })
+        }
+        ReplyEnding::Filtered => json!({ "role": "assistant", "content": "", "refusal": null }),
+        ReplyEnding::Refused => json!({ "role": "assistant", "content": null, "refusal": super::REFUSAL_TEXT }),
     };
-    let choice = json!({ "index": 0, "message": message, "logprobs": null, "finish_reason": finish(said.end) });
-    envelope(said, "chat.completion", &choice)
+    let choice = json!({ "index": 0, "message": message, "logprobs": null, "finish_reason": finish_reason(said.end) });
+    wrap_choice(said, "chat.completion", &choice)
 }
 
-pub(super) fn finish(end: End) -> &'static str {
+pub(super) fn finish_reason(end: ReplyEnding) -> &'static str {
     match end {
-        End::Stop | End::Refused => "stop",
-        End::Length => "length",
-        End::Filtered => "content_filter",
+        ReplyEnding::Stop | ReplyEnding::Refused => "stop",
+        ReplyEnding::Length => "length",
+        ReplyEnding::Filtered => "content_filter",
     }
 }
 
 /// A choice within a whole reply.
-pub(super) fn envelope(said: &Said, object: &str, choice: &Value) -> Value {
+pub(super) fn wrap_choice(said: &ScriptReply, object: &str, choice: &Value) -> Value {
     json!({
         "id": "chatcmpl-test", "object": object, "created": 1_767_225_600, "model": said.model,
         "choices": [choice],
@@ -80,19 +82,21 @@ pub(super) fn no_choices() -> Value {
     json!({ "id": "chatcmpl-test", "object": "chat.completion", "choices": [] })
 }
 
-pub(super) fn models(names: &[&str]) -> Value {
+pub(super) fn model_list(names: &[&str]) -> Value {
     let model = |name: &&str| json!({ "id": name, "object": "model", "created": 1_767_225_600, "owned_by": "test" });
     json!({ "object": "list", "data": names.iter().map(model).collect::<Vec<_>>() })
 }
 
-pub(super) fn error(wrong: Wrong, message: &str, details: Option<Value>) -> Value {
+pub(super) fn error_body(wrong: ServiceErrorKind, message: &str, details: Option<Value>) -> Value {
     let (kind, code) = match wrong {
-        Wrong::Request => ("invalid_request_error", Value::Null),
-        Wrong::Key => ("invalid_request_error", "invalid_api_key".into()),
-        Wrong::Model => ("invalid_request_error", "model_not_found".into()),
-        Wrong::Quota => ("insufficient_quota", "insufficient_quota".into()),
-        Wrong::TooMany => ("requests", "rate_limit_exceeded".into()),
-        Wrong::Server | Wrong::Unavailable | Wrong::Overloaded => ("server_error", Value::Null),
+        ServiceErrorKind::Request => ("invalid_request_error", Value::Null),
+        ServiceErrorKind::Key => ("invalid_request_error", "invalid_api_key".into()),
+        ServiceErrorKind::Model => ("invalid_request_error", "model_not_found".into()),
+        ServiceErrorKind::Quota => ("insufficient_quota", "insufficient_quota".into()),
+        ServiceErrorKind::TooMany => ("requests", "rate_limit_exceeded".into()),
+        ServiceErrorKind::Server | ServiceErrorKind::Unavailable | ServiceErrorKind::Overloaded => {
+            ("server_error", Value::Null)
+        }
     };
     let mut error = json!({ "message": message, "type": kind, "param": null, "code": code });
     if let (Some(details), Some(error)) = (details, error.as_object_mut()) {

@@ -1,13 +1,13 @@
 //! A scripted author: it writes instructions from the captions and moves in a prompt, with occasional mistakes.
 
-use super::{Script, prompt::things, rng};
-use crate::provider::Heard;
+use super::{ModelScript, prompt::named_things, rng_for_text};
+use crate::provider::ScriptRequest;
 use rand::{Rng, seq::IndexedRandom};
 
 /// Writes a sentence for each move, with a landmark of the frame. When it is careless, it names a treadmill or piano
 /// that no caption names.
 #[derive(Debug, Clone, Copy)]
-pub struct Author {
+pub struct ScriptedAuthor {
     /// Seed of its draws.
     pub seed: u64,
     /// How often it is careless, 0 to 1. It is half as careless when the prompt gives the reason of an earlier refusal.
@@ -15,16 +15,16 @@ pub struct Author {
 }
 
 /// A frame of the prompt: its caption, and the move that follows.
-struct Frame<'a> {
+struct PromptFrame<'a> {
     caption: &'a str,
     then: Option<&'a str>,
 }
 
-impl Script for Author {
-    fn reply(&self, heard: &Heard) -> String {
+impl ModelScript for ScriptedAuthor {
+    fn reply(&self, heard: &ScriptRequest) -> String {
         let prompt = heard.prompt();
-        let frames = frames(prompt);
-        let mut rng = rng(self.seed, prompt);
+        let frames = read_frames(prompt);
+        let mut rng = rng_for_text(self.seed, prompt);
         let share = if prompt.contains("was refused because") { self.carelessness / 2.0 } else { self.carelessness };
         let careless = rng.random_bool(share);
         let target = prompt.split("on this object of the last frame: ").nth(1).and_then(|rest| rest.lines().next());
@@ -44,11 +44,11 @@ impl Script for Author {
     }
 }
 
-fn frames(prompt: &str) -> Vec<Frame<'_>> {
-    let mut frames: Vec<Frame<'_>> = Vec::new();
+fn read_frames(prompt: &str) -> Vec<PromptFrame<'_>> {
+    let mut frames: Vec<PromptFrame<'_>> = Vec::new();
     for line in prompt.lines() {
         if let Some((_, caption)) = line.strip_prefix("Frame ").and_then(|rest| rest.split_once(": ")) {
-            frames.push(Frame { caption, then: None });
+            frames.push(PromptFrame { caption, then: None });
         } else if let (Some(then), Some(last)) = (line.trim().strip_prefix("Then: "), frames.last_mut()) {
             last.then = Some(then);
         }
@@ -57,18 +57,18 @@ fn frames(prompt: &str) -> Vec<Frame<'_>> {
 }
 
 /// The first thing that a caption names and that is not a room.
-fn landmark(caption: &str) -> Option<String> {
-    things(caption).into_iter().find(|name| !name.ends_with("room") && !name.ends_with("way") && name != "place")
+fn first_landmark(caption: &str) -> Option<String> {
+    named_things(caption).into_iter().find(|name| !name.ends_with("room") && !name.ends_with("way") && name != "place")
 }
 
-fn coarse_text(frames: &[Frame<'_>], target: Option<&str>, careless: bool) -> String {
-    let last = frames.last().and_then(|frame| landmark(frame.caption));
+fn coarse_text(frames: &[PromptFrame<'_>], target: Option<&str>, careless: bool) -> String {
+    let last = frames.last().and_then(|frame| first_landmark(frame.caption));
     let object = target.map(str::to_owned).or(last).unwrap_or_else(|| "door".to_owned());
     let object = if careless { "treadmill".to_owned() } else { object };
     format!("Go on until you see the {object} and clean the {object}.")
 }
 
-fn fine_text(frames: &[Frame<'_>], target: Option<&str>, careless: bool, rng: &mut impl Rng) -> String {
+fn fine_text(frames: &[PromptFrame<'_>], target: Option<&str>, careless: bool, rng: &mut impl Rng) -> String {
     let wrong = careless.then(|| rng.random_range(0..frames.len().max(1)));
     let absent = ["treadmill", "piano"].choose(rng).copied().unwrap_or("piano");
     let mut sentences = Vec::new();
@@ -88,11 +88,11 @@ fn fine_text(frames: &[Frame<'_>], target: Option<&str>, careless: bool, rng: &m
         }
         if wrong == Some(at) {
             sentences.push(format!("Walk past the {absent}."));
-        } else if let Some(name) = landmark(frame.caption).filter(|_| turn.is_none() && at > 0) {
+        } else if let Some(name) = first_landmark(frame.caption).filter(|_| turn.is_none() && at > 0) {
             sentences.push(format!("Walk past the {name}."));
         }
     }
-    let end = target.map(str::to_owned).or_else(|| frames.last().and_then(|frame| landmark(frame.caption)));
+    let end = target.map(str::to_owned).or_else(|| frames.last().and_then(|frame| first_landmark(frame.caption)));
     sentences.push("Go straight on.".to_owned());
     sentences.push(end.map_or("Stop there.".to_owned(), |name| format!("Stop at the {name}.")));
     sentences.join(" ")

@@ -9,47 +9,47 @@ mod summariser;
 mod troubles;
 mod walker;
 
-use super::{Heard, Script};
+use super::{ModelScript, ScriptRequest};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use sha2::{Digest, Sha256};
 
-pub use author::Author;
+pub use author::ScriptedAuthor;
 pub use eye::FlawedEye;
-pub use questioner::Questioner;
-pub use summariser::Summariser;
-pub use troubles::Troubled;
-pub use walker::{Gait, MISCHIEF, Route, Walker};
+pub use questioner::ScriptedQuestioner;
+pub use summariser::ScriptedSummariser;
+pub use troubles::TroubledScript;
+pub use walker::{BROKEN_REPLIES, ScriptedRoute, ScriptedWalker, WalkerGait};
 
 /// All roles behind one model name. A request to write goes to the author, with pictures or without; another request with
 /// a picture goes to the eye, and any other to the role that its prompt is for.
 #[derive(Debug, Clone)]
-pub struct Cast {
+pub struct ScriptedCast {
     /// Answers about pictures.
     pub eye: FlawedEye,
     /// Asks questions about a picture.
-    pub questioner: Questioner,
+    pub questioner: ScriptedQuestioner,
     /// Summarises a dialogue.
-    pub summariser: Summariser,
+    pub summariser: ScriptedSummariser,
     /// Writes instructions.
-    pub author: Author,
+    pub author: ScriptedAuthor,
 }
 
-impl Cast {
+impl ScriptedCast {
     /// A cast with text roles that make mistakes with this probability.
     #[must_use]
     pub fn new(eye: FlawedEye, seed: u64, carelessness: f64) -> Self {
         Self {
             eye,
-            questioner: Questioner { seed, chatter: carelessness },
-            summariser: Summariser { seed, carelessness },
-            author: Author { seed, carelessness },
+            questioner: ScriptedQuestioner { seed, chatter: carelessness },
+            summariser: ScriptedSummariser { seed, carelessness },
+            author: ScriptedAuthor { seed, carelessness },
         }
     }
 }
 
-impl Script for Cast {
-    fn reply(&self, heard: &Heard) -> String {
+impl ModelScript for ScriptedCast {
+    fn reply(&self, heard: &ScriptRequest) -> String {
         let prompt = heard.prompt();
         if prompt.contains("Frame 0:") {
             self.author.reply(heard)
@@ -60,21 +60,21 @@ impl Script for Cast {
         } else if prompt.contains("Sum up") {
             self.summariser.reply(heard)
         } else if prompt.contains("Describe the place in one sentence") {
-            prompt::condensed(prompt)
+            prompt::condense_panorama(prompt)
         } else {
             "ready".to_owned()
         }
     }
 }
 
-impl<F: Fn(&Heard) -> String + Send + Sync> Script for F {
-    fn reply(&self, heard: &Heard) -> String {
+impl<F: Fn(&ScriptRequest) -> String + Send + Sync> ModelScript for F {
+    fn reply(&self, heard: &ScriptRequest) -> String {
         self(heard)
     }
 }
 
 /// A random generator that is seeded by a text, so that equal prompts get equal draws.
-fn rng(seed: u64, about: &str) -> ChaCha8Rng {
+fn rng_for_text(seed: u64, about: &str) -> ChaCha8Rng {
     let mut hash = Sha256::new();
     hash.update(seed.to_le_bytes());
     hash.update(about);

@@ -1,7 +1,7 @@
 //! Extracts from prompts what the scripts need: questions with answers, names of things, rooms.
 
 /// The questions and answers of a transcript.
-pub(super) fn exchanges(prompt: &str) -> Vec<(&str, &str)> {
+pub(super) fn read_exchanges(prompt: &str) -> Vec<(&str, &str)> {
     let mut exchanges: Vec<(&str, &str)> = Vec::new();
     for line in prompt.lines() {
         if let Some(question) = line.strip_prefix("Question: ") {
@@ -14,8 +14,8 @@ pub(super) fn exchanges(prompt: &str) -> Vec<(&str, &str)> {
 }
 
 /// The things that a text names after "a" or "an", each once.
-pub(super) fn things(text: &str) -> Vec<String> {
-    const ENDS: [&str; 16] = [
+pub(super) fn named_things(text: &str) -> Vec<String> {
+    const NAME_END_WORDS: [&str; 16] = [
         "on", "in", "and", "with", "to", "of", "at", "by", "it", "next", "beside", "near", "under", "above", "is",
         "there",
     ];
@@ -29,7 +29,7 @@ pub(super) fn things(text: &str) -> Vec<String> {
             continue;
         }
         let mut name: Vec<&str> = Vec::new();
-        while at < words.len() && !ENDS.contains(&words[at]) && name.len() < 4 {
+        while at < words.len() && !NAME_END_WORDS.contains(&words[at]) && name.len() < 4 {
             let ends = words[at].ends_with([',', '.']);
             name.push(words[at].trim_end_matches([',', '.']));
             at += 1;
@@ -46,24 +46,24 @@ pub(super) fn things(text: &str) -> Vec<String> {
 }
 
 /// Whether an answer begins with "no".
-pub(super) fn denies(answer: &str) -> bool {
+pub(super) fn is_denial(answer: &str) -> bool {
     answer.to_lowercase().starts_with("no")
 }
 
 /// The room that a transcript names.
-pub(super) fn room<'a>(exchanges: &[(&str, &'a str)]) -> Option<&'a str> {
+pub(super) fn named_room<'a>(exchanges: &[(&str, &'a str)]) -> Option<&'a str> {
     let (_, answer) =
         exchanges.iter().find(|(question, answer)| question.contains("room") && answer.starts_with("This is a "))?;
     Some(answer.trim_start_matches("This is a ").trim_end_matches('.'))
 }
 
 /// A name with its article.
-pub(super) fn article(name: &str) -> String {
+pub(super) fn with_article(name: &str) -> String {
     if name.starts_with(['a', 'e', 'i', 'o', 'u']) { format!("an {name}") } else { format!("a {name}") }
 }
 
 /// "a, b and c".
-pub(super) fn enumerate(items: &[String]) -> String {
+pub(super) fn join_with_and(items: &[String]) -> String {
     match items {
         [] => String::new(),
         [only] => only.clone(),
@@ -72,11 +72,11 @@ pub(super) fn enumerate(items: &[String]) -> String {
 }
 
 /// Summarises the views of a panorama in one sentence that names its first four things.
-pub(super) fn condensed(prompt: &str) -> String {
+pub(super) fn condense_panorama(prompt: &str) -> String {
     let seen =
         prompt.split("It sees:").nth(1).and_then(|rest| rest.split("Describe the place").next()).unwrap_or_default();
-    let items: Vec<String> = things(seen).iter().take(4).map(|name| article(name)).collect();
-    if items.is_empty() { "A place.".to_owned() } else { format!("A place with {}.", enumerate(&items)) }
+    let items: Vec<String> = named_things(seen).iter().take(4).map(|name| with_article(name)).collect();
+    if items.is_empty() { "A place.".to_owned() } else { format!("A place with {}.", join_with_and(&items)) }
 }
 
 #[cfg(test)]
@@ -86,7 +86,7 @@ mod tests {
     #[test]
     fn names_end_where_their_places_begin() {
         let text = "I can see a coffee table on the left, an oven in the middle and a lamp.";
-        assert_eq!(things(text), ["coffee table", "oven", "lamp"]);
-        assert_eq!(things("A bedroom with a bed and two lamps."), ["bedroom", "bed"]);
+        assert_eq!(named_things(text), ["coffee table", "oven", "lamp"]);
+        assert_eq!(named_things("A bedroom with a bed and two lamps."), ["bedroom", "bed"]);
     }
 }

@@ -1,27 +1,27 @@
 //! A scripted questioner: it asks about a picture that it cannot see, from the dialogue so far.
 
 use super::{
-    Script,
-    prompt::{article, exchanges, things},
-    rng,
+    ModelScript,
+    prompt::{named_things, read_exchanges, with_article},
+    rng_for_text,
 };
-use crate::provider::Heard;
+use crate::provider::ScriptRequest;
 use rand::Rng;
 
 /// Asks for the kind of room, then whether each named object is really there, then about the left, the right and the floor.
 #[derive(Debug, Clone, Copy)]
-pub struct Questioner {
+pub struct ScriptedQuestioner {
     /// Seed of its draws.
     pub seed: u64,
     /// How often it wraps the question in other words, as real models do.
     pub chatter: f64,
 }
 
-impl Script for Questioner {
-    fn reply(&self, heard: &Heard) -> String {
+impl ModelScript for ScriptedQuestioner {
+    fn reply(&self, heard: &ScriptRequest) -> String {
         let prompt = heard.prompt();
         let question = next_question(prompt);
-        let mut rng = rng(self.seed, prompt);
+        let mut rng = rng_for_text(self.seed, prompt);
         if !rng.random_bool(self.chatter) {
             return question;
         }
@@ -34,13 +34,13 @@ impl Script for Questioner {
 }
 
 fn next_question(prompt: &str) -> String {
-    let told = exchanges(prompt);
+    let told = read_exchanges(prompt);
     let asked = |question: &String| !told.iter().any(|(before, _)| before == question);
-    let named = told.first().map_or_else(Vec::new, |(_, answer)| things(answer));
+    let named = told.first().map_or_else(Vec::new, |(_, answer)| named_things(answer));
     let doubts = named.iter().enumerate().map(|(at, name)| match at % 3 {
-        0 => format!("Is there really {}?", article(name)),
+        0 => format!("Is there really {}?", with_article(name)),
         1 => format!("Is the {name} you mentioned really there?"),
-        _ => format!("Do you see {} in the picture?", article(name)),
+        _ => format!("Do you see {} in the picture?", with_article(name)),
     });
     let first = ["What kind of room is this?".to_owned()].into_iter();
     let last = ["What is on the left?", "What is on the right?", "What is the floor made of?"].map(str::to_owned);

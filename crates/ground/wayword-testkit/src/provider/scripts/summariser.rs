@@ -1,32 +1,33 @@
 //! A scripted summariser: it turns a dialogue about a picture into one sentence, with occasional mistakes.
 
 use super::{
-    Script,
-    prompt::{article, denies, enumerate, exchanges, room, things},
-    rng,
+    ModelScript,
+    prompt::{is_denial, join_with_and, named_room, named_things, read_exchanges, with_article},
+    rng_for_text,
 };
-use crate::provider::Heard;
+use crate::provider::ScriptRequest;
 use rand::Rng;
 
 /// Names the objects that the answers affirmed. When it is careless, it keeps denied ones as well, or adds a piano.
 #[derive(Debug, Clone, Copy)]
-pub struct Summariser {
+pub struct ScriptedSummariser {
     /// Seed of its draws.
     pub seed: u64,
     /// How often it is careless, 0 to 1. It never is when the prompt gives the reason of an earlier refusal.
     pub carelessness: f64,
 }
 
-impl Script for Summariser {
-    fn reply(&self, heard: &Heard) -> String {
+impl ModelScript for ScriptedSummariser {
+    fn reply(&self, heard: &ScriptRequest) -> String {
         let prompt = heard.prompt();
-        let told = exchanges(prompt);
+        let told = read_exchanges(prompt);
         let named: Vec<String> =
-            told.iter().filter(|(_, answer)| !denies(answer)).flat_map(|(_, answer)| things(answer)).collect();
-        let room = room(&told);
+            told.iter().filter(|(_, answer)| !is_denial(answer)).flat_map(|(_, answer)| named_things(answer)).collect();
+        let room = named_room(&told);
         let is_denied =
-            |name: &String| told.iter().any(|(question, answer)| denies(answer) && question.contains(name.as_str()));
-        let careless = !prompt.contains("was refused") && rng(self.seed, prompt).random_bool(self.carelessness);
+            |name: &String| told.iter().any(|(question, answer)| is_denial(answer) && question.contains(name.as_str()));
+        let careless =
+            !prompt.contains("was refused") && rng_for_text(self.seed, prompt).random_bool(self.carelessness);
         let mut kept: Vec<String> = Vec::new();
         for name in named {
             if (careless || !is_denied(&name)) && Some(name.as_str()) != room && !kept.contains(&name) {
@@ -36,8 +37,8 @@ impl Script for Summariser {
         if careless && kept.iter().all(|name| !is_denied(name)) {
             kept.push("piano".to_owned());
         }
-        let items: Vec<String> = kept.iter().map(|name| article(name)).collect();
+        let items: Vec<String> = kept.iter().map(|name| with_article(name)).collect();
         let place = room.map_or("A place".to_owned(), |room| format!("The picture shows a {room}"));
-        if items.is_empty() { format!("{place}.") } else { format!("{place} with {}.", enumerate(&items)) }
+        if items.is_empty() { format!("{place}.") } else { format!("{place} with {}.", join_with_and(&items)) }
     }
 }

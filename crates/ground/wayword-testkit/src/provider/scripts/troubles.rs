@@ -1,7 +1,7 @@
 //! Spoils the answers of a script in the ways that BLIP-2 is known for (ChatCaptioner #4 and #7; LAVIS #472, #713, #806).
 
-use super::{Script, rng};
-use crate::provider::Heard;
+use super::{ModelScript, rng_for_text};
+use crate::provider::ScriptRequest;
 use rand::Rng;
 use std::sync::Arc;
 
@@ -9,25 +9,25 @@ use std::sync::Arc;
 /// of a few words, or one fixed sentence. Equal requests get equal answers. A question in other words is drawn anew, so asking
 /// again may help.
 #[derive(Clone)]
-pub struct Troubled {
-    script: Arc<dyn Script>,
+pub struct TroubledScript {
+    script: Arc<dyn ModelScript>,
     share: f64,
     seed: u64,
 }
 
-impl Troubled {
+impl TroubledScript {
     /// Spoils a share (0 to 1) of a script's answers.
     #[must_use]
-    pub fn new(script: impl Script + 'static, share: f64, seed: u64) -> Self {
+    pub fn new(script: impl ModelScript + 'static, share: f64, seed: u64) -> Self {
         Self { script: Arc::new(script), share: share.clamp(0.0, 1.0), seed }
     }
 }
 
-impl Script for Troubled {
-    fn reply(&self, heard: &Heard) -> String {
+impl ModelScript for TroubledScript {
+    fn reply(&self, heard: &ScriptRequest) -> String {
         let prompt = heard.prompt();
         let pictures: String = heard.pictures.iter().map(|bytes| String::from_utf8_lossy(bytes)).collect();
-        let mut rng = rng(self.seed, &format!("trouble {prompt} {pictures}"));
+        let mut rng = rng_for_text(self.seed, &format!("trouble {prompt} {pictures}"));
         if !rng.random_bool(self.share) {
             return self.script.reply(heard);
         }
@@ -43,14 +43,14 @@ impl Script for Troubled {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use wayword_core::Role;
+    use wayword_core::MessageRole;
 
     #[test]
     fn a_share_of_answers_is_spoilt_in_all_four_ways() {
-        let eye = Troubled::new(|_: &Heard| "A lamp.".to_owned(), 0.4, 1);
+        let eye = TroubledScript::new(|_: &ScriptRequest| "A lamp.".to_owned(), 0.4, 1);
         let answer = |at: usize| {
             let text = format!("Look.\nQuestion: What is at {at}?\nAnswer:");
-            eye.reply(&Heard { messages: vec![(Role::User, text)], ..Heard::default() })
+            eye.reply(&ScriptRequest { messages: vec![(MessageRole::User, text)], ..ScriptRequest::default() })
         };
         let answers: Vec<String> = (0..1000).map(answer).collect();
         assert_eq!(answers, (0..1000).map(answer).collect::<Vec<_>>());

@@ -2,19 +2,19 @@
 //!
 //! It parses the prompts of `wayword-navigation`, which contain the agent's place on the map and the ways out of it.
 
-use super::{Heard, Script, rng};
+use super::{ModelScript, ScriptRequest, rng_for_text};
 use rand::Rng;
 use std::{collections::BTreeMap, fmt::Write};
 use wayword_core::{DVec3, Heading, ViewpointGraph, ViewpointId};
 
 /// How the model walks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Gait {
+pub enum WalkerGait {
     /// Along the route of its instruction.
     Route,
     /// This many hops, each through a random way, all equally likely.
     Random(usize),
-    /// Not at all: it always gives one of the replies of [`MISCHIEF`], chosen by the instruction.
+    /// Not at all: it always gives one of the replies of [`BROKEN_REPLIES`], chosen by the instruction.
     Broken,
 }
 
@@ -23,19 +23,19 @@ const ROUNDED_M: f64 = 0.2;
 
 /// A scripted model that chooses an agent's steps.
 #[derive(Debug, Clone)]
-pub struct Walker {
-    gait: Gait,
+pub struct ScriptedWalker {
+    gait: WalkerGait,
     seed: u64,
     /// By instruction.
-    routes: BTreeMap<String, Route>,
+    routes: BTreeMap<String, ScriptedRoute>,
 }
 
 /// The places of a route relative to its start, metres: to the right, ahead and up, as seen by the walker at the start.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Route(Vec<DVec3>);
+pub struct ScriptedRoute(Vec<DVec3>);
 
 /// Replies of a broken model; one of them is repeated at each call.
-pub const MISCHIEF: [&str; 10] = [
+pub const BROKEN_REPLIES: [&str; 10] = [
     "I would go to the left here.",
     "fly {\"way\": 1, \"why\": \"it is quicker\"}",
     "step {\"way\": ",
@@ -48,13 +48,13 @@ pub const MISCHIEF: [&str; 10] = [
     "{\"tool\": \"step\", \"way\": -1}",
 ];
 
-impl Route {
+impl ScriptedRoute {
     /// The route over some viewpoints of a graph, for a walker that starts along a heading. Viewpoints that the graph does not
     /// have are left out.
     #[must_use]
-    pub fn along(graph: &ViewpointGraph, heading: Heading, viewpoints: &[ViewpointId]) -> Self {
-        let places: Vec<DVec3> = viewpoints.iter().filter_map(|viewpoint| graph.position(viewpoint)).collect();
-        let (ahead, right) = (heading.direction(), heading.turned(std::f64::consts::FRAC_PI_2).direction());
+    pub fn along_graph(graph: &ViewpointGraph, heading: Heading, viewpoints: &[ViewpointId]) -> Self {
+        let places: Vec<DVec3> = viewpoints.iter().filter_map(|viewpoint| graph.position_of(viewpoint)).collect();
+        let (ahead, right) = (heading.unit_vector(), heading.turned_by(std::f64::consts::FRAC_PI_2).unit_vector());
         let from = places.first().copied().unwrap_or_default();
         let told = |place: &DVec3| {
             let off = *place - from;
@@ -64,36 +64,42 @@ impl Route {
     }
 }
 
-impl Walker {
+impl ScriptedWalker {
     /// A model that knows the routes of some instructions.
     #[must_use]
-    pub fn new(gait: Gait, seed: u64, routes: impl IntoIterator<Item = (String, Route)>) -> Self {
+    pub fn new(gait: WalkerGait, seed: u64, routes: impl IntoIterator<Item = (String, ScriptedRoute)>) -> Self {
         Self { gait, seed, routes: routes.into_iter().collect() }
     }
 
     /// Takes the way that ends nearest to the next place of the route. The walker's progress along the route is the number of its
     /// hops, as long as that place matches its position; positions alone are ambiguous, because the map is rounded and places
     /// can lie close together.
-    fn along_route(&self, seen: &Prompt<'_>) -> String {
-        let Some(Route(route)) = self.routes.get(seen.text) else { return "I do not know this one.".to_owned() };
+    fn along_route(&self, seen: &WalkPrompt<'_>) -> String {
+        let Some(ScriptedRoute(route)) = self.routes.get(seen.text) else {
+            return "I do not know this one.".to_owned();
+        };
         let is_at = |place: &usize| route.get(*place).is_some_and(|place| place.distance(seen.here) < ROUNDED_M);
-        let strayed = || (0..route.len()).rev().find(is_at).unwrap_or_else(|| nearest(route, seen.here));
+        let strayed = || (0..route.len()).rev().find(is_at).unwrap_or_else(|| nearest_place(route, seen.here));
         let here = Some(seen.hops).filter(is_at).unwrap_or_else(strayed);
-        let Some(next) = route.get(here + 1) else { return call("stop", None, "the route ends here") };
-        let way = nearest(&seen.ends(), *next) + 1;
-        format!("{}\n{}", call("step", Some(way), "the route leads there"), call("observe", None, "to see it"))
+        let Some(next) = route.get(here + 1) else { return format_call("stop", None, "the route ends here") };
+        let way = nearest_place(&seen.way_ends(), *next) + 1;
+        format!(
+            "{}\n{}",
+            format_call("step", Some(way), "the route leads there"),
+            format_call("observe", None, "to see it")
+        )
     }
 
-    fn at_random(&self, seen: &Prompt<'_>, prompt: &str, hops: usize) -> String {
+    fn at_random(&self, seen: &WalkPrompt<'_>, prompt: &str, hops: usize) -> String {
         if seen.hops >= hops || seen.ways.is_empty() {
-            return call("stop", None, "enough");
+            return format_call("stop", None, "enough");
         }
-        let way = rng(self.seed, prompt).random_range(1..=seen.ways.len());
-        call("step", Some(way), "why not")
+        let way = rng_for_text(self.seed, prompt).random_range(1..=seen.ways.len());
+        format_call("step", Some(way), "why not")
     }
 }
 
-fn call(tool: &str, way: Option<usize>, why: &str) -> String {
+fn format_call(tool: &str, way: Option<usize>, why: &str) -> String {
     let mut line = format!("{tool} {{");
     if let Some(way) = way {
         // Writing to a text cannot fail.
@@ -103,28 +109,28 @@ fn call(tool: &str, way: Option<usize>, why: &str) -> String {
 }
 
 /// The place nearest to another, by its number from 0.
-fn nearest(places: &[DVec3], to: DVec3) -> usize {
+fn nearest_place(places: &[DVec3], to: DVec3) -> usize {
     let far = |at: &usize| places[*at].distance(to);
     (0..places.len()).min_by(|a, b| far(a).total_cmp(&far(b))).unwrap_or_default()
 }
 
-impl Script for Walker {
-    fn reply(&self, heard: &Heard) -> String {
+impl ModelScript for ScriptedWalker {
+    fn reply(&self, heard: &ScriptRequest) -> String {
         let prompt = heard.prompt();
-        let Some(seen) = Prompt::read(prompt) else { return "I was asked something else.".to_owned() };
+        let Some(seen) = WalkPrompt::from_prompt(prompt) else { return "I was asked something else.".to_owned() };
         match self.gait {
-            Gait::Route => self.along_route(&seen),
-            Gait::Random(hops) => self.at_random(&seen, prompt, hops),
-            Gait::Broken => {
-                let kind = rng(self.seed, seen.text).random_range(0..MISCHIEF.len());
-                MISCHIEF[kind].to_owned()
+            WalkerGait::Route => self.along_route(&seen),
+            WalkerGait::Random(hops) => self.at_random(&seen, prompt, hops),
+            WalkerGait::Broken => {
+                let kind = rng_for_text(self.seed, seen.text).random_range(0..BROKEN_REPLIES.len());
+                BROKEN_REPLIES[kind].to_owned()
             }
         }
     }
 }
 
 /// The state of the walk, as parsed from a prompt.
-struct Prompt<'a> {
+struct WalkPrompt<'a> {
     text: &'a str,
     here: DVec3,
     /// The direction in which the walker looks, radians to the right of how it looked at the start.
@@ -135,21 +141,21 @@ struct Prompt<'a> {
     ways: Vec<(f64, f64, f64)>,
 }
 
-impl<'a> Prompt<'a> {
-    fn read(prompt: &'a str) -> Option<Self> {
+impl<'a> WalkPrompt<'a> {
+    fn from_prompt(prompt: &'a str) -> Option<Self> {
         let text = prompt.split("<instruction>\n").nth(1)?.split("\n</instruction>").next()?;
-        let places: BTreeMap<usize, DVec3> = prompt.lines().filter_map(place).collect();
-        let here = after(prompt, "You stand at place ")? as usize;
-        let last = prompt.lines().filter_map(step).next_back();
-        let deg = after(prompt, ", and look ").unwrap_or(0.0);
+        let places: BTreeMap<usize, DVec3> = prompt.lines().filter_map(parse_place).collect();
+        let here = number_after(prompt, "You stand at place ")? as usize;
+        let last = prompt.lines().filter_map(parse_step).next_back();
+        let deg = number_after(prompt, ", and look ").unwrap_or(0.0);
         let is_left = prompt.contains("degrees to the left of how you looked");
         let heading_rad = if is_left { -deg.to_radians() } else { deg.to_radians() };
-        let ways = prompt.split("Ways out:\n").nth(1)?.lines().map_while(way).collect();
+        let ways = prompt.split("Ways out:\n").nth(1)?.lines().map_while(parse_way).collect();
         Some(Self { text, here: *places.get(&here)?, heading_rad, hops: last.map_or(0, |(number, ..)| number), ways })
     }
 
     /// Where each way ends.
-    fn ends(&self) -> Vec<DVec3> {
+    fn way_ends(&self) -> Vec<DVec3> {
         let end = |(turn_rad, length_m, climb_m): &(f64, f64, f64)| {
             let flat_m = (length_m * length_m - climb_m * climb_m).max(0.0).sqrt();
             let direction = self.heading_rad + turn_rad;
@@ -160,26 +166,29 @@ impl<'a> Prompt<'a> {
 }
 
 /// The number that follows some words in a text.
-fn after(text: &str, words: &str) -> Option<f64> {
+fn number_after(text: &str, words: &str) -> Option<f64> {
     let rest = &text[text.find(words)? + words.len()..];
     let end = rest.find(|c: char| !c.is_ascii_digit() && c != '.' && c != '-').unwrap_or(rest.len());
     rest[..end].trim_end_matches('.').parse().ok()
 }
 
 /// A place of the map, as in "place 2: right 1.0, ahead 2.0, up 0.0; hallway; ways to 1".
-fn place(line: &str) -> Option<(usize, DVec3)> {
-    let number = after(line.strip_prefix("place ").map(|_| line)?, "place ")? as usize;
-    Some((number, DVec3::new(after(line, ": right ")?, after(line, ", ahead ")?, after(line, ", up ")?)))
+fn parse_place(line: &str) -> Option<(usize, DVec3)> {
+    let number = number_after(line.strip_prefix("place ").map(|_| line)?, "place ")? as usize;
+    Some((
+        number,
+        DVec3::new(number_after(line, ": right ")?, number_after(line, ", ahead ")?, number_after(line, ", up ")?),
+    ))
 }
 
 /// A step, as in "3. from place 1 to place 2: it leads there".
-fn step(line: &str) -> Option<(usize, usize, usize)> {
+fn parse_step(line: &str) -> Option<(usize, usize, usize)> {
     let number: usize = line.split_once(". from place ")?.0.parse().ok()?;
-    Some((number, after(line, ". from place ")? as usize, after(line, " to place ")? as usize))
+    Some((number, number_after(line, ". from place ")? as usize, number_after(line, " to place ")? as usize))
 }
 
 /// A way out, as in "1: left, 88 degrees left, 1.9 m, up 0.6 m; new".
-fn way(line: &str) -> Option<(f64, f64, f64)> {
+fn parse_way(line: &str) -> Option<(f64, f64, f64)> {
     let (_, told) = line.split_once(": ").filter(|(number, _)| number.parse::<usize>().is_ok())?;
     let told = told.split(';').next()?;
     let (mut turn, mut length, mut climb) = (0.0, 0.0, 0.0);
@@ -200,7 +209,7 @@ fn way(line: &str) -> Option<(f64, f64, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use wayword_core::Role;
+    use wayword_core::MessageRole;
 
     const PROMPT: &str = "<instruction>\nGo to the sink.\n</instruction>\n\nWhere you have been:\n\
         place 1: right 0.0, ahead 0.0, up 0.0; hallway; ways to 2, new (0.0, 2.0)\n\
@@ -208,23 +217,26 @@ mod tests {
         Your last steps:\n1. from place 1 to place 2: because\n\nYou stand at place 2, and look 90 degrees to the right of how you looked at the start. You can make 23 more steps.\n\
         Ways out:\n1: behind, 180 degrees right, 2.0 m; to place 1\n2: left, 90 degrees left, 2.2 m, up 1.0 m; new (2.0, 2.0)\n";
 
-    fn reply(gait: Gait, route: &[[f64; 3]]) -> String {
-        let route = Route(route.iter().map(|place| DVec3::from_array(*place)).collect());
-        let walker = Walker::new(gait, 0, [("Go to the sink.".to_owned(), route)]);
-        walker.reply(&Heard { messages: vec![(Role::User, PROMPT.to_owned())], ..Heard::default() })
+    fn reply(gait: WalkerGait, route: &[[f64; 3]]) -> String {
+        let route = ScriptedRoute(route.iter().map(|place| DVec3::from_array(*place)).collect());
+        let walker = ScriptedWalker::new(gait, 0, [("Go to the sink.".to_owned(), route)]);
+        walker.reply(&ScriptRequest {
+            messages: vec![(MessageRole::User, PROMPT.to_owned())],
+            ..ScriptRequest::default()
+        })
     }
 
     #[test]
     fn walker_takes_the_way_to_the_next_place_and_stops_at_the_last() {
         let route = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.0, 2.0, 1.0]];
-        assert!(reply(Gait::Route, &route).starts_with("step {\"way\": 2, "));
-        assert!(reply(Gait::Route, &route[..2]).starts_with("stop {"));
+        assert!(reply(WalkerGait::Route, &route).starts_with("step {\"way\": 2, "));
+        assert!(reply(WalkerGait::Route, &route[..2]).starts_with("stop {"));
     }
 
     #[test]
     fn random_walker_stops_after_its_hops() {
-        assert!(reply(Gait::Random(2), &[]).starts_with("step {"));
-        assert!(reply(Gait::Random(1), &[]).starts_with("stop {"));
-        assert!(MISCHIEF.contains(&reply(Gait::Broken, &[]).as_str()));
+        assert!(reply(WalkerGait::Random(2), &[]).starts_with("step {"));
+        assert!(reply(WalkerGait::Random(1), &[]).starts_with("stop {"));
+        assert!(BROKEN_REPLIES.contains(&reply(WalkerGait::Broken, &[]).as_str()));
     }
 }

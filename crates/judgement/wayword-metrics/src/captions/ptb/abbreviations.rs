@@ -2,7 +2,7 @@
 //! four letters, and a list of longer ones.
 
 /// In small or capital letters.
-const ANY: &str = "\
+const ABBREVIATIONS_IN_ANY_CASE: &str = "\
 al cf co ct dr ft ga jr ky lt md mo mr ms mt ph rd rt sq sr st va vs vt wm \
 adj adm adv ala apr aug ave bhd cie col cos cpl dak dec det drs ens esq est etc ext feb fla fri gen gov hon inc ind \
 jan jos jul jun kan ltd maj mar mme mon mrs neb nev nov oct pfc plc pvt rep rev sen sep seq sfc sgt spc ste \
@@ -12,13 +12,13 @@ mlle mont msgr natl okla penn pres prof reps sens sept supt tenn tues univ wisc 
 assoc attys calif comdr lieut messrs profs supts thurs treas";
 
 /// Only with a capital, because the words also mean something else.
-const CAPITALISED: &str = "Az La Pa Ark Del Ill Ore Tex Mass Miss Wash";
+const CAPITALISED_ABBREVIATIONS: &str = "Az La Pa Ark Del Ill Ore Tex Mass Miss Wash";
 
 /// Not in capitals throughout.
 const NOT_IN_CAPITALS: &str = "mfg mtg pte pty ppte ppty ptes ptys";
 
 /// Abbreviations that often end a sentence. They keep the full stop even if a letter follows it directly.
-const ENDING: &str = "\
+const SENTENCE_ENDING_ABBREVIATIONS: &str = "\
 al co ct ga jr ky md mo rd rt sq sr va vt ala apr aug bhd cos dak dec esq est etc ext feb fla fri inc ind jan jul jun \
 kan ltd mar mon neb nev nov oct plc sep seq sys tel thu tue wed wis wyo ariz assn bldg blvd bros colo conn corp intl \
 kans mich minn mont okla penn sept tenn tues univ wisc calif thurs az la pa ark del ill ore tex mass miss wash \
@@ -27,7 +27,7 @@ pte pty ppte ppty ptes ptys";
 /// Only before a number, in small or capital letters.
 const BEFORE_A_NUMBER: &str = "ca no op pp art fig nos figs prop";
 
-fn has(list: &str, word: &str) -> bool {
+fn list_contains(list: &str, word: &str) -> bool {
     list.split(' ').any(|one| one.eq_ignore_ascii_case(word))
 }
 
@@ -35,15 +35,17 @@ fn has(list: &str, word: &str) -> bool {
 pub(super) fn is_one(word: &str) -> bool {
     let is_capitalised = word.starts_with(|c: char| c.is_ascii_uppercase());
     let is_in_capitals = !word.contains(|c: char| c.is_ascii_lowercase());
-    has(ANY, word) || is_capitalised && has(CAPITALISED, word) || !is_in_capitals && has(NOT_IN_CAPITALS, word)
+    list_contains(ABBREVIATIONS_IN_ANY_CASE, word)
+        || is_capitalised && list_contains(CAPITALISED_ABBREVIATIONS, word)
+        || !is_in_capitals && list_contains(NOT_IN_CAPITALS, word)
 }
 
 /// Whether a word keeps its full stop before one more letter.
 pub(super) fn often_ends(word: &str) -> bool {
-    is_one(word) && has(ENDING, word)
+    is_one(word) && list_contains(SENTENCE_ENDING_ABBREVIATIONS, word)
 }
 
 /// Whether a word keeps its full stop before a number.
 pub(super) fn is_one_before_a_number(word: &str) -> bool {
-    has(BEFORE_A_NUMBER, word)
+    list_contains(BEFORE_A_NUMBER, word)
 }

@@ -8,19 +8,19 @@ mod abbreviations;
 mod shape;
 mod table;
 
-use shape::{SOFT_HYPHEN, Shapes};
+use shape::{SOFT_HYPHEN, TokenShapes};
 use std::sync::LazyLock;
-use table::{ROWS, Taken};
+use table::{SHAPE_ROWS, TokenExtent};
 
-static SHAPES: LazyLock<Shapes> = LazyLock::new(|| Shapes::new(ROWS.iter().map(|row| row.shape)));
+static TOKEN_SHAPES: LazyLock<TokenShapes> = LazyLock::new(|| TokenShapes::new(SHAPE_ROWS.iter().map(|row| row.shape)));
 
 /// The reference writes a blank within a token as this no-break space.
 const NO_BREAK: char = '\u{a0}';
 
-/// Splits a text into tokens. White space is collapsed first ([`super::collapsed`]), because the reference reads texts line by line.
+/// Splits a text into tokens. White space is collapsed first ([`super::collapse_white_space`]), because the reference reads texts line by line.
 #[must_use]
-pub fn ptb(text: &str) -> Vec<String> {
-    let text: Vec<char> = super::collapsed(text).chars().collect();
+pub fn ptb_tokens(text: &str) -> Vec<String> {
+    let text: Vec<char> = super::collapse_white_space(text).chars().collect();
     let mut tokens = Vec::new();
     let mut rest = &text[..];
     while let Some(next) = rest.first() {
@@ -28,20 +28,20 @@ pub fn ptb(text: &str) -> Vec<String> {
             rest = &rest[1..];
             continue;
         }
-        let (taken, length) = first(rest);
+        let (taken, length) = first_token(rest);
         let (token, after) = rest.split_at(length);
-        tokens.extend(written(taken, token).filter(|token| !LEFT_OUT.contains(&token.as_str())));
+        tokens.extend(write_token(taken, token).filter(|token| !LEFT_OUT.contains(&token.as_str())));
         rest = after;
     }
     tokens
 }
 
 /// Finds the token at the beginning of a text: how much of the match becomes the token, and the token's length in characters.
-fn first(text: &[char]) -> (Taken, usize) {
-    let found = SHAPES.longest(text, |row, length| length_of(row, text, length) > 0);
-    match found.and_then(|(row, length)| Some((ROWS.get(row)?.taken, length_of(row, text, length)))) {
+fn first_token(text: &[char]) -> (TokenExtent, usize) {
+    let found = TOKEN_SHAPES.longest_match(text, |row, length| length_of(row, text, length) > 0);
+    match found.and_then(|(row, length)| Some((SHAPE_ROWS.get(row)?.taken, length_of(row, text, length)))) {
         Some((taken, length)) => (taken, length.clamp(1, text.len())),
-        None => (Taken::All, 1),
+        None => (TokenExtent::All, 1),
     }
 }
 
@@ -53,18 +53,18 @@ fn length_of(row: usize, text: &[char], length: usize) -> usize {
     let only_if = |holds: bool, length: usize| if holds { length } else { 0 };
     let through_stop = || covered.iter().position(|c| *c == '.').map_or(0, |at| at + 1);
     let word = || covered.iter().take_while(|c| **c != '.').collect::<String>();
-    match ROWS.get(row).map_or(Taken::All, |row| row.taken) {
-        Taken::All | Taken::Address => length,
-        Taken::First(count) => count,
-        Taken::AllBut(count) => length.saturating_sub(count),
-        Taken::Abbreviation => only_if(abbreviations::is_one(&word()), through_stop()),
-        Taken::BeforeLetter => only_if(abbreviations::often_ends(&word()), through_stop()),
-        Taken::BeforeNumber => only_if(abbreviations::is_one_before_a_number(&word()), through_stop()),
-        Taken::BeforeSentence => only_if(ends, 1),
-        Taken::BeforeBlank => only_if(ends, length),
-        Taken::File => only_if(ends || next_is(|c| matches!(c, '!' | ',' | '.' | '?')), length),
-        Taken::NotBeforeLetter => only_if(!next_is(|c| c.is_ascii_alphabetic()), length),
-        Taken::NotInWord => only_if(!next_is(|c| c.is_ascii_alphanumeric()), length),
+    match SHAPE_ROWS.get(row).map_or(TokenExtent::All, |row| row.taken) {
+        TokenExtent::All | TokenExtent::Address => length,
+        TokenExtent::First(count) => count,
+        TokenExtent::AllBut(count) => length.saturating_sub(count),
+        TokenExtent::Abbreviation => only_if(abbreviations::is_one(&word()), through_stop()),
+        TokenExtent::BeforeLetter => only_if(abbreviations::often_ends(&word()), through_stop()),
+        TokenExtent::BeforeNumber => only_if(abbreviations::is_one_before_a_number(&word()), through_stop()),
+        TokenExtent::BeforeSentence => only_if(ends, 1),
+        TokenExtent::BeforeBlank => only_if(ends, length),
+        TokenExtent::File => only_if(ends || next_is(|c| matches!(c, '!' | ',' | '.' | '?')), length),
+        TokenExtent::NotBeforeLetter => only_if(!next_is(|c| c.is_ascii_alphabetic()), length),
+        TokenExtent::NotInWord => only_if(!next_is(|c| c.is_ascii_alphanumeric()), length),
     }
 }
 
@@ -73,21 +73,22 @@ fn length_of(row: usize, text: &[char], length: usize) -> usize {
 const LEFT_OUT: [&str; 14] = ["", "''", "'", "``", "`", ".", "?", "!", ",", ":", "-", "--", "...", ";"];
 
 /// A token as the reference writes it; `None` if the reference drops it.
-fn written(taken: Taken, token: &[char]) -> Option<String> {
+fn write_token(taken: TokenExtent, token: &[char]) -> Option<String> {
     if let [one] = token {
-        return sign(*one).map_or_else(|| Some(one.to_lowercase().collect()), |sign| sign.map(str::to_owned));
+        return sign_replacement(*one)
+            .map_or_else(|| Some(one.to_lowercase().collect()), |sign| sign.map(str::to_owned));
     }
     let text: String = token.iter().collect();
-    if let Some(sign) = entity(&text.to_ascii_lowercase()) {
+    if let Some(sign) = entity_sign(&text.to_ascii_lowercase()) {
         return Some(sign.to_owned());
     }
-    if let Some(quotes) = token.iter().map(|c| quote(*c)).collect::<Option<String>>() {
+    if let Some(quotes) = token.iter().map(|c| quote_sign(*c)).collect::<Option<String>>() {
         return Some(quotes);
     }
     if is_run(token, '.') || token.len() < 5 && is_run(token, '-') || is_run(token, SOFT_HYPHEN) {
         return None;
     }
-    if matches!(taken, Taken::Address) {
+    if matches!(taken, TokenExtent::Address) {
         return Some(text.to_lowercase().replace(' ', "\u{a0}"));
     }
     Some(of_characters(taken, &text.replace("&amp;", "&").replace("&AMP;", "&")))
@@ -98,12 +99,12 @@ fn is_run(token: &[char], sign: char) -> bool {
     token.iter().all(|c| *c == sign || *c == ' ')
 }
 
-fn of_characters(taken: Taken, token: &str) -> String {
+fn of_characters(taken: TokenExtent, token: &str) -> String {
     let is_ending = has_curly_apostrophe(token);
     let mut text = String::with_capacity(token.len());
     for c in token.chars() {
         match c {
-            SOFT_HYPHEN if taken != Taken::File => {}
+            SOFT_HYPHEN if taken != TokenExtent::File => {}
             '(' => text.push_str("-lrb-"),
             ')' => text.push_str("-rrb-"),
             ' ' => text.push(NO_BREAK),
@@ -122,7 +123,7 @@ fn has_curly_apostrophe(token: &str) -> bool {
 }
 
 /// The sign for an HTML entity; empty if the reference writes the entity as an empty token.
-fn entity(text: &str) -> Option<&'static str> {
+fn entity_sign(text: &str) -> Option<&'static str> {
     Some(match text {
         "&amp;" => "&",
         "&lt;" => "<",
@@ -133,7 +134,7 @@ fn entity(text: &str) -> Option<&'static str> {
 }
 
 /// How a quotation mark is written in a token that consists only of quotation marks.
-fn quote(c: char) -> Option<&'static str> {
+fn quote_sign(c: char) -> Option<&'static str> {
     Some(match c {
         '\'' | '’' | '›' | '\u{92}' => "'",
         '`' | '‘' | '‹' | '\u{91}' => "`",
@@ -145,7 +146,7 @@ fn quote(c: char) -> Option<&'static str> {
 
 /// The replacement of a single sign: `Some(Some(..))` if it is written differently, `Some(None)` if it is dropped, `None` if it
 /// stays.
-fn sign(c: char) -> Option<Option<&'static str>> {
+fn sign_replacement(c: char) -> Option<Option<&'static str>> {
     Some(Some(match c {
         '(' => "-lrb-",
         ')' => "-rrb-",
@@ -162,7 +163,7 @@ fn sign(c: char) -> Option<Option<&'static str>> {
         '¢' => "cents",
         '¤' | '€' | '\u{80}' => "$",
         '"' | '…' | SOFT_HYPHEN | '\u{2010}'..='\u{2015}' => return Some(None),
-        c if quote(c).is_some() => return Some(None),
+        c if quote_sign(c).is_some() => return Some(None),
         // The reference drops characters that it cannot read, with a warning.
         c if c.is_control() || c as u32 > 0xffff => return Some(None),
         _ => return None,

@@ -5,7 +5,7 @@
 //!
 //! - `(a|b)`: one of several; `a?`, `a*`, `a+`: at most one, any number, at least one;
 //! - `[xyz]`, `[a-z]`, `[^xyz]`: a character of a set, or of none;
-//! - `{name}`: a class of characters, see [`Class`];
+//! - `{name}`: a class of characters, see [`CharacterClass`];
 //! - `\x`: the character itself.
 //!
 //! A small letter matches the capital one too. Parsing never fails: brackets that are still open are closed by the pattern's end.
@@ -15,7 +15,7 @@ use std::{collections::BTreeMap, iter::Peekable, str::Chars};
 
 /// A set of characters, one of which a pattern accepts at one position.
 #[derive(Debug, Clone, PartialEq)]
-enum Class {
+enum CharacterClass {
     /// This character; a small letter also matches the capital.
     Same(char),
     /// Those in the ranges, or those in none of them.
@@ -41,8 +41,8 @@ enum Class {
 /// Marks where a word may be broken at the end of a line; it is not a letter of the word.
 pub(super) const SOFT_HYPHEN: char = '\u{ad}';
 
-impl Class {
-    fn named(name: &str) -> Self {
+impl CharacterClass {
+    fn from_name(name: &str) -> Self {
         match name {
             "letter" => Self::Letter,
             "digit" => Self::Digit,
@@ -58,7 +58,7 @@ impl Class {
         }
     }
 
-    fn has(&self, c: char) -> bool {
+    fn matches_char(&self, c: char) -> bool {
         match self {
             Self::Same(same) => is_same(*same, c),
             Self::Set { ranges, is_without } => {
@@ -97,48 +97,50 @@ fn is_decimal(c: char) -> bool {
 }
 
 #[derive(Debug, Clone)]
-enum Part {
-    One(Class),
-    Row(Vec<Part>),
-    Either(Vec<Part>),
-    Repeat { part: Box<Part>, is_needed: bool, is_many: bool },
+enum PatternPart {
+    One(CharacterClass),
+    Row(Vec<PatternPart>),
+    Either(Vec<PatternPart>),
+    Repeat { part: Box<PatternPart>, is_needed: bool, is_many: bool },
 }
 
-fn either(chars: &mut Peekable<Chars<'_>>) -> Part {
-    let mut ways = vec![row(chars)];
+fn parse_alternatives(chars: &mut Peekable<Chars<'_>>) -> PatternPart {
+    let mut ways = vec![parse_sequence(chars)];
     while chars.next_if_eq(&'|').is_some() {
-        ways.push(row(chars));
+        ways.push(parse_sequence(chars));
     }
-    if ways.len() == 1 { ways.remove(0) } else { Part::Either(ways) }
+    if ways.len() == 1 { ways.remove(0) } else { PatternPart::Either(ways) }
 }
 
-fn row(chars: &mut Peekable<Chars<'_>>) -> Part {
+fn parse_sequence(chars: &mut Peekable<Chars<'_>>) -> PatternPart {
     let mut parts = Vec::new();
     while let Some(c) = chars.next_if(|c| !matches!(c, '|' | ')')) {
         let part = match c {
             '(' => {
-                let inner = either(chars);
+                let inner = parse_alternatives(chars);
                 chars.next_if_eq(&')');
                 inner
             }
-            '[' => Part::One(set(chars)),
-            '{' => Part::One(Class::named(&chars.by_ref().take_while(|c| *c != '}').collect::<String>())),
-            '\\' => Part::One(Class::Same(chars.next().unwrap_or('\\'))),
-            c => Part::One(Class::Same(c)),
+            '[' => PatternPart::One(parse_set(chars)),
+            '{' => PatternPart::One(CharacterClass::from_name(
+                &chars.by_ref().take_while(|c| *c != '}').collect::<String>(),
+            )),
+            '\\' => PatternPart::One(CharacterClass::Same(chars.next().unwrap_or('\\'))),
+            c => PatternPart::One(CharacterClass::Same(c)),
         };
-        parts.push(repeated(part, chars));
+        parts.push(parse_repetition(part, chars));
     }
-    Part::Row(parts)
+    PatternPart::Row(parts)
 }
 
-fn repeated(part: Part, chars: &mut Peekable<Chars<'_>>) -> Part {
+fn parse_repetition(part: PatternPart, chars: &mut Peekable<Chars<'_>>) -> PatternPart {
     match chars.next_if(|c| matches!(c, '?' | '*' | '+')) {
-        Some(sign) => Part::Repeat { part: Box::new(part), is_needed: sign == '+', is_many: sign != '?' },
+        Some(sign) => PatternPart::Repeat { part: Box::new(part), is_needed: sign == '+', is_many: sign != '?' },
         None => part,
     }
 }
 
-fn set(chars: &mut Peekable<Chars<'_>>) -> Class {
+fn parse_set(chars: &mut Peekable<Chars<'_>>) -> CharacterClass {
     let is_without = chars.next_if_eq(&'^').is_some();
     let mut ranges = Vec::new();
     while let Some(c) = chars.next().filter(|c| *c != ']') {
@@ -150,13 +152,13 @@ fn set(chars: &mut Peekable<Chars<'_>>) -> Class {
         };
         ranges.push((low, high));
     }
-    Class::Set { ranges, is_without }
+    CharacterClass::Set { ranges, is_without }
 }
 
 /// A state of the automaton: one position of a pattern, which accepts a class of characters, with the positions that may follow.
 #[derive(Debug)]
-struct Place {
-    class: Class,
+struct PatternPosition {
+    class: CharacterClass,
     next: Vec<usize>,
     /// The number of the pattern that is complete here.
     ends: Option<usize>,
@@ -164,34 +166,34 @@ struct Place {
 
 /// Many patterns as one automaton.
 #[derive(Debug, Default)]
-pub(super) struct Shapes {
-    places: Vec<Place>,
+pub(super) struct TokenShapes {
+    places: Vec<PatternPosition>,
     /// The positions at which a match may begin, by its first character, for ASCII.
     starts: BTreeMap<char, Vec<usize>>,
     other_starts: Vec<usize>,
 }
 
 /// The positions at which a part of a pattern may begin and end, and whether the part may be left out.
-struct Ends {
+struct PartEnds {
     first: Vec<usize>,
     last: Vec<usize>,
     may_be_empty: bool,
 }
 
-impl Shapes {
+impl TokenShapes {
     /// Builds the automaton of patterns. The patterns are numbered in their order.
     pub(super) fn new<'a>(patterns: impl IntoIterator<Item = &'a str>) -> Self {
         let mut shapes = Self::default();
         let mut starts = Vec::new();
         for (number, pattern) in patterns.into_iter().enumerate() {
-            let ends = shapes.add(&either(&mut pattern.chars().peekable()));
+            let ends = shapes.add_part(&parse_alternatives(&mut pattern.chars().peekable()));
             for at in ends.last {
                 shapes.places[at].ends = Some(number);
             }
             starts.extend(ends.first);
         }
         for c in (0..128u8).map(char::from) {
-            let of_c = starts.iter().copied().filter(|at| shapes.places[*at].class.has(c)).collect();
+            let of_c = starts.iter().copied().filter(|at| shapes.places[*at].class.matches_char(c)).collect();
             shapes.starts.insert(c, of_c);
         }
         shapes.other_starts = starts;
@@ -199,32 +201,32 @@ impl Shapes {
     }
 
     /// Gives each character of a part a position (Glushkov's construction: the automaton has no empty transitions).
-    fn add(&mut self, part: &Part) -> Ends {
+    fn add_part(&mut self, part: &PatternPart) -> PartEnds {
         match part {
-            Part::One(class) => {
-                self.places.push(Place { class: class.clone(), next: Vec::new(), ends: None });
+            PatternPart::One(class) => {
+                self.places.push(PatternPosition { class: class.clone(), next: Vec::new(), ends: None });
                 let at = vec![self.places.len() - 1];
-                Ends { first: at.clone(), last: at, may_be_empty: false }
+                PartEnds { first: at.clone(), last: at, may_be_empty: false }
             }
-            Part::Row(parts) => {
-                parts.iter().fold(Ends { first: Vec::new(), last: Vec::new(), may_be_empty: true }, |before, part| {
-                    self.then(before, part)
-                })
-            }
-            Part::Either(ways) => {
-                let mut all = Ends { first: Vec::new(), last: Vec::new(), may_be_empty: false };
+            PatternPart::Row(parts) => parts
+                .iter()
+                .fold(PartEnds { first: Vec::new(), last: Vec::new(), may_be_empty: true }, |before, part| {
+                    self.append_part(before, part)
+                }),
+            PatternPart::Either(ways) => {
+                let mut all = PartEnds { first: Vec::new(), last: Vec::new(), may_be_empty: false };
                 for way in ways {
-                    let ends = self.add(way);
+                    let ends = self.add_part(way);
                     all.first.extend(ends.first);
                     all.last.extend(ends.last);
                     all.may_be_empty |= ends.may_be_empty;
                 }
                 all
             }
-            Part::Repeat { part, is_needed, is_many } => {
-                let mut ends = self.add(part);
+            PatternPart::Repeat { part, is_needed, is_many } => {
+                let mut ends = self.add_part(part);
                 if *is_many {
-                    self.join(&ends.last, &ends.first);
+                    self.join_positions(&ends.last, &ends.first);
                 }
                 ends.may_be_empty |= !is_needed;
                 ends
@@ -232,21 +234,21 @@ impl Shapes {
         }
     }
 
-    fn then(&mut self, mut before: Ends, part: &Part) -> Ends {
-        let after = self.add(part);
-        self.join(&before.last, &after.first);
+    fn append_part(&mut self, mut before: PartEnds, part: &PatternPart) -> PartEnds {
+        let after = self.add_part(part);
+        self.join_positions(&before.last, &after.first);
         if before.may_be_empty {
             before.first.extend(&after.first);
         }
         let kept = if after.may_be_empty { before.last } else { Vec::new() };
-        Ends {
+        PartEnds {
             first: before.first,
             last: [after.last, kept].concat(),
             may_be_empty: before.may_be_empty && after.may_be_empty,
         }
     }
 
-    fn join(&mut self, from: &[usize], to: &[usize]) {
+    fn join_positions(&mut self, from: &[usize], to: &[usize]) {
         for at in from {
             let next = &mut self.places[*at].next;
             for to in to {
@@ -259,7 +261,11 @@ impl Shapes {
 
     /// The longest match at the start of a text, as the number of its pattern and its length in characters. `holds` gets both and
     /// may reject a match. Of several patterns with matches of equal length, the first is taken.
-    pub(super) fn longest(&self, text: &[char], mut holds: impl FnMut(usize, usize) -> bool) -> Option<(usize, usize)> {
+    pub(super) fn longest_match(
+        &self,
+        text: &[char],
+        mut holds: impl FnMut(usize, usize) -> bool,
+    ) -> Option<(usize, usize)> {
         let mut found = None;
         let mut now: Vec<usize> = Vec::new();
         let mut next: Vec<usize> = Vec::new();
@@ -267,7 +273,7 @@ impl Shapes {
             next.clear();
             let mut enter = |to: &[usize]| {
                 for to in to {
-                    if !next.contains(to) && self.places[*to].class.has(*c) {
+                    if !next.contains(to) && self.places[*to].class.matches_char(*c) {
                         next.push(*to);
                     }
                 }
@@ -293,7 +299,7 @@ mod tests {
     use super::*;
 
     fn longest(patterns: &[&str], text: &str) -> Option<(usize, usize)> {
-        Shapes::new(patterns.iter().copied()).longest(&text.chars().collect::<Vec<_>>(), |_, _| true)
+        TokenShapes::new(patterns.iter().copied()).longest_match(&text.chars().collect::<Vec<_>>(), |_, _| true)
     }
 
     #[test]
@@ -328,7 +334,7 @@ mod tests {
 
     #[test]
     fn a_shape_can_be_refused_by_its_text() {
-        let shapes = Shapes::new(["a+"]);
-        assert_eq!(shapes.longest(&['a'; 5], |_, length| length % 2 == 0), Some((0, 4)));
+        let shapes = TokenShapes::new(["a+"]);
+        assert_eq!(shapes.longest_match(&['a'; 5], |_, length| length % 2 == 0), Some((0, 4)));
     }
 }

@@ -5,7 +5,7 @@
 
 /// How much of a match becomes the token, and under which condition. Reading goes on after the token, within the match.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Taken {
+pub(super) enum TokenExtent {
     /// All.
     All,
     /// All, unchanged: soft hyphens are kept.
@@ -32,18 +32,18 @@ pub(super) enum Taken {
     BeforeNumber,
 }
 
-use Taken::{
+use TokenExtent::{
     Abbreviation, Address, All, AllBut, BeforeBlank, BeforeLetter, BeforeNumber, BeforeSentence, File, First,
     NotBeforeLetter, NotInWord,
 };
 
 /// One kind of token.
 #[derive(Debug)]
-pub(super) struct Row {
+pub(super) struct ShapeRow {
     /// Its pattern, in the syntax of [`super::shape`].
     pub(super) shape: &'static str,
     /// How much of a match is the token.
-    pub(super) taken: Taken,
+    pub(super) taken: TokenExtent,
     /// A token of this kind.
     #[cfg(test)]
     pub(super) example: &'static str,
@@ -51,12 +51,12 @@ pub(super) struct Row {
 
 macro_rules! rows {
     ($($shape:expr, $taken:expr, $example:expr;)*) => {
-        &[$(Row { shape: $shape, taken: $taken, #[cfg(test)] example: $example }),*]
+        &[$(ShapeRow { shape: $shape, taken: $taken, #[cfg(test)] example: $example }),*]
     };
 }
 
 /// All kinds of tokens. The longest match wins; of equally long ones the first row.
-pub(super) const ROWS: &[Row] = rows! {
+pub(super) const SHAPE_ROWS: &[ShapeRow] = rows! {
     // Marks of web pages and addresses.
     "</?[a-z][a-z0-9_:.\\-]*>|<[a-z][a-z0-9_:.\\-]*( +[a-z][a-z0-9_:.\\-]*( *= *(\"[^\"]*\"|'[^']*'))?)* */?>|<[!?][a-z\\-][^>]*>", Address, "<b class=\"x\">";
     "&(amp|lt|gt|quot|apos|nbsp|mdash|ndash);", All, "&amp;";

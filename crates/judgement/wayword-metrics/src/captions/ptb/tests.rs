@@ -1,15 +1,15 @@
 use super::*;
 
 fn tokens(text: &str) -> String {
-    ptb(text).join(" ")
+    ptb_tokens(text).join(" ")
 }
 
 #[test]
 fn every_shape_has_its_example() {
-    for (number, row) in ROWS.iter().enumerate() {
+    for (number, row) in SHAPE_ROWS.iter().enumerate() {
         let example: Vec<char> = row.example.chars().collect();
-        let alone = Shapes::new([row.shape]);
-        let found = alone.longest(&example, |_, length| length_of(number, &example, length) > 0);
+        let alone = TokenShapes::new([row.shape]);
+        let found = alone.longest_match(&example, |_, length| length_of(number, &example, length) > 0);
         assert_eq!(found, Some((0, example.len())), "{} {}", row.shape, row.example);
     }
 }

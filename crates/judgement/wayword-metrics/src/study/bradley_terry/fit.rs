@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 
 /// The outcome of a choice.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Outcome {
+pub(super) enum ChoiceOutcome {
     First,
     Second,
     Tie,
@@ -17,50 +17,52 @@ pub(super) enum Outcome {
 
 /// A choice between two systems, by number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct Pair {
+pub(super) struct SystemPair {
     pub(super) first: usize,
     pub(super) second: usize,
-    pub(super) outcome: Outcome,
+    pub(super) outcome: ChoiceOutcome,
 }
 
 /// Newton's method ends when no parameter moves by more than this.
-const PRECISION: f64 = 1e-12;
+const STEP_PRECISION: f64 = 1e-12;
 const MOST_STEPS: usize = 100;
 /// A likelihood that falls by less than this share has only lost digits by rounding; the step is accepted.
-const ROUNDING: f64 = 1e-12;
+const LIKELIHOOD_ROUNDING_SHARE: f64 = 1e-12;
 /// Largest parameter. Choices of people cannot show odds of e^20, so a fit that gets there has no maximum.
-const MOST: f64 = 20.0;
+const MAX_LOG_ODDS: f64 = 20.0;
 
 /// The fitted parameters, with the score vectors and the information matrix that their errors are computed from.
-pub(super) struct Fit {
+pub(super) struct StrengthFit {
     systems: usize,
     has_ties: bool,
     parameters: Vec<f64>,
     /// The gradient of one choice's log-likelihood, for each combination of systems and outcome.
-    scores: BTreeMap<Pair, Vec<f64>>,
-    information: Cholesky,
+    scores: BTreeMap<SystemPair, Vec<f64>>,
+    information: CholeskyFactor,
 }
 
-impl Fit {
-    pub(super) fn of(pairs: &[Pair], systems: usize) -> Result<Self, NoStrength> {
-        let has_ties = pairs.iter().any(|pair| pair.outcome == Outcome::Tie);
-        let mut counts: BTreeMap<Pair, f64> = BTreeMap::new();
+impl StrengthFit {
+    pub(super) fn from_pairs(pairs: &[SystemPair], systems: usize) -> Result<Self, NoStrength> {
+        let has_ties = pairs.iter().any(|pair| pair.outcome == ChoiceOutcome::Tie);
+        let mut counts: BTreeMap<SystemPair, f64> = BTreeMap::new();
         pairs.iter().for_each(|pair| *counts.entry(*pair).or_default() += 1.0);
-        let model = Model { systems, has_ties, counts };
-        let mut parameters = vec![0.0; model.size()];
+        let model = ChoiceModel { systems, has_ties, counts };
+        let mut parameters = vec![0.0; model.parameter_count()];
         for step in 0..MOST_STEPS {
-            let Top { likelihood, gradient, scores, information } = model.at(&parameters);
+            let LikelihoodPoint { likelihood, gradient, scores, information } = model.likelihood_at(&parameters);
             let singular = if step == 0 { NoStrength::Sides } else { NoStrength::Endless };
-            let information = Cholesky::of(information).ok_or(singular)?;
+            let information = CholeskyFactor::from_matrix(information).ok_or(singular)?;
             let mut step = information.solve(&gradient);
-            while model.at(&added(&parameters, &step)).likelihood < likelihood - ROUNDING * likelihood.abs() {
+            while model.likelihood_at(&vector_sum(&parameters, &step)).likelihood
+                < likelihood - LIKELIHOOD_ROUNDING_SHARE * likelihood.abs()
+            {
                 step.iter_mut().for_each(|part| *part /= 2.0);
             }
-            parameters = added(&parameters, &step);
-            if parameters.iter().any(|value| value.abs() > MOST) {
+            parameters = vector_sum(&parameters, &step);
+            if parameters.iter().any(|value| value.abs() > MAX_LOG_ODDS) {
                 return Err(NoStrength::Endless);
             }
-            if step.iter().all(|part| part.abs() <= PRECISION) {
+            if step.iter().all(|part| part.abs() <= STEP_PRECISION) {
                 return Ok(Self { systems, has_ties, parameters, scores, information });
             }
         }
@@ -68,7 +70,7 @@ impl Fit {
     }
 
     /// The weights that sum the parameters to a system's strength relative to the mean of all.
-    pub(super) fn strength(&self, system: usize) -> Vec<f64> {
+    pub(super) fn strength_direction(&self, system: usize) -> Vec<f64> {
         let mut direction = vec![0.0; self.parameters.len()];
         let mean = 1.0 / self.systems as f64;
         direction[..self.systems - 1].iter_mut().for_each(|part| *part = -mean);
@@ -78,78 +80,82 @@ impl Fit {
         direction
     }
 
-    pub(super) fn side(&self) -> Vec<f64> {
-        self.unit(self.systems - 1)
+    pub(super) fn side_direction(&self) -> Vec<f64> {
+        self.unit_direction(self.systems - 1)
     }
 
-    pub(super) fn tie(&self) -> Option<Vec<f64>> {
-        self.has_ties.then(|| self.unit(self.systems))
+    pub(super) fn tie_direction(&self) -> Option<Vec<f64>> {
+        self.has_ties.then(|| self.unit_direction(self.systems))
     }
 
-    fn unit(&self, at: usize) -> Vec<f64> {
+    fn unit_direction(&self, at: usize) -> Vec<f64> {
         (0..self.parameters.len()).map(|other| f64::from(u8::from(other == at))).collect()
     }
 
-    pub(super) fn value(&self, direction: &[f64]) -> f64 {
-        dot(&self.parameters, direction)
+    pub(super) fn value_along(&self, direction: &[f64]) -> f64 {
+        dot_product(&self.parameters, direction)
     }
 
     /// The contribution of each choice to the error of a weighted sum of parameters.
-    pub(super) fn influence(&self, direction: &[f64], pairs: &[Pair]) -> Vec<f64> {
+    pub(super) fn choice_influences(&self, direction: &[f64], pairs: &[SystemPair]) -> Vec<f64> {
         let weights = self.information.solve(direction);
-        pairs.iter().map(|pair| self.scores.get(pair).map_or(0.0, |score| dot(score, &weights))).collect()
+        pairs.iter().map(|pair| self.scores.get(pair).map_or(0.0, |score| dot_product(score, &weights))).collect()
     }
 }
 
 /// The model without its parameters: the number of systems, whether there are ties, and how often each choice was made.
-struct Model {
+struct ChoiceModel {
     systems: usize,
     has_ties: bool,
-    counts: BTreeMap<Pair, f64>,
+    counts: BTreeMap<SystemPair, f64>,
 }
 
 /// The log-likelihood at some parameters, with its derivatives.
-struct Top {
+struct LikelihoodPoint {
     likelihood: f64,
     gradient: Vec<f64>,
-    scores: BTreeMap<Pair, Vec<f64>>,
+    scores: BTreeMap<SystemPair, Vec<f64>>,
     information: Vec<Vec<f64>>,
 }
 
-impl Model {
-    fn size(&self) -> usize {
+impl ChoiceModel {
+    fn parameter_count(&self) -> usize {
         self.systems + usize::from(self.has_ties)
     }
 
-    fn at(&self, parameters: &[f64]) -> Top {
-        let size = self.size();
+    fn likelihood_at(&self, parameters: &[f64]) -> LikelihoodPoint {
+        let size = self.parameter_count();
         let none = || vec![0.0; size];
-        let mut top =
-            Top { likelihood: 0.0, gradient: none(), scores: BTreeMap::new(), information: vec![none(); size] };
+        let mut top = LikelihoodPoint {
+            likelihood: 0.0,
+            gradient: none(),
+            scores: BTreeMap::new(),
+            information: vec![none(); size],
+        };
         for (pair, count) in &self.counts {
-            let utilities = self.utilities(pair);
+            let utilities = self.outcome_utilities(pair);
             let utilities = &utilities[..if self.has_ties { 3 } else { 2 }];
             let logs = chances_ln(utilities, parameters);
             let mut mean = none();
-            utilities.iter().zip(&logs).for_each(|(utility, ln)| add(&mut mean, ln.exp(), utility));
+            utilities.iter().zip(&logs).for_each(|(utility, ln)| add_scaled(&mut mean, ln.exp(), utility));
             let happened = pair.outcome as usize;
-            let score = apart(&utilities[happened], &mean);
+            let score = vector_difference(&utilities[happened], &mean);
             top.likelihood += count * logs[happened];
-            add(&mut top.gradient, *count, &score);
+            add_scaled(&mut top.gradient, *count, &score);
             top.scores.insert(*pair, score);
             for (utility, ln) in utilities.iter().zip(&logs) {
-                let apart = apart(utility, &mean);
+                let apart = vector_difference(utility, &mean);
                 let rows = top.information.iter_mut().zip(&apart);
-                rows.for_each(|(row, part)| add(row, count * ln.exp() * part, &apart));
+                rows.for_each(|(row, part)| add_scaled(row, count * ln.exp() * part, &apart));
             }
         }
         top
     }
 
     /// The weight of each parameter in the utilities of the three outcomes: first, second, tie.
-    fn utilities(&self, pair: &Pair) -> [Vec<f64>; 3] {
+    fn outcome_utilities(&self, pair: &SystemPair) -> [Vec<f64>; 3] {
         let side = self.systems - 1;
-        let mut utilities = [(); 3].map(|()| vec![0.0; self.size()]);
+        let mut utilities = [(); 3].map(|()| vec![0.0; self.parameter_count()]);
         if pair.first < side {
             utilities[0][pair.first] = 1.0;
             utilities[2][pair.first] = 0.5;
@@ -168,11 +174,11 @@ impl Model {
 }
 
 /// The Cholesky factor of a symmetric positive definite matrix: a lower triangle L with L Lᵀ = the matrix.
-struct Cholesky(Vec<Vec<f64>>);
+struct CholeskyFactor(Vec<Vec<f64>>);
 
-impl Cholesky {
+impl CholeskyFactor {
     /// Factors a matrix; `None` if it is singular.
-    fn of(mut matrix: Vec<Vec<f64>>) -> Option<Self> {
+    fn from_matrix(mut matrix: Vec<Vec<f64>>) -> Option<Self> {
         let size = matrix.len();
         let greatest = (0..size).map(|at| matrix[at][at]).fold(0.0, f64::max);
         for row in 0..size {
@@ -208,24 +214,24 @@ impl Cholesky {
 
 /// The logarithms of the probabilities of outcomes with these utilities (a softmax).
 fn chances_ln(utilities: &[Vec<f64>], parameters: &[f64]) -> Vec<f64> {
-    let values: Vec<f64> = utilities.iter().map(|utility| dot(utility, parameters)).collect();
+    let values: Vec<f64> = utilities.iter().map(|utility| dot_product(utility, parameters)).collect();
     let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let all: f64 = values.iter().map(|value| (value - most).exp()).sum();
     values.iter().map(|value| value - most - all.ln()).collect()
 }
 
-fn dot(a: &[f64], b: &[f64]) -> f64 {
+fn dot_product(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-fn add(to: &mut [f64], times: f64, what: &[f64]) {
+fn add_scaled(to: &mut [f64], times: f64, what: &[f64]) {
     to.iter_mut().zip(what).for_each(|(to, what)| *to += times * what);
 }
 
-fn added(a: &[f64], b: &[f64]) -> Vec<f64> {
+fn vector_sum(a: &[f64], b: &[f64]) -> Vec<f64> {
     a.iter().zip(b).map(|(a, b)| a + b).collect()
 }
 
-fn apart(a: &[f64], b: &[f64]) -> Vec<f64> {
+fn vector_difference(a: &[f64], b: &[f64]) -> Vec<f64> {
     a.iter().zip(b).map(|(a, b)| a - b).collect()
 }

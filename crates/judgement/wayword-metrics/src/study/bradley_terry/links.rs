@@ -3,31 +3,31 @@
 //! strength would be infinite.
 
 use super::NoStrength;
-use super::fit::{Outcome, Pair};
+use super::fit::{ChoiceOutcome, SystemPair};
 use std::fmt::Display;
 
-pub(super) fn check<S: Display>(pairs: &[Pair], systems: &[&S]) -> Result<(), NoStrength> {
+pub(super) fn check_connected<S: Display>(pairs: &[SystemPair], systems: &[&S]) -> Result<(), NoStrength> {
     let names = |of: &dyn Fn(usize) -> bool| -> Vec<String> {
         systems.iter().enumerate().filter(|(at, _)| of(*at)).map(|(_, system)| system.to_string()).collect()
     };
     if pairs.is_empty() {
         return Err(NoStrength::NoChoices);
     }
-    let groups = groups(pairs, systems.len());
+    let groups = connected_groups(pairs, systems.len());
     let count = groups.iter().max().map_or(0, |most| most + 1);
     if count > 1 {
         let groups = (0..count).map(|group| names(&|at| groups[at] == group)).collect();
         return Err(NoStrength::Unconnected { groups });
     }
-    if pairs.iter().all(|pair| pair.outcome == Outcome::Tie) {
+    if pairs.iter().all(|pair| pair.outcome == ChoiceOutcome::Tie) {
         return Err(NoStrength::OnlyTies);
     }
     for from in 0..systems.len() {
         // From a system to those that lost to it or tied, and on from there.
-        let reached = reached(pairs, systems.len(), from, |pair| match pair.outcome {
-            Outcome::First => (true, false),
-            Outcome::Second => (false, true),
-            Outcome::Tie => (true, true),
+        let reached = reachable_systems(pairs, systems.len(), from, |pair| match pair.outcome {
+            ChoiceOutcome::First => (true, false),
+            ChoiceOutcome::Second => (false, true),
+            ChoiceOutcome::Tie => (true, true),
         });
         if reached.contains(&false) {
             return Err(NoStrength::Separated { above: names(&|at| !reached[at]), below: names(&|at| reached[at]) });
@@ -37,12 +37,12 @@ pub(super) fn check<S: Display>(pairs: &[Pair], systems: &[&S]) -> Result<(), No
 }
 
 /// The number of the group of each system.
-fn groups(pairs: &[Pair], systems: usize) -> Vec<usize> {
+fn connected_groups(pairs: &[SystemPair], systems: usize) -> Vec<usize> {
     let mut groups = vec![usize::MAX; systems];
     let mut count = 0;
     for from in 0..systems {
         if groups[from] == usize::MAX {
-            let reached = reached(pairs, systems, from, |_| (true, true));
+            let reached = reachable_systems(pairs, systems, from, |_| (true, true));
             groups.iter_mut().zip(reached).filter(|(_, is_in)| *is_in).for_each(|(group, _)| *group = count);
             count += 1;
         }
@@ -51,7 +51,12 @@ fn groups(pairs: &[Pair], systems: usize) -> Vec<usize> {
 }
 
 /// Which systems can be reached from `from`. `ways` returns whether a choice leads from its first system to its second, and back.
-fn reached(pairs: &[Pair], systems: usize, from: usize, ways: impl Fn(&Pair) -> (bool, bool)) -> Vec<bool> {
+fn reachable_systems(
+    pairs: &[SystemPair],
+    systems: usize,
+    from: usize,
+    ways: impl Fn(&SystemPair) -> (bool, bool),
+) -> Vec<bool> {
     let mut next: Vec<Vec<usize>> = vec![Vec::new(); systems];
     for pair in pairs {
         let (there, back) = ways(pair);

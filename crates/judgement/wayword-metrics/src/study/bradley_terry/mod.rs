@@ -13,9 +13,9 @@ mod fit;
 mod links;
 mod reason;
 
-use super::crossed::{Groups, Parts};
-use super::{Interval, is_level, quantile};
-use fit::{Fit, Outcome, Pair};
+use super::crossed::{AnswerGroups, VarianceParts};
+use super::{ConfidenceInterval, is_level, quantile};
+use fit::{ChoiceOutcome, StrengthFit, SystemPair};
 pub use reason::NoStrength;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
@@ -24,7 +24,7 @@ use std::fmt::Display;
 /// A person's preference between two texts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Preference {
+pub enum PairPreference {
     /// The one that was shown first is better.
     First,
     /// The one that was shown second is better.
@@ -37,7 +37,7 @@ pub enum Preference {
 
 /// A choice between two systems' texts of one item.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Comparison<P, I, S> {
+pub struct SystemComparison<P, I, S> {
     /// The person.
     pub person: P,
     /// The item.
@@ -47,23 +47,23 @@ pub struct Comparison<P, I, S> {
     /// The system that was shown second.
     pub second: S,
     /// The person's preference.
-    pub preference: Preference,
+    pub preference: PairPreference,
 }
 
 /// A parameter on the logarithmic scale.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Term {
+pub struct FittedTerm {
     /// Its most likely value.
     pub value: f64,
     /// Its standard error, clustered by persons and items.
     pub se: f64,
     /// Its interval.
-    pub interval: Interval,
+    pub interval: ConfidenceInterval,
 }
 
 /// A system with its strength.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Strength<S> {
+pub struct SystemStrength<S> {
     /// The system.
     pub system: S,
     /// How often it was preferred.
@@ -75,18 +75,18 @@ pub struct Strength<S> {
     /// How often both were called bad.
     pub both_bad: usize,
     /// The logarithm of its strength, relative to the mean of all systems.
-    pub term: Term,
+    pub term: FittedTerm,
 }
 
 /// The strengths of systems by choices between them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BradleyTerry<S> {
     /// The systems, the strongest first. Their strengths sum to 0.
-    pub strengths: Vec<Strength<S>>,
+    pub strengths: Vec<SystemStrength<S>>,
     /// The logarithm of the odds that a system gains by being shown first.
-    pub side: Term,
+    pub side: FittedTerm,
     /// The logarithm of Davidson's parameter; `None` where no choice was a tie.
-    pub tie: Option<Term>,
+    pub tie: Option<FittedTerm>,
     /// How many choices.
     pub comparisons: usize,
     /// How many persons made them.
@@ -100,7 +100,7 @@ pub struct BradleyTerry<S> {
 /// # Errors
 /// Why the choices give no strengths.
 pub fn bradley_terry<P: Ord, I: Ord, S: Ord + Clone + Display>(
-    comparisons: &[Comparison<P, I, S>],
+    comparisons: &[SystemComparison<P, I, S>],
     level: f64,
 ) -> Result<BradleyTerry<S>, NoStrength> {
     if comparisons.iter().any(|one| one.first == one.second) {
@@ -108,48 +108,52 @@ pub fn bradley_terry<P: Ord, I: Ord, S: Ord + Clone + Display>(
     }
     let systems: BTreeSet<&S> = comparisons.iter().flat_map(|one| [&one.first, &one.second]).collect();
     let systems: Vec<&S> = systems.into_iter().collect();
-    let pairs: Vec<Pair> = comparisons.iter().map(|one| pair(one, &systems)).collect();
-    links::check(&pairs, &systems)?;
-    let fit = Fit::of(&pairs, systems.len())?;
-    let groups = Groups::of(comparisons.iter().map(|one| (&one.person, &one.item)));
-    let errors = Errors { fit: &fit, pairs: &pairs, groups, level };
+    let pairs: Vec<SystemPair> = comparisons.iter().map(|one| numbered_pair(one, &systems)).collect();
+    links::check_connected(&pairs, &systems)?;
+    let fit = StrengthFit::from_pairs(&pairs, systems.len())?;
+    let groups = AnswerGroups::from_pairs(comparisons.iter().map(|one| (&one.person, &one.item)));
+    let errors = FitErrors { fit: &fit, pairs: &pairs, groups, level };
     let mut strengths = Vec::with_capacity(systems.len());
     for (at, system) in systems.iter().enumerate() {
-        strengths.push(counted(comparisons, system, errors.term(&fit.strength(at))?));
+        strengths.push(count_choices(comparisons, system, errors.fitted_term(&fit.strength_direction(at))?));
     }
     strengths.sort_by(|a, b| b.term.value.total_cmp(&a.term.value));
-    let Parts { persons, items, .. } = errors.parts(&fit.side());
+    let VarianceParts { persons, items, .. } = errors.variance_parts(&fit.side_direction());
     Ok(BradleyTerry {
         strengths,
-        side: errors.term(&fit.side())?,
-        tie: fit.tie().map(|direction| errors.term(&direction)).transpose()?,
+        side: errors.fitted_term(&fit.side_direction())?,
+        tie: fit.tie_direction().map(|direction| errors.fitted_term(&direction)).transpose()?,
         comparisons: comparisons.len(),
         persons,
         items,
     })
 }
 
-fn pair<P, I, S: Ord>(of: &Comparison<P, I, S>, systems: &[&S]) -> Pair {
+fn numbered_pair<P, I, S: Ord>(of: &SystemComparison<P, I, S>, systems: &[&S]) -> SystemPair {
     let place = |system: &S| systems.partition_point(|one| *one < system);
     let outcome = match of.preference {
-        Preference::First => Outcome::First,
-        Preference::Second => Outcome::Second,
-        Preference::Tie | Preference::BothBad => Outcome::Tie,
+        PairPreference::First => ChoiceOutcome::First,
+        PairPreference::Second => ChoiceOutcome::Second,
+        PairPreference::Tie | PairPreference::BothBad => ChoiceOutcome::Tie,
     };
-    Pair { first: place(&of.first), second: place(&of.second), outcome }
+    SystemPair { first: place(&of.first), second: place(&of.second), outcome }
 }
 
-fn counted<P, I, S: Ord + Clone>(comparisons: &[Comparison<P, I, S>], system: &S, term: Term) -> Strength<S> {
-    let mut strength = Strength { system: system.clone(), wins: 0, losses: 0, ties: 0, both_bad: 0, term };
+fn count_choices<P, I, S: Ord + Clone>(
+    comparisons: &[SystemComparison<P, I, S>],
+    system: &S,
+    term: FittedTerm,
+) -> SystemStrength<S> {
+    let mut strength = SystemStrength { system: system.clone(), wins: 0, losses: 0, ties: 0, both_bad: 0, term };
     for one in comparisons.iter().filter(|one| one.first == *system || one.second == *system) {
         match one.preference {
-            Preference::Tie => strength.ties += 1,
-            Preference::BothBad => {
+            PairPreference::Tie => strength.ties += 1,
+            PairPreference::BothBad => {
                 strength.ties += 1;
                 strength.both_bad += 1;
             }
-            Preference::First | Preference::Second => {
-                let is_won = (one.preference == Preference::First) == (one.first == *system);
+            PairPreference::First | PairPreference::Second => {
+                let is_won = (one.preference == PairPreference::First) == (one.first == *system);
                 strength.wins += usize::from(is_won);
                 strength.losses += usize::from(!is_won);
             }
@@ -159,26 +163,26 @@ fn counted<P, I, S: Ord + Clone>(comparisons: &[Comparison<P, I, S>], system: &S
 }
 
 /// Computes the standard errors of a fit, clustered by persons and items.
-struct Errors<'a> {
-    fit: &'a Fit,
-    pairs: &'a [Pair],
-    groups: Groups,
+struct FitErrors<'a> {
+    fit: &'a StrengthFit,
+    pairs: &'a [SystemPair],
+    groups: AnswerGroups,
     level: f64,
 }
 
-impl Errors<'_> {
+impl FitErrors<'_> {
     /// The parts of the variance of the sum of parameters weighted by `direction`. It is the sandwich estimate, clustered over the
     /// contributions of single choices to the error.
-    fn parts(&self, direction: &[f64]) -> Parts {
-        self.groups.parts(&self.fit.influence(direction, self.pairs), direction.len())
+    fn variance_parts(&self, direction: &[f64]) -> VarianceParts {
+        self.groups.variance_parts(&self.fit.choice_influences(direction, self.pairs), direction.len())
     }
 
-    fn term(&self, direction: &[f64]) -> Result<Term, NoStrength> {
-        let parts = self.parts(direction);
-        let quantile = quantile::student(0.5 + self.level / 2.0, parts.fewest() - 1);
+    fn fitted_term(&self, direction: &[f64]) -> Result<FittedTerm, NoStrength> {
+        let parts = self.variance_parts(direction);
+        let quantile = quantile::student_quantile(0.5 + self.level / 2.0, parts.fewest_groups() - 1);
         let t = quantile.filter(|_| is_level(self.level)).ok_or(NoStrength::OneSource)?;
-        let (value, se) = (self.fit.value(direction), parts.variance().sqrt());
-        Ok(Term { value, se, interval: Interval { low: value - t * se, high: value + t * se } })
+        let (value, se) = (self.fit.value_along(direction), parts.variance().sqrt());
+        Ok(FittedTerm { value, se, interval: ConfidenceInterval { low: value - t * se, high: value + t * se } })
     }
 }
 

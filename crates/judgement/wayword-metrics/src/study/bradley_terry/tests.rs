@@ -1,17 +1,17 @@
 use super::*;
 
-type Choice = Comparison<u32, u32, &'static str>;
+type Choice = SystemComparison<u32, u32, &'static str>;
 
 /// Choices by one person each about one item each.
-fn choices(of: &[(&'static str, &'static str, Preference, u32)]) -> Vec<Choice> {
+fn choices(of: &[(&'static str, &'static str, PairPreference, u32)]) -> Vec<Choice> {
     let all = of.iter().flat_map(|choice| std::iter::repeat_n(choice, choice.3 as usize));
-    let one = |(at, (first, second, preference, _)): (u32, &(&'static str, &'static str, Preference, u32))| {
-        Comparison { person: at, item: at, first: *first, second: *second, preference: *preference }
+    let one = |(at, (first, second, preference, _)): (u32, &(&'static str, &'static str, PairPreference, u32))| {
+        SystemComparison { person: at, item: at, first: *first, second: *second, preference: *preference }
     };
     (0..).zip(all).map(one).collect()
 }
 
-use Preference::{BothBad, First, Second, Tie};
+use PairPreference::{BothBad, First, Second, Tie};
 
 #[test]
 fn the_odds_of_two_systems_are_their_wins() {
@@ -49,7 +49,7 @@ fn a_side_and_ties_have_their_own_terms() {
 
 #[test]
 fn bradley_terry_reports_why_there_are_no_strengths() {
-    let why = |of: &[(&'static str, &'static str, Preference, u32)]| bradley_terry(&choices(of), 0.95).unwrap_err();
+    let why = |of: &[(&'static str, &'static str, PairPreference, u32)]| bradley_terry(&choices(of), 0.95).unwrap_err();
     let names = |of: &[&str]| of.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
     assert_eq!(why(&[]), NoStrength::NoChoices);
     assert_eq!(why(&[("a", "a", First, 1)]), NoStrength::Itself);

@@ -4,57 +4,65 @@
 //! on both of them cancel. For shares, the interval combines those of the two shares (Zou and Donner 2008, "MOVER"), with the
 //! correlation that this variance implies. For independent answers that is Newcombe's hybrid score interval (1998, method 10).
 
-use super::{Figure, Groups, Method, around, errors, quantile};
-use crate::study::{Answer, Interval};
+use super::{AnswerGroups, IntervalMethod, StudyFigure, error_contributions, quantile, symmetric_interval};
+use crate::study::{ConfidenceInterval, StudyAnswer};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
 /// The difference between two shares or means: the first minus the second.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Difference {
+pub struct FigureDifference {
     /// The difference.
     pub value: f64,
     /// Its interval, where one can be made.
-    pub interval: Option<Interval>,
+    pub interval: Option<ConfidenceInterval>,
     /// Its standard error, where it is above 0.
     pub se: Option<f64>,
     /// How the interval was made.
-    pub method: Method,
+    pub method: IntervalMethod,
     /// The correlation of the two figures, through persons and items that are in both conditions.
     pub correlation: f64,
     /// The first condition's figure.
-    pub first: Figure,
+    pub first: StudyFigure,
     /// The second condition's.
-    pub second: Figure,
+    pub second: StudyFigure,
 }
 
-/// The difference between the shares of two conditions. `None` where one of the two has no [`share`](super::share).
+/// The difference between the shares of two conditions. `None` where one of the two has no [`answer_share`](super::answer_share).
 #[must_use]
 pub fn share_difference<P: Ord, I: Ord>(
-    first: &[Answer<P, I>],
-    second: &[Answer<P, I>],
+    first: &[StudyAnswer<P, I>],
+    second: &[StudyAnswer<P, I>],
     level: f64,
-) -> Option<Difference> {
-    let both = Both::of(first, second, [super::share(first, level)?, super::share(second, level)?]);
-    let interval = both.hybrid();
-    Some(both.difference(Method::Wilson, Method::Newcombe, interval))
+) -> Option<FigureDifference> {
+    let both = ConditionPair::from_answers(
+        first,
+        second,
+        [super::answer_share(first, level)?, super::answer_share(second, level)?],
+    );
+    let interval = both.hybrid_interval();
+    Some(both.into_difference(IntervalMethod::Wilson, IntervalMethod::Newcombe, interval))
 }
 
-/// The difference between the means of two conditions. `None` where one of the two has no [`mean`](super::mean).
+/// The difference between the means of two conditions. `None` where one of the two has no [`answer_mean`](super::answer_mean).
 #[must_use]
 pub fn mean_difference<P: Ord, I: Ord>(
-    first: &[Answer<P, I>],
-    second: &[Answer<P, I>],
+    first: &[StudyAnswer<P, I>],
+    second: &[StudyAnswer<P, I>],
     level: f64,
-) -> Option<Difference> {
-    let both = Both::of(first, second, [super::mean(first, level)?, super::mean(second, level)?]);
-    let interval = both.linear(level);
-    Some(both.difference(Method::Student, Method::Student, interval))
+) -> Option<FigureDifference> {
+    let both = ConditionPair::from_answers(
+        first,
+        second,
+        [super::answer_mean(first, level)?, super::answer_mean(second, level)?],
+    );
+    let interval = both.linear_interval(level);
+    Some(both.into_difference(IntervalMethod::Student, IntervalMethod::Student, interval))
 }
 
 /// Two conditions together.
-struct Both {
-    figures: [Figure; 2],
+struct ConditionPair {
+    figures: [StudyFigure; 2],
     se: Option<f64>,
     /// The correlation of the two figures.
     correlation: f64,
@@ -64,11 +72,15 @@ struct Both {
     fewest: usize,
 }
 
-impl Both {
-    fn of<P: Ord, I: Ord>(first: &[Answer<P, I>], second: &[Answer<P, I>], figures: [Figure; 2]) -> Self {
-        let groups = Groups::of(first.iter().chain(second).map(|answer| (&answer.person, &answer.item)));
-        let mut all = errors(first, figures[0].value);
-        all.extend(errors(second, figures[1].value).into_iter().map(|error| -error));
+impl ConditionPair {
+    fn from_answers<P: Ord, I: Ord>(
+        first: &[StudyAnswer<P, I>],
+        second: &[StudyAnswer<P, I>],
+        figures: [StudyFigure; 2],
+    ) -> Self {
+        let groups = AnswerGroups::from_pairs(first.iter().chain(second).map(|answer| (&answer.person, &answer.item)));
+        let mut all = error_contributions(first, figures[0].value);
+        all.extend(error_contributions(second, figures[1].value).into_iter().map(|error| -error));
         let [persons, items] = [
             in_both(first, second, &figures, |answer| &answer.person, |figure| figure.persons),
             in_both(first, second, &figures, |answer| &answer.item, |figure| figure.items),
@@ -78,7 +90,7 @@ impl Both {
         let fewest = several.min().unwrap_or(1);
         let squares = figures.each_ref().map(|figure| figure.se.map_or(0.0, |se| se * se));
         let apart = squares[0] + squares[1];
-        let variance = if is_apart { apart } else { groups.parts(&all, 2).variance() };
+        let variance = if is_apart { apart } else { groups.variance_parts(&all, 2).variance() };
         let product = 2.0 * (squares[0] * squares[1]).sqrt();
         let correlation = if product > 0.0 { ((apart - variance) / product).clamp(-1.0, 1.0) } else { 0.0 };
         Self { figures, se: Some(variance.sqrt()).filter(|se| *se > 0.0), correlation, is_apart, fewest }
@@ -88,41 +100,46 @@ impl Both {
         self.figures[0].value - self.figures[1].value
     }
 
-    fn linear(&self, level: f64) -> Option<Interval> {
-        let half = self.se? * quantile::student(0.5 + level / 2.0, self.fewest - 1)?;
-        Some(around(self.value(), half))
+    fn linear_interval(&self, level: f64) -> Option<ConfidenceInterval> {
+        let half = self.se? * quantile::student_quantile(0.5 + level / 2.0, self.fewest - 1)?;
+        Some(symmetric_interval(self.value(), half))
     }
 
     /// The hybrid interval: combines the distances of the two figures from the ends of their intervals like correlated errors.
-    fn hybrid(&self) -> Option<Interval> {
+    fn hybrid_interval(&self) -> Option<ConfidenceInterval> {
         let [first, second] = &self.figures;
         let (of, other) = (first.interval?, second.interval?);
         let together = |a: f64, b: f64| (a * a + b * b - 2.0 * self.correlation * a * b).max(0.0).sqrt();
         let low = self.value() - together(first.value - of.low, other.high - second.value);
         let high = self.value() + together(of.high - first.value, second.value - other.low);
-        Some(Interval { low: low.max(-1.0), high: high.min(1.0) })
+        Some(ConfidenceInterval { low: low.max(-1.0), high: high.min(1.0) })
     }
 
     /// The difference. Its method is `together` if both figures have the method `each` and share no person or item, and clustered
     /// otherwise.
-    fn difference(self, each: Method, together: Method, interval: Option<Interval>) -> Difference {
+    fn into_difference(
+        self,
+        each: IntervalMethod,
+        together: IntervalMethod,
+        interval: Option<ConfidenceInterval>,
+    ) -> FigureDifference {
         let is_simple = self.is_apart && self.figures.iter().all(|figure| figure.method == each);
-        let method = if is_simple { together } else { Method::Clustered };
+        let method = if is_simple { together } else { IntervalMethod::Clustered };
         let value = self.value();
         let Self { figures: [first, second], se, correlation, .. } = self;
-        let method = if interval.is_some() { method } else { Method::None };
-        Difference { value, interval, se, method, correlation, first, second }
+        let method = if interval.is_some() { method } else { IntervalMethod::None };
+        FigureDifference { value, interval, se, method, correlation, first, second }
     }
 }
 
 /// Whether any person (or item) is in both conditions, and the number to use for the degrees of freedom: all distinct ones if some
 /// are in both, and otherwise those of the condition with fewer, because its error is known least.
 fn in_both<'a, P, I, T: Ord + 'a>(
-    first: &'a [Answer<P, I>],
-    second: &'a [Answer<P, I>],
-    figures: &[Figure; 2],
-    of: impl Fn(&'a Answer<P, I>) -> &'a T,
-    count: impl Fn(&Figure) -> usize,
+    first: &'a [StudyAnswer<P, I>],
+    second: &'a [StudyAnswer<P, I>],
+    figures: &[StudyFigure; 2],
+    of: impl Fn(&'a StudyAnswer<P, I>) -> &'a T,
+    count: impl Fn(&StudyFigure) -> usize,
 ) -> (bool, usize) {
     let all: BTreeSet<&T> = first.iter().chain(second).map(of).collect();
     let [one, other] = figures.each_ref().map(count);

@@ -6,16 +6,16 @@
 mod difference;
 mod variance;
 
-use super::{Answer, Interval, is_level, logit_normal, quantile, share::wilson};
-pub use difference::{Difference, mean_difference, share_difference};
+use super::{ConfidenceInterval, StudyAnswer, is_level, logit_normal, quantile, share::wilson_interval};
+pub use difference::{FigureDifference, mean_difference, share_difference};
 use serde::{Deserialize, Serialize};
 use std::fmt;
-pub(super) use variance::{Groups, Parts};
+pub(super) use variance::{AnswerGroups, VarianceParts};
 
 /// How an interval was made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Method {
+pub enum IntervalMethod {
     /// Wilson's interval of a share of independent answers.
     Wilson,
     /// Student's interval of a mean of independent answers.
@@ -31,7 +31,7 @@ pub enum Method {
     None,
 }
 
-impl fmt::Display for Method {
+impl fmt::Display for IntervalMethod {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Wilson => "Wilson",
@@ -46,15 +46,15 @@ impl fmt::Display for Method {
 
 /// A share or a mean with its interval.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Figure {
+pub struct StudyFigure {
     /// The share or the mean.
     pub value: f64,
     /// Its interval, where one can be made.
-    pub interval: Option<Interval>,
+    pub interval: Option<ConfidenceInterval>,
     /// Its standard error, where it is above 0.
     pub se: Option<f64>,
     /// How the interval was made.
-    pub method: Method,
+    pub method: IntervalMethod,
     /// How many answers.
     pub answers: usize,
     /// How many persons gave them.
@@ -68,76 +68,76 @@ pub struct Figure {
 /// Values between 0 and 1 are taken too. `None` where there are no answers, a value is outside 0 to 1, or the level is not
 /// between 0 and 1.
 #[must_use]
-pub fn share<P: Ord, I: Ord>(answers: &[Answer<P, I>], level: f64) -> Option<Figure> {
+pub fn answer_share<P: Ord, I: Ord>(answers: &[StudyAnswer<P, I>], level: f64) -> Option<StudyFigure> {
     let is_share = answers.iter().all(|answer| (0.0..=1.0).contains(&answer.value));
-    let sample = is_share.then(|| Sample::of(answers, level)).flatten()?;
-    Some(sample.share(level))
+    let sample = is_share.then(|| AnswerSample::from_answers(answers, level)).flatten()?;
+    Some(sample.share_figure(level))
 }
 
 /// The mean of answers, with its interval.
 ///
 /// `None` where there are no answers, a value is not finite, or the level is not between 0 and 1.
 #[must_use]
-pub fn mean<P: Ord, I: Ord>(answers: &[Answer<P, I>], level: f64) -> Option<Figure> {
-    Some(Sample::of(answers, level)?.mean(level))
+pub fn answer_mean<P: Ord, I: Ord>(answers: &[StudyAnswer<P, I>], level: f64) -> Option<StudyFigure> {
+    Some(AnswerSample::from_answers(answers, level)?.mean_figure(level))
 }
 
 /// Answers to one condition.
-struct Sample {
+struct AnswerSample {
     mean: f64,
     answers: usize,
-    parts: Parts,
+    parts: VarianceParts,
 }
 
-impl Sample {
-    fn of<P: Ord, I: Ord>(answers: &[Answer<P, I>], level: f64) -> Option<Self> {
+impl AnswerSample {
+    fn from_answers<P: Ord, I: Ord>(answers: &[StudyAnswer<P, I>], level: f64) -> Option<Self> {
         let is_finite = answers.iter().all(|answer| answer.value.is_finite());
-        let mean = is_finite.then(|| average(answers)).flatten()?;
-        let groups = Groups::of(answers.iter().map(|answer| (&answer.person, &answer.item)));
-        let parts = groups.parts(&errors(answers, mean), 1);
+        let mean = is_finite.then(|| average_value(answers)).flatten()?;
+        let groups = AnswerGroups::from_pairs(answers.iter().map(|answer| (&answer.person, &answer.item)));
+        let parts = groups.variance_parts(&error_contributions(answers, mean), 1);
         is_level(level).then_some(Self { mean, answers: answers.len(), parts })
     }
 
-    fn share(&self, level: f64) -> Figure {
+    fn share_figure(&self, level: f64) -> StudyFigure {
         let is_extreme = self.mean == 0.0 || self.mean == 1.0;
         let (method, interval) = if self.parts.is_independent() {
-            (Method::Wilson, wilson(self.mean * self.answers as f64, self.answers as f64, level))
+            (IntervalMethod::Wilson, wilson_interval(self.mean * self.answers as f64, self.answers as f64, level))
         } else if is_extreme {
-            let fewest = self.parts.fewest() as f64;
-            (Method::Extreme, wilson(self.mean * fewest, fewest, level))
+            let fewest = self.parts.fewest_groups() as f64;
+            (IntervalMethod::Extreme, wilson_interval(self.mean * fewest, fewest, level))
         } else {
-            (Method::Clustered, self.on_logits(level))
+            (IntervalMethod::Clustered, self.on_logits(level))
         };
-        self.figure(method, interval)
+        self.to_figure(method, interval)
     }
 
     /// The interval on the logit scale, by the delta method: the derivative of the logit is 1 / (p (1 - p)).
-    fn on_logits(&self, level: f64) -> Option<Interval> {
-        let half = self.half(level)? / (self.mean * (1.0 - self.mean));
+    fn on_logits(&self, level: f64) -> Option<ConfidenceInterval> {
+        let half = self.half_width(level)? / (self.mean * (1.0 - self.mean));
         let centre = logit_normal::logit(self.mean);
-        Some(Interval { low: logit_normal::expit(centre - half), high: logit_normal::expit(centre + half) })
+        Some(ConfidenceInterval { low: logit_normal::expit(centre - half), high: logit_normal::expit(centre + half) })
     }
 
-    fn mean(&self, level: f64) -> Figure {
-        let method = if self.parts.is_independent() { Method::Student } else { Method::Clustered };
-        self.figure(method, self.half(level).map(|half| around(self.mean, half)))
+    fn mean_figure(&self, level: f64) -> StudyFigure {
+        let method = if self.parts.is_independent() { IntervalMethod::Student } else { IntervalMethod::Clustered };
+        self.to_figure(method, self.half_width(level).map(|half| symmetric_interval(self.mean, half)))
     }
 
     /// Half the width of the interval on the scale of the values.
-    fn half(&self, level: f64) -> Option<f64> {
-        Some(self.se()? * quantile::student(0.5 + level / 2.0, self.parts.fewest() - 1)?)
+    fn half_width(&self, level: f64) -> Option<f64> {
+        Some(self.standard_error()? * quantile::student_quantile(0.5 + level / 2.0, self.parts.fewest_groups() - 1)?)
     }
 
-    fn se(&self) -> Option<f64> {
+    fn standard_error(&self) -> Option<f64> {
         Some(self.parts.variance().sqrt()).filter(|se| *se > 0.0)
     }
 
-    fn figure(&self, method: Method, interval: Option<Interval>) -> Figure {
-        Figure {
+    fn to_figure(&self, method: IntervalMethod, interval: Option<ConfidenceInterval>) -> StudyFigure {
+        StudyFigure {
             value: self.mean,
             interval,
-            se: self.se(),
-            method: if interval.is_some() { method } else { Method::None },
+            se: self.standard_error(),
+            method: if interval.is_some() { method } else { IntervalMethod::None },
             answers: self.answers,
             persons: self.parts.persons,
             items: self.parts.items,
@@ -146,19 +146,19 @@ impl Sample {
 }
 
 /// The mean of answers. It is summed as differences from the first answer, so that it is exact if all answers are equal.
-fn average<P, I>(answers: &[Answer<P, I>]) -> Option<f64> {
+fn average_value<P, I>(answers: &[StudyAnswer<P, I>]) -> Option<f64> {
     let first = answers.first()?.value;
     let above: f64 = answers.iter().map(|answer| answer.value - first).sum();
     Some(first + above / answers.len() as f64)
 }
 
 /// The contribution of each answer to the error of the mean.
-fn errors<P, I>(answers: &[Answer<P, I>], mean: f64) -> Vec<f64> {
+fn error_contributions<P, I>(answers: &[StudyAnswer<P, I>], mean: f64) -> Vec<f64> {
     answers.iter().map(|answer| (answer.value - mean) / answers.len() as f64).collect()
 }
 
-fn around(value: f64, half: f64) -> Interval {
-    Interval { low: value - half, high: value + half }
+fn symmetric_interval(value: f64, half: f64) -> ConfidenceInterval {
+    ConfidenceInterval { low: value - half, high: value + half }
 }
 
 #[cfg(test)]

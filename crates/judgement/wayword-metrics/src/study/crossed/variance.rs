@@ -8,28 +8,30 @@
 use std::collections::BTreeMap;
 
 /// If the variance from persons and items is below this share of that from single answers, it is a rounding error.
-const BALANCED: f64 = 1e-20;
+const BALANCED_VARIANCE_SHARE: f64 = 1e-20;
 
 /// For each answer the numbers of its person, its item and its cell (the pair of both), and how many of each there are.
-pub(in crate::study) struct Groups {
+pub(in crate::study) struct AnswerGroups {
     persons: Vec<usize>,
     items: Vec<usize>,
     cells: Vec<usize>,
     counts: [usize; 3],
 }
 
-impl Groups {
-    pub(in crate::study) fn of<'a, P: Ord + 'a, I: Ord + 'a>(places: impl Iterator<Item = (&'a P, &'a I)>) -> Self {
+impl AnswerGroups {
+    pub(in crate::study) fn from_pairs<'a, P: Ord + 'a, I: Ord + 'a>(
+        places: impl Iterator<Item = (&'a P, &'a I)>,
+    ) -> Self {
         let (persons, items): (Vec<&P>, Vec<&I>) = places.unzip();
-        let (persons, items) = (numbered(&persons), numbered(&items));
+        let (persons, items) = (number_distinct(&persons), number_distinct(&items));
         let both: Vec<(usize, usize)> = persons.iter().copied().zip(items.iter().copied()).collect();
-        let cells = numbered(&both);
+        let cells = number_distinct(&both);
         let counts = [&persons, &items, &cells].map(|of| of.iter().max().map_or(0, |most| most + 1));
         Self { persons, items, cells, counts }
     }
 
     /// The parts of the variance of a sum of errors, where `estimated` parameters were estimated from the same answers.
-    pub(in crate::study) fn parts(&self, errors: &[f64], estimated: usize) -> Parts {
+    pub(in crate::study) fn variance_parts(&self, errors: &[f64], estimated: usize) -> VarianceParts {
         let answers = errors.len();
         let small = (answers.saturating_sub(1)) as f64 / (answers.saturating_sub(estimated)).max(1) as f64;
         let part = |of: &[usize], count: usize| {
@@ -39,7 +41,7 @@ impl Groups {
             if count > 1 { small * square * count as f64 / (count - 1) as f64 } else { 0.0 }
         };
         let [persons, items, cells] = self.counts;
-        Parts {
+        VarianceParts {
             person: part(&self.persons, persons),
             item: part(&self.items, items),
             cell: part(&self.cells, cells),
@@ -51,7 +53,7 @@ impl Groups {
 }
 
 /// Numbers the distinct values from 0, in their order; equal values get equal numbers.
-fn numbered<T: Ord>(all: &[T]) -> Vec<usize> {
+fn number_distinct<T: Ord>(all: &[T]) -> Vec<usize> {
     let mut numbers: BTreeMap<&T, usize> = all.iter().map(|one| (one, 0)).collect();
     numbers.values_mut().zip(0..).for_each(|(number, at)| *number = at);
     all.iter().map(|one| numbers[one]).collect()
@@ -59,7 +61,7 @@ fn numbered<T: Ord>(all: &[T]) -> Vec<usize> {
 
 /// The three parts of a two-way clustered variance, and how many answers, persons and items they come from.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(in crate::study) struct Parts {
+pub(in crate::study) struct VarianceParts {
     pub(in crate::study) person: f64,
     pub(in crate::study) item: f64,
     pub(in crate::study) cell: f64,
@@ -68,11 +70,15 @@ pub(in crate::study) struct Parts {
     pub(in crate::study) items: usize,
 }
 
-impl Parts {
+impl VarianceParts {
     /// The variance. If the errors cancel within every person and every item, only the part of single answers is left.
     pub(in crate::study) fn variance(&self) -> f64 {
         let larger = self.person.max(self.item);
-        if larger <= BALANCED * self.cell { self.cell } else { larger.max(self.person + self.item - self.cell) }
+        if larger <= BALANCED_VARIANCE_SHARE * self.cell {
+            self.cell
+        } else {
+            larger.max(self.person + self.item - self.cell)
+        }
     }
 
     /// Whether no two answers share a person or an item. A single person or item is not a sample: then the figure is about
@@ -83,7 +89,7 @@ impl Parts {
     }
 
     /// The number of persons or of items, whichever is smaller. A number of 1 is ignored, because one person or item is no sample.
-    pub(in crate::study) fn fewest(&self) -> usize {
+    pub(in crate::study) fn fewest_groups(&self) -> usize {
         let several = [self.persons, self.items].into_iter().filter(|groups| *groups > 1);
         several.min().unwrap_or(1)
     }
@@ -93,8 +99,8 @@ impl Parts {
 mod tests {
     use super::*;
 
-    fn parts(places: &[(u8, u8)], errors: &[f64]) -> Parts {
-        Groups::of(places.iter().map(|(person, item)| (person, item))).parts(errors, 1)
+    fn parts(places: &[(u8, u8)], errors: &[f64]) -> VarianceParts {
+        AnswerGroups::from_pairs(places.iter().map(|(person, item)| (person, item))).variance_parts(errors, 1)
     }
 
     #[test]
@@ -125,8 +131,8 @@ mod tests {
     fn a_single_item_is_no_sample_of_items() {
         let found = parts(&[(1, 5), (2, 5), (3, 5)], &[1.0, -1.0, 0.0]);
         assert!(found.is_independent());
-        assert_eq!((found.item, found.fewest()), (0.0, 3));
+        assert_eq!((found.item, found.fewest_groups()), (0.0, 3));
         assert!(!parts(&[(1, 5), (2, 5), (2, 6)], &[1.0, -1.0, 0.0]).is_independent());
-        assert_eq!(parts(&[(1, 1), (1, 1)], &[1.0, -1.0]).fewest(), 1);
+        assert_eq!(parts(&[(1, 1), (1, 1)], &[1.0, -1.0]).fewest_groups(), 1);
     }
 }

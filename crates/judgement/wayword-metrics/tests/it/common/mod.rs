@@ -3,7 +3,7 @@
 use serde_json::Value;
 use std::collections::BTreeSet;
 use wayword_core::{ObjectId, ViewpointId};
-use wayword_metrics::{Demand, Score, Trajectory};
+use wayword_metrics::{AgentTrajectory, EpisodeDemand, TrajectoryScore};
 
 /// How far figures may differ, because the other program adds numbers in another order.
 const TOLERANCE: f64 = 1e-9;
@@ -16,17 +16,17 @@ pub(crate) fn object(id: &Value) -> Option<ObjectId> {
     id.as_str().map(|id| ObjectId::new(id).unwrap())
 }
 
-pub(crate) fn demand(case: &Value, visible_from: Option<BTreeSet<ViewpointId>>) -> Demand {
+pub(crate) fn demand(case: &Value, visible_from: Option<BTreeSet<ViewpointId>>) -> EpisodeDemand {
     let reference = viewpoints(case["reference"].as_array().unwrap());
-    Demand { reference, object: object(&case["object"]), visible_from }
+    EpisodeDemand { reference, object: object(&case["object"]), visible_from }
 }
 
-pub(crate) fn trajectory(case: &Value) -> Trajectory {
-    Trajectory { viewpoints: viewpoints(case["trajectory"].as_array().unwrap()), object: object(&case["named"]) }
+pub(crate) fn trajectory(case: &Value) -> AgentTrajectory {
+    AgentTrajectory { viewpoints: viewpoints(case["trajectory"].as_array().unwrap()), object: object(&case["named"]) }
 }
 
 /// Asserts that the figures are the expected ones, no more and no less.
-pub(crate) fn assert_agrees(score: &Score, expected: &Value, case: &str) {
+pub(crate) fn assert_agrees(score: &TrajectoryScore, expected: &Value, case: &str) {
     let found = serde_json::to_value(score).unwrap();
     assert_same(&found, expected, case);
 }

@@ -2,12 +2,14 @@
 
 use super::*;
 use crate::{
-    agents::{MapReader, Prior, Surveyed},
-    grounders::{Lexical, Sees},
+    agents::{MapReader, MappedScene, WalkPrior},
+    grounders::{GrounderScope, LexicalGrounder},
     testing::{Cross, id, scene},
 };
 use std::collections::BTreeSet;
-use wayword_core::{Grounder, Heading, ModelError, Platform, Survey, View, ViewpointId, survey::Known};
+use wayword_core::{
+    Heading, ModelError, PhraseGrounder, Platform, View, ViewpointId, ViewpointSurvey, survey::ViewpointKnowledge,
+};
 
 const THINGS: [(&str, &str); 4] = [("n2", "plant"), ("e2", "sofa"), ("s2", "bed"), ("w2", "sink")];
 const ROOMS: [(&str, &str); 3] = [("e2", "living room"), ("s2", "bedroom"), ("w2", "kitchen")];
@@ -16,14 +18,14 @@ fn cross() -> Cross {
     Cross::new(&THINGS).with_rooms(&ROOMS)
 }
 
-fn stood(walked: &Walked) -> Vec<&str> {
+fn stood(walked: &AgentWalk) -> Vec<&str> {
     walked.steps.iter().map(|step| step.viewpoint.as_str()).collect()
 }
 
-fn walked(world: &Cross, text: &str) -> Walked {
-    let grounder = Lexical::new(Sees::Views);
+fn walked(world: &Cross, text: &str) -> AgentWalk {
+    let grounder = LexicalGrounder::new(GrounderScope::Views);
     let agent_view = AgentView::new(world, &grounder, false, &scene()).unwrap();
-    walk_by_reading(&agent_view, &Cross::start(), text, &Things::Labels).unwrap()
+    walk_by_reading(&agent_view, &Cross::start(), text, &ThingSource::Labels).unwrap()
 }
 
 #[test]
@@ -34,7 +36,7 @@ fn it_turns_where_the_text_says_and_stops_there() {
         ("Walk straight ahead to the plant. Stop next to the plant.", ["middle", "n1", "n2"]),
     ] {
         let walked = walked(&cross(), text);
-        assert_eq!((stood(&walked), walked.end), (way.to_vec(), End::Stopped), "{text}");
+        assert_eq!((stood(&walked), walked.end), (way.to_vec(), WalkEnd::Stopped), "{text}");
         let told = walked.steps[2].told.as_ref().unwrap();
         assert_eq!((told.ways, told.things), (1, 1));
     }
@@ -47,7 +49,7 @@ fn it_comes_back_from_a_dead_end() {
     let walked = walked(&cross(), text);
     let stood = stood(&walked);
     assert_eq!(stood.last(), Some(&"s2"), "{stood:?}");
-    assert!(stood.len() > 3 && walked.steps.iter().any(|step| step.choice == Choice::Back), "{stood:?}");
+    assert!(stood.len() > 3 && walked.steps.iter().any(|step| step.choice == StepChoice::Back), "{stood:?}");
 }
 
 /// The agent is given the ways out of its node, the room and the things there, and no information about nodes that it did not
@@ -55,21 +57,21 @@ fn it_comes_back_from_a_dead_end() {
 #[test]
 fn reader_gets_only_the_surroundings_of_its_node() {
     let world = cross();
-    let grounder = Lexical::new(Sees::Views);
+    let grounder = LexicalGrounder::new(GrounderScope::Views);
     let agent_view = AgentView::new(&world, &grounder, false, &scene()).unwrap();
-    let guide = Guide::read("Turn right and walk to the sofa in the living room. Stop next to the sofa.");
-    let mut reader = Reader::new(&guide, OnwardWeights::fitted());
-    let mut given: Vec<Sighting> = Vec::new();
-    let walked = walk(&agent_view, &Cross::start(), &Things::Labels, |seen| {
+    let guide = Guide::read_text("Turn right and walk to the sofa in the living room. Stop next to the sofa.");
+    let mut reader = WalkingFollower::new(&guide, OnwardWeights::fitted());
+    let mut given: Vec<WalkerSighting> = Vec::new();
+    let walked = walk_by_decisions(&agent_view, &Cross::start(), &ThingSource::Labels, |seen| {
         given.push(seen.clone());
-        reader.decide(seen)
+        reader.decide_next(seen)
     });
     let walked = walked.unwrap();
     assert_eq!(given.len(), walked.steps.len());
-    let graph = world.graph(&scene()).unwrap();
+    let graph = world.graph_for_scene(&scene()).unwrap();
     for (seen, step) in given.iter().zip(&walked.steps) {
         let node = step.viewpoint.as_str();
-        assert_eq!(seen.hops.len(), graph.neighbours(&step.viewpoint).len(), "{node}");
+        assert_eq!(seen.hops.len(), graph.neighbours_of(&step.viewpoint).len(), "{node}");
         assert!(seen.hops.iter().all(|hop| (hop.length_m - 2.0).abs() < 1e-9 && hop.elevation_rad == 0.0));
         let room = ROOMS.iter().find(|(at, _)| *at == node).map(|(_, room)| *room);
         assert_eq!(seen.room.as_deref(), room, "{node}");
@@ -82,11 +84,11 @@ fn reader_gets_only_the_surroundings_of_its_node() {
 
 #[test]
 fn ways_are_given_relative_to_the_heading() {
-    let (world, grounder) = (cross(), Lexical::new(Sees::Views));
+    let (world, grounder) = (cross(), LexicalGrounder::new(GrounderScope::Views));
     let agent_view = AgentView::new(&world, &grounder, false, &scene()).unwrap();
     let turns = |heading_deg: f64| {
         let heading = Heading::new(heading_deg.to_radians()).unwrap();
-        let told = agent_view.told(&id("middle"), heading, &Things::Labels).unwrap();
+        let told = agent_view.surroundings_at(&id("middle"), heading, &ThingSource::Labels).unwrap();
         let mut turns: Vec<(String, i32)> = told
             .ways
             .iter()
@@ -105,12 +107,12 @@ fn ways_are_given_relative_to_the_heading() {
 /// Finds a phrase in the west alone.
 struct West;
 
-impl Grounder for West {
+impl PhraseGrounder for West {
     fn name(&self) -> &'static str {
         "west"
     }
 
-    fn ground(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<f32>, ModelError>> {
+    fn score_phrases(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<f32>, ModelError>> {
         let score = |at: usize, phrase: &&str| if at == 3 && *phrase == "sink" { 0.5 } else { 0.1 };
         (0..views.len()).map(|at| Ok(phrases.iter().map(|phrase| score(at, phrase)).collect())).collect()
     }
@@ -121,58 +123,58 @@ fn things_by_scores_are_the_names_above_the_threshold() {
     let world = cross();
     let agent_view = AgentView::new(&world, &West, false, &scene()).unwrap();
     let told = |threshold: f32| {
-        let things = Things::named_in("Walk past the sofa in the kitchen to the sink", threshold);
-        let told = agent_view.told(&id("middle"), Heading::NORTH, &things).unwrap();
+        let things = ThingSource::named_in("Walk past the sofa in the kitchen to the sink", threshold);
+        let told = agent_view.surroundings_at(&id("middle"), Heading::NORTH, &things).unwrap();
         told.sighting.things.iter().map(|(name, hop)| (name.clone(), told.ways[*hop].to_string())).collect::<Vec<_>>()
     };
     assert_eq!(told(0.3), [("sink".to_owned(), "w1".to_owned())]);
     assert_eq!(told(0.6), []);
     assert_eq!(told(0.05).len(), 2 * 4, "the sofa and the sink in four views; a room is no thing");
-    let nowhere = walk_by_reading(&agent_view, &Cross::start(), "", &Things::named_in("", 0.3)).unwrap();
+    let nowhere = walk_by_reading(&agent_view, &Cross::start(), "", &ThingSource::named_in("", 0.3)).unwrap();
     assert_eq!(stood(&nowhere), ["middle"]);
 }
 
 #[test]
 fn missing_labels_are_an_error() {
-    let (world, grounder) = (Cross::blind(), Lexical::new(Sees::Views));
+    let (world, grounder) = (Cross::blind(), LexicalGrounder::new(GrounderScope::Views));
     let agent_view = AgentView::new(&world, &grounder, false, &scene()).unwrap();
-    let error = walk_by_reading(&agent_view, &Cross::start(), "Turn left.", &Things::Labels).unwrap_err();
+    let error = walk_by_reading(&agent_view, &Cross::start(), "Turn left.", &ThingSource::Labels).unwrap_err();
     assert!(error.to_string().contains("needs labels"), "{error}");
 }
 
-fn surveyed(world: &Cross) -> Surveyed {
+fn surveyed(world: &Cross) -> MappedScene {
     let known = |at: &ViewpointId, _| {
         let room = ROOMS.iter().find(|(name, _)| *name == at.as_str()).map(|(_, room)| (*room).to_owned());
-        Ok::<_, wayword_core::graph::GraphError>(Known { room, things: Some(world.labels(at)) })
+        Ok::<_, wayword_core::graph::GraphError>(ViewpointKnowledge { room, things: Some(world.labels(at)) })
     };
-    Surveyed::of(&Survey::of(&world.graph(&scene()).unwrap(), known).unwrap())
+    MappedScene::from_survey(&ViewpointSurvey::from_graph(&world.graph_for_scene(&scene()).unwrap(), known).unwrap())
 }
 
 #[test]
 fn map_reader_takes_the_shortest_walk() {
     let world = cross();
-    let (graph, known, start) = (world.graph(&scene()).unwrap(), surveyed(&world), Cross::start());
-    for prior in [Prior::Shortest(8), Prior::TwoPieces(8)] {
+    let (graph, known, start) = (world.graph_for_scene(&scene()).unwrap(), surveyed(&world), Cross::start());
+    for prior in [WalkPrior::Shortest(8), WalkPrior::TwoPieces(8)] {
         let reader = MapReader::new(&graph, &known, &start, prior).unwrap();
-        let walked = reader.walk("Walk into the bedroom. Stop at the bed in the bedroom.");
+        let walked = reader.best_walk("Walk into the bedroom. Stop at the bed in the bedroom.");
         assert_eq!(stood(&walked), ["middle", "s1", "s2"], "{prior:?}");
-        let left = reader.walk("Turn left and walk into the kitchen. Stop next to the sink.");
+        let left = reader.best_walk("Turn left and walk into the kitchen. Stop next to the sink.");
         assert_eq!(stood(&left), ["middle", "w1", "w2"], "{prior:?}");
     }
-    let near = MapReader::new(&graph, &known, &start, Prior::Shortest(1)).unwrap();
-    assert_eq!(near.walk("Walk into the bedroom.").steps.len(), 2, "nothing farther is thought of");
-    let lost = Start { viewpoint: id("attic"), ..start.clone() };
-    assert!(matches!(MapReader::new(&graph, &known, &lost, Prior::Shortest(8)), Err(WalkError::Unknown { .. })));
+    let near = MapReader::new(&graph, &known, &start, WalkPrior::Shortest(1)).unwrap();
+    assert_eq!(near.best_walk("Walk into the bedroom.").steps.len(), 2, "nothing farther is thought of");
+    let lost = AgentStart { viewpoint: id("attic"), ..start.clone() };
+    assert!(matches!(MapReader::new(&graph, &known, &lost, WalkPrior::Shortest(8)), Err(WalkError::Unknown { .. })));
 }
 
 #[test]
 fn an_empty_text_gives_the_same_walk_each_time() {
     let world = cross();
-    let (graph, start) = (world.graph(&scene()).unwrap(), Cross::start());
+    let (graph, start) = (world.graph_for_scene(&scene()).unwrap(), Cross::start());
     let walk = || {
         let known = surveyed(&world);
-        let reader = MapReader::new(&graph, &known, &start, Prior::Shortest(8)).unwrap();
-        stood(&reader.walk("")).into_iter().map(str::to_owned).collect::<Vec<_>>()
+        let reader = MapReader::new(&graph, &known, &start, WalkPrior::Shortest(8)).unwrap();
+        stood(&reader.best_walk("")).into_iter().map(str::to_owned).collect::<Vec<_>>()
     };
     let first = walk();
     assert!(first.len() > 1, "it goes where its weights alone lead: {first:?}");
@@ -184,9 +186,9 @@ fn an_empty_text_gives_the_same_walk_each_time() {
 #[test]
 fn readers_bound_their_work_on_a_huge_text() {
     let world = cross();
-    let (graph, known, start) = (world.graph(&scene()).unwrap(), surveyed(&world), Cross::start());
-    let reader = MapReader::new(&graph, &known, &start, Prior::TwoPieces(8)).unwrap();
+    let (graph, known, start) = (world.graph_for_scene(&scene()).unwrap(), surveyed(&world), Cross::start());
+    let reader = MapReader::new(&graph, &known, &start, WalkPrior::TwoPieces(8)).unwrap();
     let long = "Turn left. ".repeat(100_000);
-    assert!(!reader.walk(&long).steps.is_empty());
+    assert!(!reader.best_walk(&long).steps.is_empty());
     assert!(!walked(&world, &long).steps.is_empty());
 }

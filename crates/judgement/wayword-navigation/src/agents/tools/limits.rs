@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 /// Limits of one walk.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct Limits {
+pub struct ToolWalkLimits {
     /// Most hops, those back included.
     pub max_hops: usize,
     /// Most calls of the model.
@@ -19,16 +19,16 @@ pub struct Limits {
 }
 
 /// People's walks in R2R have 4 to 6 hops; the reader goes 24 at most.
-impl Default for Limits {
+impl Default for ToolWalkLimits {
     fn default() -> Self {
         Self { max_hops: 24, max_calls: 60, max_usd: None, memory: 6 }
     }
 }
 
-impl Limits {
+impl ToolWalkLimits {
     /// All of them by name, for reports.
     #[must_use]
-    pub fn named(&self) -> BTreeMap<String, String> {
+    pub fn by_name(&self) -> BTreeMap<String, String> {
         let usd = self.max_usd.map(|usd| ("max_usd", usd.to_string()));
         let counts = [
             ("max_hops", self.max_hops.to_string()),

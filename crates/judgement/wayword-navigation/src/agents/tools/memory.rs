@@ -1,8 +1,8 @@
 //! The agent's memory of its walk, which each prompt repeats: a map of the visited places, the last steps with their reasons, and
 //! the agent's note. A language model has no memory between calls, so everything that it needs is here. All parts are bounded.
 
-use super::scene::Scene;
-use crate::one_line::quoted;
+use super::scene::ObservedScene;
+use crate::one_line::shorten_line;
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use wayword_core::{DVec3, Heading, ViewpointId};
@@ -16,22 +16,22 @@ const MOST_WAYS: usize = 8;
 const MOST_REASON_CHARS: usize = 120;
 
 /// The agent's memory of one walk.
-pub(super) struct Memory {
+pub(super) struct ToolWalkMemory {
     /// The position and the heading at the start.
     origin: (DVec3, Heading),
     /// The visited places, in the order of the first visits. A place's number is its index plus 1.
-    places: Vec<Place>,
+    places: Vec<RememberedPlace>,
     numbers: BTreeMap<ViewpointId, usize>,
     /// The numbers of the places along the walk; the last is the current place.
     trail: Vec<usize>,
-    last: VecDeque<Hopped>,
+    last: VecDeque<RememberedHop>,
     keep: usize,
     hops: usize,
     pub(super) note: Option<String>,
 }
 
 /// A visited place.
-struct Place {
+struct RememberedPlace {
     at: DVec3,
     seen: Option<String>,
     /// The nodes that its ways lead to, and their positions. The agent could derive both from the lengths and angles of the hops.
@@ -40,14 +40,14 @@ struct Place {
 
 /// A step of the walk, as prompts repeat it.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub(super) struct Hopped {
+pub(super) struct RememberedHop {
     number: usize,
     from: usize,
     to: usize,
     why: String,
 }
 
-impl Memory {
+impl ToolWalkMemory {
     /// Begins with an empty memory at a position. Prompts repeat the last `keep` steps.
     pub(super) fn new(at: DVec3, heading: Heading, keep: usize) -> Self {
         let (places, numbers, last, trail) = (Vec::new(), BTreeMap::new(), VecDeque::new(), Vec::new());
@@ -55,9 +55,9 @@ impl Memory {
     }
 
     /// Records the arrival at a place, for the first time or again. Returns its number, from 1.
-    pub(super) fn reach(&mut self, id: &ViewpointId, at: DVec3, ways: Vec<(ViewpointId, DVec3)>) -> usize {
-        let number = self.number(id).unwrap_or_else(|| {
-            self.places.push(Place { at, seen: None, ways });
+    pub(super) fn reach_place(&mut self, id: &ViewpointId, at: DVec3, ways: Vec<(ViewpointId, DVec3)>) -> usize {
+        let number = self.place_number(id).unwrap_or_else(|| {
+            self.places.push(RememberedPlace { at, seen: None, ways });
             self.numbers.insert(id.clone(), self.places.len());
             self.places.len()
         });
@@ -66,46 +66,46 @@ impl Memory {
     }
 
     /// The number of a place, if it was visited.
-    pub(super) fn number(&self, id: &ViewpointId) -> Option<usize> {
+    pub(super) fn place_number(&self, id: &ViewpointId) -> Option<usize> {
         self.numbers.get(id).copied()
     }
 
     /// Stores the summary of a scene with its place.
-    pub(super) fn saw(&mut self, number: usize, scene: &Scene) {
+    pub(super) fn remember_scene(&mut self, number: usize, scene: &ObservedScene) {
         if let Some(place) = self.places.get_mut(number - 1) {
             place.seen = Some(scene.brief.clone());
         }
     }
 
     /// Stores a step, and drops the oldest if there are too many.
-    pub(super) fn hopped(&mut self, from: usize, to: usize, why: &str) {
+    pub(super) fn remember_hop(&mut self, from: usize, to: usize, why: &str) {
         self.hops += 1;
-        self.last.push_back(Hopped { number: self.hops, from, to, why: quoted(why, MOST_REASON_CHARS) });
+        self.last.push_back(RememberedHop { number: self.hops, from, to, why: shorten_line(why, MOST_REASON_CHARS) });
         while self.last.len() > self.keep {
             self.last.pop_front();
         }
     }
 
     /// The last steps, the oldest first.
-    pub(super) fn last_steps(&self) -> impl Iterator<Item = &Hopped> {
+    pub(super) fn last_steps(&self) -> impl Iterator<Item = &RememberedHop> {
         self.last.iter()
     }
 
     /// The turn from the heading at the start to another heading, radians, positive right.
-    pub(super) fn turned(&self, heading: Heading) -> f64 {
+    pub(super) fn turn_from_start(&self, heading: Heading) -> f64 {
         self.origin.1.turn_to(heading)
     }
 
     /// The map: a line for each place, and how many places are left out. The current place and the start come first, then the
     /// places that were visited last; lines are in the order of the places' numbers.
-    pub(super) fn map(&self) -> (Vec<String>, usize) {
+    pub(super) fn map_lines(&self) -> (Vec<String>, usize) {
         let mut told: BTreeMap<usize, String> = BTreeMap::new();
         let mut chars = 0;
         let mut been = BTreeSet::new();
         let here = self.trail.last().copied();
         for number in here.into_iter().chain([1]).chain(self.trail.iter().rev().copied()) {
             let Some(place) = self.places.get(number - 1).filter(|_| been.insert(number)) else { continue };
-            let line = self.told(number, place);
+            let line = self.describe_place(number, place);
             chars += line.chars().count();
             if told.len() == MOST_PLACES || (chars > MOST_MAP_CHARS && told.len() >= 2) {
                 break;
@@ -117,15 +117,15 @@ impl Memory {
     }
 
     /// The line of a place on the map: its position relative to the start, a summary of the things there, and where its ways lead.
-    fn told(&self, number: usize, place: &Place) -> String {
+    fn describe_place(&self, number: usize, place: &RememberedPlace) -> String {
         let [right_m, ahead_m, up_m] = self.off_start(place.at);
-        let way = |(to, end): &(ViewpointId, DVec3)| match self.number(to) {
+        let way = |(to, end): &(ViewpointId, DVec3)| match self.place_number(to) {
             Some(number) => number.to_string(),
-            None => format!("new {}", self.spot(*end)),
+            None => format!("new {}", self.format_spot(*end)),
         };
         // Ways to visited places come first.
         let mut ways: Vec<_> = place.ways.iter().collect();
-        ways.sort_by_key(|(to, _)| self.number(to).unwrap_or(usize::MAX));
+        ways.sort_by_key(|(to, _)| self.place_number(to).unwrap_or(usize::MAX));
         let more = ways.len().saturating_sub(MOST_WAYS);
         let more = (more > 0).then(|| format!("{more} more"));
         let ways: Vec<String> = ways.into_iter().take(MOST_WAYS).map(way).chain(more).collect();
@@ -135,7 +135,7 @@ impl Memory {
     }
 
     /// A point of the map as "(1.2, -3.4)": metres to the right of the start, and metres ahead of it.
-    pub(super) fn spot(&self, point: DVec3) -> String {
+    pub(super) fn format_spot(&self, point: DVec3) -> String {
         let [right_m, ahead_m, _] = self.off_start(point);
         format!("({right_m:.1}, {ahead_m:.1})")
     }
@@ -144,7 +144,7 @@ impl Memory {
     fn off_start(&self, point: DVec3) -> [f64; 3] {
         let (origin, heading) = self.origin;
         let off = point - origin;
-        let (ahead, right) = (heading.direction(), heading.turned(std::f64::consts::FRAC_PI_2).direction());
+        let (ahead, right) = (heading.unit_vector(), heading.turned_by(std::f64::consts::FRAC_PI_2).unit_vector());
         // Adding 0.0 turns minus zero into zero.
         [off.dot(right), off.dot(ahead), off.z].map(|m| (m * 10.0).round() / 10.0 + 0.0)
     }
@@ -159,12 +159,12 @@ mod tests {
     fn map_has_the_start_and_the_last_places_of_a_long_walk() {
         let id = |at: usize| ViewpointId::new(format!("v{at}")).unwrap();
         let at = |at: usize| DVec3::new(0.0, at as f64, 0.0);
-        let mut memory = Memory::new(at(0), Heading::NORTH, 6);
+        let mut memory = ToolWalkMemory::new(at(0), Heading::NORTH, 6);
         let ways = |number: usize| vec![(id(number + 1), at(number + 1))];
         for number in (0..200).chain((100..200).rev()) {
-            memory.reach(&id(number), at(number), ways(number));
+            memory.reach_place(&id(number), at(number), ways(number));
         }
-        let (places, left_out) = memory.map();
+        let (places, left_out) = memory.map_lines();
         assert_eq!(places.len() + left_out, 200);
         assert!(places.len() <= MOST_PLACES && places.len() > 10, "{}", places.len());
         assert!(places[0].starts_with("place 1: ") && places[1].starts_with("place 101: "), "{places:?}");
@@ -174,10 +174,10 @@ mod tests {
     #[test]
     fn ways_that_are_left_out_are_counted() {
         let id = |at: usize| ViewpointId::new(format!("v{at}")).unwrap();
-        let mut memory = Memory::new(DVec3::ZERO, Heading::NORTH, 6);
-        memory.reach(&id(0), DVec3::ZERO, (1..31).map(|at| (id(at), DVec3::new(at as f64, 0.0, 0.0))).collect());
-        memory.reach(&id(30), DVec3::new(30.0, 0.0, 0.0), vec![]);
-        let (places, _) = memory.map();
+        let mut memory = ToolWalkMemory::new(DVec3::ZERO, Heading::NORTH, 6);
+        memory.reach_place(&id(0), DVec3::ZERO, (1..31).map(|at| (id(at), DVec3::new(at as f64, 0.0, 0.0))).collect());
+        memory.reach_place(&id(30), DVec3::new(30.0, 0.0, 0.0), vec![]);
+        let (places, _) = memory.map_lines();
         assert!(places[0].contains("ways to 2, new (1.0, 0.0), ") && places[0].ends_with("22 more"), "{places:?}");
         assert!(places[1].ends_with("you did not look around; ways to nowhere"), "{places:?}");
     }

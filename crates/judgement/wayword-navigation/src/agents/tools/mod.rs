@@ -13,14 +13,14 @@ mod reply;
 mod scene;
 mod walker;
 
-pub use limits::Limits;
-pub use prompt::{MOST_TEXT_CHARS, wording};
-pub use rehearsal::rehearse;
-pub use scene::{Describes, Looks};
+pub use limits::ToolWalkLimits;
+pub use prompt::{MOST_TEXT_CHARS, prompt_wording};
+pub use rehearsal::rehearse_route;
+pub use scene::{ToolAgentSight, ViewDescriber};
 
-use super::{Start, Walked, choice};
+use super::{AgentStart, AgentWalk, choice_for_hop};
 use crate::{error::WalkError, sight::AgentView};
-use walker::Walker;
+use walker::ToolWalker;
 use wayword_core::LanguageModel;
 
 /// A language model as an agent.
@@ -31,9 +31,9 @@ pub struct ModelWalker<'a> {
     /// US dollars of a call by its tokens in and out, for replies without a price; `None` if prices are not known.
     pub price: Option<&'a (dyn Fn(u64, u64) -> f64 + Send + Sync)>,
     /// How it perceives a place: labels, pictures or captions.
-    pub looks: Looks<'a>,
+    pub looks: ToolAgentSight<'a>,
     /// The limits of a walk.
-    pub limits: Limits,
+    pub limits: ToolWalkLimits,
     /// Seed of the model's sampling, for models that accept one.
     pub seed: u64,
 }
@@ -46,22 +46,22 @@ pub struct ModelWalker<'a> {
 /// or answers no more; or when no call got an answer.
 pub fn walk_by_tools(
     agent_view: &AgentView<'_>,
-    start: &Start,
+    start: &AgentStart,
     text: &str,
     names_object: bool,
     by: ModelWalker<'_>,
-) -> Result<Walked, WalkError> {
-    let mut walker = Walker::new(agent_view, start, text, names_object, by);
+) -> Result<AgentWalk, WalkError> {
+    let mut walker = ToolWalker::new(agent_view, start, text, names_object, by);
     let end = loop {
-        if let Some(end) = walker.spent() {
+        if let Some(end) = walker.exhausted_limit() {
             break end;
         }
-        let Some(calls) = walker.ask()? else { continue };
-        if let Some(end) = walker.act(calls)? {
+        let Some(calls) = walker.ask_model()? else { continue };
+        if let Some(end) = walker.carry_out(calls)? {
             break end;
         }
     };
-    walker.done(end)
+    walker.finish_walk(end)
 }
 
 #[cfg(test)]

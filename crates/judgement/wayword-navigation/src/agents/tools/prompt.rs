@@ -3,15 +3,15 @@
 //! with the walk.
 
 use super::{
-    limits::Limits,
-    memory::Memory,
-    scene::{Scene, turned},
+    limits::ToolWalkLimits,
+    memory::ToolWalkMemory,
+    scene::{ObservedScene, describe_turn},
 };
-use crate::{error::WalkError, one_line::quoted};
+use crate::{error::WalkError, one_line::shorten_line};
 use minijinja::{Environment, context};
 use serde::Serialize;
-use wayword_core::{Heading, Message, ModelError, Request, Role, Sampling, Tool};
-use wayword_follower::online::Hop;
+use wayword_core::{ChatMessage, Heading, MessageRole, ModelError, ModelRequest, ModelTool, SamplingOptions};
+use wayword_follower::online::WalkerHop;
 
 const SYSTEM: &str = include_str!("system.j2");
 const STATE: &str = include_str!("state.j2");
@@ -24,56 +24,56 @@ const REPLY_TOKENS: u32 = 600;
 /// Smallest climb or descent of a way that is mentioned, metres.
 const CLIMB_M: f64 = 0.2;
 
-const OBSERVE: Tool = Tool {
+const OBSERVE_TOOL: ModelTool = ModelTool {
     name: "observe",
     does: "Look around where you stand. You are told what is there, by direction.",
     arguments: r#"{"type": "object", "properties": {"why": {"type": "string", "description": "the reason, in one sentence"}, "note": {"type": "string", "description": "which part of the instruction is done; replaces your last note"}}, "required": ["why"]}"#,
 };
-const STEP: Tool = Tool {
+const STEP_TOOL: ModelTool = ModelTool {
     name: "step",
     does: "Walk one of the ways out of where you stand, to its end.",
     arguments: r#"{"type": "object", "properties": {"way": {"type": "integer", "description": "the number of the way"}, "why": {"type": "string", "description": "the reason, in one sentence"}, "note": {"type": "string", "description": "which part of the instruction is done; replaces your last note"}}, "required": ["way", "why"]}"#,
 };
-const STOP: Tool = Tool {
+const STOP_TOOL: ModelTool = ModelTool {
     name: "stop",
     does: "End the walk where you stand, because the instruction ends here.",
     arguments: r#"{"type": "object", "properties": {"why": {"type": "string", "description": "the reason, in one sentence"}}, "required": ["why"]}"#,
 };
-const STOP_AT: Tool = Tool {
+const STOP_AT: ModelTool = ModelTool {
     name: "stop",
     does: "End the walk where you stand, and name the object that the instruction means.",
     arguments: r#"{"type": "object", "properties": {"object": {"type": "string", "description": "the number of the object in the list, or its name"}, "why": {"type": "string", "description": "the reason, in one sentence"}}, "required": ["object", "why"]}"#,
 };
-static TOOLS: [Tool; 3] = [OBSERVE, STEP, STOP];
-static TOOLS_FOR_OBJECTS: [Tool; 3] = [OBSERVE, STEP, STOP_AT];
+static TOOLS: [ModelTool; 3] = [OBSERVE_TOOL, STEP_TOOL, STOP_TOOL];
+static TOOLS_FOR_OBJECTS: [ModelTool; 3] = [OBSERVE_TOOL, STEP_TOOL, STOP_AT];
 
 /// All texts of the prompts. A comparison stores them, so that it does not continue walks that were made with other prompts.
 #[must_use]
-pub fn wording() -> String {
+pub fn prompt_wording() -> String {
     format!("{SYSTEM}{STATE}{TOOLS:?}{TOOLS_FOR_OBJECTS:?}")
 }
 
 /// How the agent perceives a place, as the template of the prompt names it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub(super) enum Sees {
+pub(super) enum PromptSightKind {
     Labels,
     Pictures,
     Captions,
 }
 
 /// Everything that the prompt of one call depends on.
-pub(super) struct State<'a> {
+pub(super) struct PromptState<'a> {
     pub(super) text: &'a str,
-    pub(super) sees: Sees,
+    pub(super) sees: PromptSightKind,
     pub(super) names_object: bool,
-    pub(super) memory: &'a Memory,
+    pub(super) memory: &'a ToolWalkMemory,
     /// The number of the current place, and the heading.
     pub(super) here: (usize, Heading),
-    pub(super) ways: &'a [Way],
+    pub(super) ways: &'a [PromptWay],
     /// The scene at the current place, if the agent has looked around.
-    pub(super) scene: Option<&'a Scene>,
-    pub(super) limits: &'a Limits,
+    pub(super) scene: Option<&'a ObservedScene>,
+    pub(super) limits: &'a ToolWalkLimits,
     pub(super) calls: usize,
     pub(super) hops: usize,
     /// The problem of the last reply, if it was useless.
@@ -83,13 +83,13 @@ pub(super) struct State<'a> {
 
 /// A way out, as the prompt describes it.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub(super) struct Way {
+pub(super) struct PromptWay {
     words: String,
 }
 
-impl Way {
+impl PromptWay {
     /// Describes a hop that leads to the visited place with the number `leads_to`, or else to the new point `spot` of the map.
-    pub(super) fn new(hop: &Hop, leads_to: Option<usize>, spot: &str) -> Self {
+    pub(super) fn new(hop: &WalkerHop, leads_to: Option<usize>, spot: &str) -> Self {
         let rise_m = hop.length_m * libm::sin(hop.elevation_rad);
         let climb = match rise_m {
             rise_m if rise_m >= CLIMB_M => format!(", up {rise_m:.1} m"),
@@ -97,23 +97,23 @@ impl Way {
             _ => String::new(),
         };
         let to = leads_to.map_or_else(|| format!("new {spot}"), |number| format!("to place {number}"));
-        Self { words: format!("{}, {:.1} m{climb}; {to}", turned(hop.turn_rad), hop.length_m) }
+        Self { words: format!("{}, {:.1} m{climb}; {to}", describe_turn(hop.turn_rad), hop.length_m) }
     }
 }
 
 /// The request of one call.
-pub(super) fn request(state: &State<'_>) -> Result<Request, WalkError> {
-    let State { sees, names_object, memory, here, ways, scene, limits, calls, hops, trouble, .. } = *state;
-    let system = render(SYSTEM, context! { sees, names_object })?;
-    let (places, more) = memory.map();
+pub(super) fn build_request(state: &PromptState<'_>) -> Result<ModelRequest, WalkError> {
+    let PromptState { sees, names_object, memory, here, ways, scene, limits, calls, hops, trouble, .. } = *state;
+    let system = render_template(SYSTEM, context! { sees, names_object })?;
+    let (places, more) = memory.map_lines();
     let (here, heading) = here;
-    let facing = match memory.turned(heading).to_degrees().round() {
+    let facing = match memory.turn_from_start(heading).to_degrees().round() {
         0.0 => "as at the start".to_owned(),
         deg if deg > 0.0 => format!("{deg} degrees to the right of how you looked at the start"),
         deg => format!("{} degrees to the left of how you looked at the start", -deg),
     };
     let told = context! {
-        text => quoted(state.text, MOST_TEXT_CHARS),
+        text => shorten_line(state.text, MOST_TEXT_CHARS),
         ways => &ways[..ways.len().min(MOST_WAYS)],
         ways_left_out => ways.len().saturating_sub(MOST_WAYS),
         places, more, here, facing, trouble,
@@ -126,19 +126,19 @@ pub(super) fn request(state: &State<'_>) -> Result<Request, WalkError> {
         hops => limits.max_hops.saturating_sub(hops),
     };
     let images = scene.map(|scene| scene.pictures.clone()).unwrap_or_default();
-    Ok(Request {
+    Ok(ModelRequest {
         messages: vec![
-            Message { role: Role::System, text: system, images: Vec::new() },
-            Message::about(render(STATE, told)?, images),
+            ChatMessage { role: MessageRole::System, text: system, images: Vec::new() },
+            ChatMessage::about_images(render_template(STATE, told)?, images),
         ],
-        sampling: Sampling { temperature: 0.0, max_tokens: REPLY_TOKENS, seed: state.seed },
+        sampling: SamplingOptions { temperature: 0.0, max_tokens: REPLY_TOKENS, seed: state.seed },
         replicate: 0,
         schema: None,
         tools: if names_object { &TOOLS_FOR_OBJECTS } else { &TOOLS },
     })
 }
 
-fn render(template: &str, told: minijinja::Value) -> Result<String, WalkError> {
+fn render_template(template: &str, told: minijinja::Value) -> Result<String, WalkError> {
     let failed = |error: minijinja::Error| ModelError::Failed { model: "tools".to_owned(), reason: error.to_string() };
     let mut environment = Environment::new();
     environment.set_trim_blocks(true);

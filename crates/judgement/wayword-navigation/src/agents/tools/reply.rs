@@ -4,13 +4,13 @@
 //! Models write calls in many ways, so other unambiguous forms are read as well: an object that names its tool, and a reply that
 //! consists only of a name and at most a number. Prose is never taken for a call.
 
-use crate::one_line::quoted;
+use crate::one_line::shorten_line;
 use serde_json::Value;
 
 /// A call of a tool.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Called {
-    pub(super) act: Act,
+pub(super) struct AgentToolCall {
+    pub(super) act: AgentToolAction,
     /// The model's reason, in one line; empty where it gave none.
     pub(super) why: String,
     /// A note that the model wants to see in the next prompts.
@@ -19,18 +19,18 @@ pub(super) struct Called {
 
 /// The action of a call.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) enum Act {
+pub(super) enum AgentToolAction {
     /// Look around.
     Observe,
     /// Take a way out, by its number from 1; `None` where the call names no number.
     Step(Option<usize>),
     /// End the walk, and perhaps name the object.
-    Stop(Option<Pointed>),
+    Stop(Option<ObjectChoice>),
 }
 
 /// An object that a model names.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) enum Pointed {
+pub(super) enum ObjectChoice {
     /// By its number in the list that the prompt had.
     Number(usize),
     /// In words.
@@ -43,25 +43,25 @@ const MOST_BYTES: usize = 8_000;
 const MOST_CALLS: usize = 4;
 /// Longest reason and note, characters.
 const MOST_CHARS: usize = 300;
-const NAMES: [&str; 3] = ["observe", "step", "stop"];
+const TOOL_NAMES: [&str; 3] = ["observe", "step", "stop"];
 
 /// The calls of a reply, in their order; empty where there is none.
-pub(super) fn read(reply: &str) -> Vec<Called> {
+pub(super) fn read_calls(reply: &str) -> Vec<AgentToolCall> {
     let text = &reply[..reply.floor_char_boundary(MOST_BYTES)];
     let calls = with_json(text);
-    if calls.is_empty() { bare(text.trim()).into_iter().collect() } else { calls }
+    if calls.is_empty() { read_bare_call(text.trim()).into_iter().collect() } else { calls }
 }
 
 /// The calls that have JSON.
-fn with_json(text: &str) -> Vec<Called> {
+fn with_json(text: &str) -> Vec<AgentToolCall> {
     let mut calls = Vec::new();
     let mut at = 0;
     while at < text.len() && calls.len() < MOST_CALLS {
         let end = text[at..].find('\n').map_or(text.len(), |end| at + end + 1);
         let line = text[at..end].trim_start_matches(|c: char| c.is_whitespace() || "-*>`•[,".contains(c));
-        let (call, after) = match named(line) {
-            Some((name, rest)) if rest.starts_with('{') => object(text, end - rest.len(), Some(name)),
-            None if line.starts_with('{') => object(text, end - line.len(), None),
+        let (call, after) = match tool_name(line) {
+            Some((name, rest)) if rest.starts_with('{') => read_object_call(text, end - rest.len(), Some(name)),
+            None if line.starts_with('{') => read_object_call(text, end - line.len(), None),
             _ => (None, end),
         };
         calls.extend(call);
@@ -71,25 +71,25 @@ fn with_json(text: &str) -> Vec<Called> {
 }
 
 /// The tool that a line begins with, and the rest of the line.
-fn named(line: &str) -> Option<(&'static str, &str)> {
+fn tool_name(line: &str) -> Option<(&'static str, &str)> {
     let is_name = |name: &&str| line.get(..name.len()).is_some_and(|begin| begin.eq_ignore_ascii_case(name));
-    let name = NAMES.into_iter().find(is_name)?;
+    let name = TOOL_NAMES.into_iter().find(is_name)?;
     Some((name, line[name.len()..].trim_start_matches([' ', ':', '(', '\t'])))
 }
 
 /// Reads a call with JSON that begins at a byte of the text; returns it with the position after it, bytes.
-fn object(text: &str, from: usize, name: Option<&str>) -> (Option<Called>, usize) {
+fn read_object_call(text: &str, from: usize, name: Option<&str>) -> (Option<AgentToolCall>, usize) {
     let mut values = serde_json::Deserializer::from_str(&text[from..]).into_iter::<Value>();
     let Some(Ok(value)) = values.next() else { return (None, from) };
     let after = from + values.byte_offset();
     let own = ["tool", "name", "action"].into_iter().find_map(|field| value.get(field)?.as_str());
     let inner = ["arguments", "input", "parameters"].into_iter().find_map(|field| value.get(field));
-    let inner = inner.filter(|_| name.is_none()).and_then(arguments);
-    (name.or(own).and_then(|name| called(name, inner.as_ref().unwrap_or(&value))), after)
+    let inner = inner.filter(|_| name.is_none()).and_then(read_arguments);
+    (name.or(own).and_then(|name| call_from_arguments(name, inner.as_ref().unwrap_or(&value))), after)
 }
 
 /// The arguments of a call: an object, or a string that contains one as JSON.
-fn arguments(value: &Value) -> Option<Value> {
+fn read_arguments(value: &Value) -> Option<Value> {
     let object = match value {
         Value::String(text) => serde_json::from_str(text).ok()?,
         value => value.clone(),
@@ -98,33 +98,33 @@ fn arguments(value: &Value) -> Option<Value> {
 }
 
 /// Reads a reply that consists only of a tool's name and at most a number.
-fn bare(reply: &str) -> Option<Called> {
-    let (name, rest) = named(reply.trim_matches('`'))?;
+fn read_bare_call(reply: &str) -> Option<AgentToolCall> {
+    let (name, rest) = tool_name(reply.trim_matches('`'))?;
     let rest = rest.trim_end_matches(|c: char| c.is_whitespace() || ")`.".contains(c));
     let rest = rest.strip_prefix("way").map_or(rest, |rest| rest.trim_start_matches([' ', '=', ':']));
     let act = match name {
-        "step" => Act::Step(Some(rest.parse().ok()?)),
-        "observe" if rest.is_empty() => Act::Observe,
-        "stop" if rest.is_empty() => Act::Stop(None),
+        "step" => AgentToolAction::Step(Some(rest.parse().ok()?)),
+        "observe" if rest.is_empty() => AgentToolAction::Observe,
+        "stop" if rest.is_empty() => AgentToolAction::Stop(None),
         _ => return None,
     };
-    Some(Called { act, why: String::new(), note: None })
+    Some(AgentToolCall { act, why: String::new(), note: None })
 }
 
-fn called(name: &str, arguments: &Value) -> Option<Called> {
+fn call_from_arguments(name: &str, arguments: &Value) -> Option<AgentToolCall> {
     let act = match name.to_ascii_lowercase().as_str() {
-        "observe" => Act::Observe,
-        "step" => Act::Step(arguments.get("way").and_then(number)),
-        "stop" => Act::Stop(arguments.get("object").and_then(pointed)),
+        "observe" => AgentToolAction::Observe,
+        "step" => AgentToolAction::Step(arguments.get("way").and_then(read_number)),
+        "stop" => AgentToolAction::Stop(arguments.get("object").and_then(read_object_choice)),
         _ => return None,
     };
-    let words = |field: &str| Some(quoted(arguments.get(field)?.as_str()?, MOST_CHARS));
+    let words = |field: &str| Some(shorten_line(arguments.get(field)?.as_str()?, MOST_CHARS));
     let note = words("note").filter(|note| !note.is_empty());
-    Some(Called { act, why: words("why").unwrap_or_default(), note })
+    Some(AgentToolCall { act, why: words("why").unwrap_or_default(), note })
 }
 
 /// Reads a number; it may be in quotes or brackets, or have a decimal point.
-fn number(value: &Value) -> Option<usize> {
+fn read_number(value: &Value) -> Option<usize> {
     match value {
         Value::String(text) => text.trim_matches(|c: char| c.is_whitespace() || "[]".contains(c)).parse().ok(),
         value => {
@@ -134,9 +134,9 @@ fn number(value: &Value) -> Option<usize> {
     }
 }
 
-fn pointed(value: &Value) -> Option<Pointed> {
-    let words = || value.as_str().map(|words| quoted(words, MOST_CHARS)).filter(|words| !words.is_empty());
-    number(value).map(Pointed::Number).or_else(|| words().map(Pointed::Words))
+fn read_object_choice(value: &Value) -> Option<ObjectChoice> {
+    let words = || value.as_str().map(|words| shorten_line(words, MOST_CHARS)).filter(|words| !words.is_empty());
+    read_number(value).map(ObjectChoice::Number).or_else(|| words().map(ObjectChoice::Words))
 }
 
 #[cfg(test)]
@@ -144,19 +144,22 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn acts(reply: &str) -> Vec<Act> {
-        read(reply).into_iter().map(|called| called.act).collect()
+    fn acts(reply: &str) -> Vec<AgentToolAction> {
+        read_calls(reply).into_iter().map(|called| called.act).collect()
     }
 
     #[test]
     fn a_call_is_a_line_with_a_name_and_json() {
         let reply =
             "I turn left here.\nstep {\"way\": 2, \"why\": \"the text\\nsays <left>\", \"note\": \"\"}\nobserve {}";
-        let calls = read(reply);
-        assert_eq!(acts(reply), [Act::Step(Some(2)), Act::Observe]);
+        let calls = read_calls(reply);
+        assert_eq!(acts(reply), [AgentToolAction::Step(Some(2)), AgentToolAction::Observe]);
         assert_eq!((calls[0].why.as_str(), &calls[0].note), ("the text says left", &None));
-        assert_eq!(acts("stop {\"object\": 3}"), [Act::Stop(Some(Pointed::Number(3)))]);
-        assert_eq!(acts("stop {\"object\": \"the sink\"}"), [Act::Stop(Some(Pointed::Words("the sink".into())))]);
+        assert_eq!(acts("stop {\"object\": 3}"), [AgentToolAction::Stop(Some(ObjectChoice::Number(3)))]);
+        assert_eq!(
+            acts("stop {\"object\": \"the sink\"}"),
+            [AgentToolAction::Stop(Some(ObjectChoice::Words("the sink".into())))]
+        );
     }
 
     #[test]
@@ -172,9 +175,9 @@ mod tests {
             "Step: way 2",
             "`step 2`",
         ] {
-            assert_eq!(acts(reply), [Act::Step(Some(2))], "{reply}");
+            assert_eq!(acts(reply), [AgentToolAction::Step(Some(2))], "{reply}");
         }
-        assert_eq!(acts("STOP"), [Act::Stop(None)]);
+        assert_eq!(acts("STOP"), [AgentToolAction::Stop(None)]);
     }
 
     #[test]
@@ -194,16 +197,16 @@ mod tests {
         ] {
             assert_eq!(acts(reply), [], "{reply}");
         }
-        assert_eq!(acts("step {\"way\": -1}"), [Act::Step(None)]);
-        assert_eq!(acts("step {\"way\": 1.5}"), [Act::Step(None)]);
+        assert_eq!(acts("step {\"way\": -1}"), [AgentToolAction::Step(None)]);
+        assert_eq!(acts("step {\"way\": 1.5}"), [AgentToolAction::Step(None)]);
         assert_eq!(acts(&"observe {}\n".repeat(1000)).len(), MOST_CALLS);
     }
 
     proptest! {
         #[test]
         fn any_reply_is_read(reply in "\\PC{0,200}", json in "[{}\\[\\]\":,a-z0-9 \n]{0,80}") {
-            read(&reply);
-            for called in read(&format!("step {json}\n{reply}")) {
+            read_calls(&reply);
+            for called in read_calls(&format!("step {json}\n{reply}")) {
                 prop_assert!(called.why.chars().count() <= MOST_CHARS);
             }
         }

@@ -1,32 +1,32 @@
 //! The result of the tool `observe`: the things around a place, as labels, as captions or as pictures of the four views.
 
-use crate::{error::WalkError, one_line::quoted, sight::AgentView};
+use crate::{error::WalkError, one_line::shorten_line, sight::AgentView};
 use std::sync::Arc;
-use wayword_core::{GroundTruth, Heading, Image, Label, ModelError, ObjectId, View, ViewpointId};
+use wayword_core::{GroundTruth, Heading, Image, ModelError, ObjectId, ObjectLabel, View, ViewpointId};
 
 /// How the agent perceives a place.
 #[derive(Clone, Copy)]
-pub enum Looks<'a> {
+pub enum ToolAgentSight<'a> {
     /// By the platform's labels and the name of the room: ground truth, not perception.
     Labels,
     /// By the four pictures.
     Pictures,
     /// By captions of the four pictures, from another model.
-    Captions(&'a dyn Describes),
+    Captions(&'a dyn ViewDescriber),
 }
 
 /// Describes views in words.
-pub trait Describes: Send + Sync {
+pub trait ViewDescriber: Send + Sync {
     /// Describes a view in one or a few sentences.
     ///
     /// # Errors
     /// When the view has no picture, or the model fails.
-    fn describe(&self, view: &View) -> Result<String, ModelError>;
+    fn describe_view(&self, view: &View) -> Result<String, ModelError>;
 }
 
 /// Everything around a place, as the prompt describes it.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Scene {
+pub(super) struct ObservedScene {
     /// The name of the room; `None` if the labels have none, or the agent perceives by pictures or captions.
     pub(super) room: Option<String>,
     /// A line for each direction.
@@ -53,58 +53,65 @@ const MOST_CAPTION_CHARS: usize = 450;
 const KEPT_NAMES: usize = 6;
 const KEPT_CAPTION_CHARS: usize = 40;
 /// Sectors of 45 degrees, clockwise from ahead.
-const SECTORS: [&str; 8] =
+const SECTOR_NAMES: [&str; 8] =
     ["ahead", "ahead-right", "right", "behind-right", "behind", "behind-left", "left", "ahead-left"];
 
 /// The sector in which a direction lies, by its turn from ahead (radians, positive right).
-fn sector(turn_rad: f64) -> usize {
-    (turn_rad.to_degrees() / 45.0).round().rem_euclid(8.0) as usize % SECTORS.len()
+fn sector_for_turn(turn_rad: f64) -> usize {
+    (turn_rad.to_degrees() / 45.0).round().rem_euclid(8.0) as usize % SECTOR_NAMES.len()
 }
 
 /// Looks around a place. `heading` is ahead. Objects get numbers if `numbers_objects`, so that the agent can name one.
-pub(super) fn look(
+pub(super) fn observe_scene(
     agent_view: &AgentView<'_>,
     (here, heading): (&ViewpointId, Heading),
-    looks: Looks<'_>,
+    looks: ToolAgentSight<'_>,
     numbers_objects: bool,
-) -> Result<Scene, WalkError> {
+) -> Result<ObservedScene, WalkError> {
     match looks {
-        Looks::Labels => {
-            let GroundTruth { labels, room, .. } = agent_view.labels(here)?.ok_or_else(|| missing("labels"))?;
-            Ok(labelled(labels, room, heading, numbers_objects))
+        ToolAgentSight::Labels => {
+            let GroundTruth { labels, room, .. } =
+                agent_view.labels_around(here)?.ok_or_else(|| missing_input("labels"))?;
+            Ok(scene_from_labels(labels, room, heading, numbers_objects))
         }
-        Looks::Pictures => pictured(&agent_view.views(here)?, heading),
-        Looks::Captions(by) => captioned(&agent_view.views(here)?, heading, by),
+        ToolAgentSight::Pictures => scene_from_pictures(&agent_view.views_around(here)?, heading),
+        ToolAgentSight::Captions(by) => scene_from_captions(&agent_view.views_around(here)?, heading, by),
     }
 }
 
-fn labelled(mut labels: Vec<Label>, room: Option<String>, heading: Heading, numbers_objects: bool) -> Scene {
+fn scene_from_labels(
+    mut labels: Vec<ObjectLabel>,
+    room: Option<String>,
+    heading: Heading,
+    numbers_objects: bool,
+) -> ObservedScene {
     labels.sort_by(|a, b| near_m(a).total_cmp(&near_m(b)).then_with(|| a.object.cmp(&b.object)));
     let things = labels.len();
     // The nearest come first, so far things are left out.
     let mut chars = 0;
-    let fits = |label: &Label| {
+    let fits = |label: &ObjectLabel| {
         chars += label.name.chars().count().min(MOST_NAME_CHARS) + 22;
         chars <= MOST_CHARS
     };
     let told = labels.iter().map(fits).take(MOST_THINGS).take_while(|fits| *fits).count();
     labels.truncate(told);
-    let named: Vec<(Label, String)> = labels
+    let named: Vec<(ObjectLabel, String)> = labels
         .into_iter()
         .map(|label| {
-            let name = quoted(&label.name, MOST_NAME_CHARS);
+            let name = shorten_line(&label.name, MOST_NAME_CHARS);
             (label, name)
         })
         .collect();
-    let room = room.map(|room| quoted(&room, MOST_NAME_CHARS));
-    let lines = (0..SECTORS.len()).filter_map(|sector| line(sector, &named, heading, numbers_objects)).collect();
-    let brief = brief(room.as_deref(), named.iter().map(|(_, name)| name.as_str()));
+    let room = room.map(|room| shorten_line(&room, MOST_NAME_CHARS));
+    let lines =
+        (0..SECTOR_NAMES.len()).filter_map(|sector| sector_line(sector, &named, heading, numbers_objects)).collect();
+    let brief = summarise_names(room.as_deref(), named.iter().map(|(_, name)| name.as_str()));
     let objects = named.into_iter().filter(|_| numbers_objects).map(|(label, name)| (label.object, name)).collect();
-    Scene { room, lines, brief, objects, things, ..Scene::default() }
+    ObservedScene { room, lines, brief, objects, things, ..ObservedScene::default() }
 }
 
 /// The summary of a place for the map: the room and the first names, each once.
-fn brief<'a>(room: Option<&'a str>, names: impl Iterator<Item = &'a str>) -> String {
+fn summarise_names<'a>(room: Option<&'a str>, names: impl Iterator<Item = &'a str>) -> String {
     let mut kept: Vec<&str> = Vec::new();
     for name in names {
         if kept.len() < KEPT_NAMES && !kept.contains(&name) {
@@ -116,15 +123,15 @@ fn brief<'a>(room: Option<&'a str>, names: impl Iterator<Item = &'a str>) -> Str
 }
 
 /// The distance of a labelled thing, metres; infinite if it is not known, so that it sorts last.
-fn near_m(label: &Label) -> f64 {
+fn near_m(label: &ObjectLabel) -> f64 {
     label.distance_m.unwrap_or(f64::INFINITY)
 }
 
 /// The line of a sector, as "left: sofa (1.2 m), chair x2"; `None` if it has no things. Things with equal names are counted, and the
 /// distance is that of the nearest. With numbers, each thing is listed by itself.
-fn line(of: usize, named: &[(Label, String)], heading: Heading, numbers_objects: bool) -> Option<String> {
+fn sector_line(of: usize, named: &[(ObjectLabel, String)], heading: Heading, numbers_objects: bool) -> Option<String> {
     let mut told: Vec<(&str, String, usize)> = Vec::new();
-    let here = named.iter().enumerate().filter(|(_, (label, _))| sector(heading.turn_to(label.heading)) == of);
+    let here = named.iter().enumerate().filter(|(_, (label, _))| sector_for_turn(heading.turn_to(label.heading)) == of);
     for (at, (label, name)) in here {
         let far = label.distance_m.map_or(String::new(), |far_m| format!(" ({far_m:.1} m)"));
         let number = if numbers_objects { format!("[{}] ", at + 1) } else { String::new() };
@@ -135,36 +142,40 @@ fn line(of: usize, named: &[(Label, String)], heading: Heading, numbers_objects:
     }
     let words = |(_, words, count)| if count > 1 { format!("{words} x{count}") } else { words };
     let told: Vec<String> = told.into_iter().map(words).collect();
-    (!told.is_empty()).then(|| format!("{}: {}", SECTORS[of], told.join(", ")))
+    (!told.is_empty()).then(|| format!("{}: {}", SECTOR_NAMES[of], told.join(", ")))
 }
 
 /// The views by their turn from ahead, the one nearest to ahead first, then clockwise.
 fn from_ahead(views: &[View; 4], heading: Heading) -> Vec<(f64, &View)> {
     let mut turned: Vec<(f64, &View)> = views.iter().map(|view| (heading.turn_to(view.pose.heading), view)).collect();
-    turned.sort_by(|a, b| clockwise(a.0).total_cmp(&clockwise(b.0)));
+    turned.sort_by(|a, b| clockwise_turn(a.0).total_cmp(&clockwise_turn(b.0)));
     turned
 }
 
 /// A turn, counted clockwise from 45 degrees to the left, so that what lies ahead comes first.
-pub(super) fn clockwise(turn_rad: f64) -> f64 {
+pub(super) fn clockwise_turn(turn_rad: f64) -> f64 {
     (turn_rad + std::f64::consts::FRAC_PI_4).rem_euclid(std::f64::consts::TAU)
 }
 
-fn pictured(views: &[View; 4], heading: Heading) -> Result<Scene, WalkError> {
-    let mut scene = Scene { brief: "you looked around".to_owned(), ..Scene::default() };
+fn scene_from_pictures(views: &[View; 4], heading: Heading) -> Result<ObservedScene, WalkError> {
+    let mut scene = ObservedScene { brief: "you looked around".to_owned(), ..ObservedScene::default() };
     for (turn_rad, view) in from_ahead(views, heading) {
-        scene.pictures.push(view.image.clone().ok_or_else(|| missing("pictures"))?);
-        scene.lines.push(format!("picture {} looks {}", scene.pictures.len(), turned(turn_rad)));
+        scene.pictures.push(view.image.clone().ok_or_else(|| missing_input("pictures"))?);
+        scene.lines.push(format!("picture {} looks {}", scene.pictures.len(), describe_turn(turn_rad)));
     }
     Ok(scene)
 }
 
-fn captioned(views: &[View; 4], heading: Heading, by: &dyn Describes) -> Result<Scene, WalkError> {
-    let mut scene = Scene::default();
+fn scene_from_captions(
+    views: &[View; 4],
+    heading: Heading,
+    by: &dyn ViewDescriber,
+) -> Result<ObservedScene, WalkError> {
+    let mut scene = ObservedScene::default();
     let mut kept = Vec::new();
     for (turn_rad, view) in from_ahead(views, heading) {
-        let caption = match by.describe(view) {
-            Ok(caption) => quoted(&caption, MOST_CAPTION_CHARS),
+        let caption = match by.describe_view(view) {
+            Ok(caption) => shorten_line(&caption, MOST_CAPTION_CHARS),
             // If a view cannot be described, for example because a filter refuses its picture, the walk goes on.
             Err(ModelError::Failed { .. }) => {
                 scene.undescribed += 1;
@@ -172,16 +183,16 @@ fn captioned(views: &[View; 4], heading: Heading, by: &dyn Describes) -> Result<
             }
             Err(error) => return Err(error.into()),
         };
-        kept.push(quoted(&caption, KEPT_CAPTION_CHARS));
-        scene.lines.push(format!("{}: {caption}", turned(turn_rad)));
+        kept.push(shorten_line(&caption, KEPT_CAPTION_CHARS));
+        scene.lines.push(format!("{}: {caption}", describe_turn(turn_rad)));
     }
     scene.brief = kept.join(" / ");
     Ok(scene)
 }
 
 /// A turn from ahead in words and degrees.
-pub(super) fn turned(turn_rad: f64) -> String {
-    let (words, deg) = (SECTORS[sector(turn_rad)], turn_rad.to_degrees().round());
+pub(super) fn describe_turn(turn_rad: f64) -> String {
+    let (words, deg) = (SECTOR_NAMES[sector_for_turn(turn_rad)], turn_rad.to_degrees().round());
     match deg {
         0.0 => words.to_owned(),
         deg if deg > 0.0 => format!("{words}, {deg} degrees right"),
@@ -189,7 +200,7 @@ pub(super) fn turned(turn_rad: f64) -> String {
     }
 }
 
-fn missing(needs: &'static str) -> WalkError {
+fn missing_input(needs: &'static str) -> WalkError {
     let hint = "give --see labels on a platform with labels, --see pictures, or a model that sees as provider/model";
     WalkError::Model(ModelError::NothingToSee { name: "the agent tools".to_owned(), needs, hint })
 }
@@ -200,8 +211,10 @@ mod tests {
 
     #[test]
     fn directions_go_round_once() {
-        let words: Vec<String> =
-            [0.0, 44.0, 90.0, 179.0, -90.0, -30.0].into_iter().map(|deg: f64| turned(deg.to_radians())).collect();
+        let words: Vec<String> = [0.0, 44.0, 90.0, 179.0, -90.0, -30.0]
+            .into_iter()
+            .map(|deg: f64| describe_turn(deg.to_radians()))
+            .collect();
         assert_eq!(
             words,
             [
@@ -215,8 +228,8 @@ mod tests {
         );
     }
 
-    fn label(name: &str, deg: f64, distance_m: Option<f64>) -> Label {
-        Label {
+    fn label(name: &str, deg: f64, distance_m: Option<f64>) -> ObjectLabel {
+        ObjectLabel {
             object: ObjectId::new(format!("{name}{deg}").chars().take(100).collect::<String>()).unwrap(),
             name: name.to_owned(),
             heading: Heading::new(f64::to_radians(deg)).unwrap(),
@@ -236,10 +249,10 @@ mod tests {
             label("chair", 10.0, Some(1.0)),
             label("lamp", 90.0, None),
         ];
-        let scene = labelled(labels.clone(), Some("den".into()), Heading::NORTH, false);
+        let scene = scene_from_labels(labels.clone(), Some("den".into()), Heading::NORTH, false);
         assert_eq!(scene.lines, ["ahead: chair (1.0 m) x2, chair (wooden) (2.0 m)", "right: lamp"]);
         assert_eq!((scene.brief.as_str(), scene.things), ("den, chair, chair (wooden), lamp", 4));
-        let scene = labelled(labels, None, Heading::NORTH, true);
+        let scene = scene_from_labels(labels, None, Heading::NORTH, true);
         assert_eq!(scene.lines[0], "ahead: [1] chair (1.0 m), [2] chair (wooden) (2.0 m), [3] chair (3.0 m)");
         assert_eq!(scene.objects[2].1, "chair");
     }
@@ -249,7 +262,7 @@ mod tests {
         let long = "a cupboard with a carved front and drawers behind two doors";
         let labels =
             (0..500).map(|at| label(&format!("{at} {long}"), f64::from(at % 360), Some(f64::from(at)))).collect();
-        let scene = labelled(labels, None, Heading::NORTH, true);
+        let scene = scene_from_labels(labels, None, Heading::NORTH, true);
         assert_eq!(scene.things, 500);
         let chars: usize = scene.lines.iter().map(|line| line.chars().count()).sum();
         assert!(chars <= MOST_CHARS && chars > MOST_CHARS / 2, "{chars}");

@@ -1,22 +1,22 @@
 //! A walk in progress: calls the model, carries out the tool calls of its reply, and counts calls, tokens and useless replies.
 
 use super::{
-    Looks, ModelWalker, Start, Walked, choice,
-    memory::Memory,
-    prompt::{Sees, State, Way, request},
-    reply::{Act, Called, Pointed, read},
-    scene::{Scene, clockwise, look},
+    AgentStart, AgentWalk, ModelWalker, ToolAgentSight, choice_for_hop,
+    memory::ToolWalkMemory,
+    prompt::{PromptSightKind, PromptState, PromptWay, build_request},
+    reply::{AgentToolAction, AgentToolCall, ObjectChoice, read_calls},
+    scene::{ObservedScene, clockwise_turn, observe_scene},
 };
 use crate::{
     error::WalkError,
-    one_line::quoted,
+    one_line::shorten_line,
     sight::AgentView,
-    walk::{Choice, Effort, End, Step, Told},
+    walk::{AgentStep, StepChoice, SurroundingsSummary, WalkEffort, WalkEnd},
 };
 use std::collections::BTreeMap;
-use wayword_core::{Heading, ModelError, ObjectId, Reply, Request, ViewpointId};
-use wayword_follower::online::Hop;
-use wayword_language::lexicon::{agree, normal};
+use wayword_core::{Heading, ModelError, ModelReply, ModelRequest, ObjectId, ViewpointId};
+use wayword_follower::online::WalkerHop;
+use wayword_language::lexicon::{names_agree, normalise_name};
 
 /// So many useless replies in a row end a walk.
 const MOST_USELESS: usize = 3;
@@ -25,21 +25,21 @@ const MOST_TIMES_A_HOP: usize = 3;
 /// Characters of a useless reply that are recorded.
 const KEPT_CHARS: usize = 200;
 
-pub(super) struct Walker<'a> {
+pub(super) struct ToolWalker<'a> {
     agent_view: &'a AgentView<'a>,
     text: &'a str,
     names_object: bool,
     by: ModelWalker<'a>,
-    memory: Memory,
+    memory: ToolWalkMemory,
     here: ViewpointId,
     /// The number of the current place on the map.
     number: usize,
     heading: Heading,
     /// The scene at the current place, if the agent has looked around.
-    scene: Option<Scene>,
-    steps: Vec<Step>,
+    scene: Option<ObservedScene>,
+    steps: Vec<AgentStep>,
     hopped: BTreeMap<(ViewpointId, ViewpointId), usize>,
-    pub(super) effort: Effort,
+    pub(super) effort: WalkEffort,
     /// The problem of the last reply; and in `useless` how many replies in a row had one.
     trouble: Option<String>,
     useless: usize,
@@ -49,15 +49,15 @@ pub(super) struct Walker<'a> {
     stop: (Option<String>, Option<ObjectId>),
 }
 
-impl<'a> Walker<'a> {
+impl<'a> ToolWalker<'a> {
     pub(super) fn new(
         agent_view: &'a AgentView<'a>,
-        start: &Start,
+        start: &AgentStart,
         text: &'a str,
         names_object: bool,
         by: ModelWalker<'a>,
     ) -> Self {
-        let memory = Memory::new(agent_view.position(&start.viewpoint), start.heading, by.limits.memory);
+        let memory = ToolWalkMemory::new(agent_view.node_position(&start.viewpoint), start.heading, by.limits.memory);
         let mut walker = Self {
             agent_view,
             text,
@@ -70,57 +70,61 @@ impl<'a> Walker<'a> {
             scene: None,
             steps: Vec::new(),
             hopped: BTreeMap::new(),
-            effort: Effort { usd: Some(0.0), ..Effort::default() },
+            effort: WalkEffort { usd: Some(0.0), ..WalkEffort::default() },
             trouble: None,
             useless: 0,
             failure: None,
             stop: (None, None),
         };
-        walker.arrive(start.viewpoint.clone(), start.heading);
+        walker.arrive_at(start.viewpoint.clone(), start.heading);
         walker
     }
 
     /// The ways out of the current place, clockwise from ahead, with the nodes that they lead to.
-    pub(super) fn ways(&self) -> Vec<(ViewpointId, Hop)> {
-        let (ways, hops) = self.agent_view.ways(&self.here, self.heading);
+    pub(super) fn ways_out(&self) -> Vec<(ViewpointId, WalkerHop)> {
+        let (ways, hops) = self.agent_view.ways_from(&self.here, self.heading);
         let mut ways: Vec<_> = ways.into_iter().zip(hops).collect();
-        ways.sort_by(|(_, a), (_, b)| clockwise(a.turn_rad).total_cmp(&clockwise(b.turn_rad)));
+        ways.sort_by(|(_, a), (_, b)| clockwise_turn(a.turn_rad).total_cmp(&clockwise_turn(b.turn_rad)));
         ways
     }
 
     /// Moves to a place, looking along a heading, and adds it to the map.
-    fn arrive(&mut self, at: ViewpointId, heading: Heading) {
-        let (ways, _) = self.agent_view.ways(&at, heading);
-        let ways = ways.into_iter().map(|to| (to.clone(), self.agent_view.position(&to))).collect();
-        self.number = self.memory.reach(&at, self.agent_view.position(&at), ways);
+    fn arrive_at(&mut self, at: ViewpointId, heading: Heading) {
+        let (ways, _) = self.agent_view.ways_from(&at, heading);
+        let ways = ways.into_iter().map(|to| (to.clone(), self.agent_view.node_position(&to))).collect();
+        self.number = self.memory.reach_place(&at, self.agent_view.node_position(&at), ways);
         (self.here, self.heading, self.scene) = (at, heading, None);
     }
 
     /// The limit that ends the walk, if one is reached.
-    pub(super) fn spent(&self) -> Option<End> {
+    pub(super) fn exhausted_limit(&self) -> Option<WalkEnd> {
         let limits = &self.by.limits;
         // If prices are not known, the limit may already be exceeded.
         let is_spent = limits.max_usd.is_some_and(|most| self.effort.usd.is_none_or(|usd| usd >= most));
         match () {
-            () if self.useless >= MOST_USELESS => Some(End::NoUse),
-            () if self.effort.calls >= limits.max_calls => Some(End::Calls),
-            () if is_spent => Some(End::Money),
+            () if self.useless >= MOST_USELESS => Some(WalkEnd::NoUse),
+            () if self.effort.calls >= limits.max_calls => Some(WalkEnd::Calls),
+            () if is_spent => Some(WalkEnd::Money),
             () => None,
         }
     }
 
     /// The request for the next call of the model.
-    pub(super) fn request(&self) -> Result<Request, WalkError> {
-        let way = |(to, hop): &(ViewpointId, Hop)| {
-            Way::new(hop, self.memory.number(to), &self.memory.spot(self.agent_view.position(to)))
+    pub(super) fn next_request(&self) -> Result<ModelRequest, WalkError> {
+        let way = |(to, hop): &(ViewpointId, WalkerHop)| {
+            PromptWay::new(
+                hop,
+                self.memory.place_number(to),
+                &self.memory.format_spot(self.agent_view.node_position(to)),
+            )
         };
-        let ways: Vec<Way> = self.ways().iter().map(way).collect();
-        request(&State {
+        let ways: Vec<PromptWay> = self.ways_out().iter().map(way).collect();
+        build_request(&PromptState {
             text: self.text,
             sees: match self.by.looks {
-                Looks::Labels => Sees::Labels,
-                Looks::Pictures => Sees::Pictures,
-                Looks::Captions(_) => Sees::Captions,
+                ToolAgentSight::Labels => PromptSightKind::Labels,
+                ToolAgentSight::Pictures => PromptSightKind::Pictures,
+                ToolAgentSight::Captions(_) => PromptSightKind::Captions,
             },
             names_object: self.names_object,
             memory: &self.memory,
@@ -136,26 +140,26 @@ impl<'a> Walker<'a> {
     }
 
     /// Calls the model and reads its tool calls. `None` if the reply is useless.
-    pub(super) fn ask(&mut self) -> Result<Option<Vec<Called>>, WalkError> {
-        let asked = self.request()?;
+    pub(super) fn ask_model(&mut self) -> Result<Option<Vec<AgentToolCall>>, WalkError> {
+        let asked = self.next_request()?;
         self.effort.calls += 1;
-        let reply = match self.by.model.complete(&[asked]).pop() {
+        let reply = match self.by.model.complete_requests(&[asked]).pop() {
             Some(Ok(reply)) => reply,
             // The service answered this prompt with an unusable reply. The next prompt may get a better one.
             Some(Err(error @ ModelError::Failed { .. })) => {
                 self.effort.useless.failed += 1;
-                self.refuse("it was empty or refused".to_owned(), &error.to_string());
+                self.note_useless_reply("it was empty or refused".to_owned(), &error.to_string());
                 self.failure = Some(error);
                 return Ok(None);
             }
             Some(Err(error)) => return Err(error.into()),
             None => return Err(self.gave_none().into()),
         };
-        self.count(&reply);
-        let calls = read(&reply.text);
+        self.count_usage(&reply);
+        let calls = read_calls(&reply.text);
         if calls.is_empty() {
             self.effort.useless.no_call += 1;
-            self.refuse("it called no tool".to_owned(), &reply.text);
+            self.note_useless_reply("it called no tool".to_owned(), &reply.text);
             return Ok(None);
         }
         Ok(Some(calls))
@@ -165,7 +169,7 @@ impl<'a> Walker<'a> {
         ModelError::Failed { model: self.by.model.name().to_owned(), reason: "it gave no reply".to_owned() }
     }
 
-    fn count(&mut self, reply: &Reply) {
+    fn count_usage(&mut self, reply: &ModelReply) {
         let Some(usage) = reply.usage else {
             self.effort.usd = None;
             return;
@@ -180,41 +184,41 @@ impl<'a> Walker<'a> {
     }
 
     /// Records a useless reply and its problem. `said` is the reply, or the error if there was none.
-    fn refuse(&mut self, trouble: String, said: &str) {
-        self.effort.last_useless = Some(format!("{trouble}: {}", quoted(said, KEPT_CHARS)));
+    fn note_useless_reply(&mut self, trouble: String, said: &str) {
+        self.effort.last_useless = Some(format!("{trouble}: {}", shorten_line(said, KEPT_CHARS)));
         self.trouble = Some(trouble);
         self.useless += 1;
     }
 
     /// Carries out the calls of a reply, but at most one step, because the model does not know the ways of the next place yet.
     /// Returns the reason if the walk ends.
-    pub(super) fn act(&mut self, calls: Vec<Called>) -> Result<Option<End>, WalkError> {
+    pub(super) fn carry_out(&mut self, calls: Vec<AgentToolCall>) -> Result<Option<WalkEnd>, WalkError> {
         // Numbers of objects refer to the list in the prompt, even if an earlier call of this reply looks around anew.
         let shown = self.scene.as_ref().map(|scene| scene.objects.clone()).unwrap_or_default();
         let (mut has_done, mut has_stepped) = (false, false);
-        for Called { act, why, note } in calls {
+        for AgentToolCall { act, why, note } in calls {
             self.memory.note = note.or(self.memory.note.take());
             match act {
-                Act::Observe if self.scene.is_none() => {
-                    self.observe()?;
+                AgentToolAction::Observe if self.scene.is_none() => {
+                    self.observe_here()?;
                     has_done = true;
                 }
-                Act::Observe => {}
-                Act::Step(_) if has_stepped => {}
-                Act::Step(way) => match self.step(way, &why) {
+                AgentToolAction::Observe => {}
+                AgentToolAction::Step(_) if has_stepped => {}
+                AgentToolAction::Step(way) => match self.take_step(way, &why) {
                     Ok(None) => (has_done, has_stepped) = (true, true),
                     Ok(end) => return Ok(end),
                     Err(trouble) => {
                         self.effort.useless.no_way += 1;
-                        self.refuse(trouble, &format!("step {way:?}"));
+                        self.note_useless_reply(trouble, &format!("step {way:?}"));
                         return Ok(None);
                     }
                 },
-                Act::Stop(object) => {
+                AgentToolAction::Stop(object) => {
                     let object = object.filter(|_| self.names_object);
-                    let object = object.map(|object| self.pointed(&object, &shown)).transpose()?.flatten();
+                    let object = object.map(|object| self.find_object(&object, &shown)).transpose()?.flatten();
                     self.stop = (Some(why), object);
-                    return Ok(Some(End::Stopped));
+                    return Ok(Some(WalkEnd::Stopped));
                 }
             }
         }
@@ -222,80 +226,82 @@ impl<'a> Walker<'a> {
             (self.trouble, self.useless) = (None, 0);
         } else {
             self.effort.useless.idle += 1;
-            self.refuse("you have already looked around here: step or stop".to_owned(), "observe");
+            self.note_useless_reply("you have already looked around here: step or stop".to_owned(), "observe");
         }
         Ok(None)
     }
 
-    fn observe(&mut self) -> Result<(), WalkError> {
+    fn observe_here(&mut self) -> Result<(), WalkError> {
         let at = (&self.here, self.heading);
-        let scene = look(self.agent_view, at, self.by.looks, self.names_object)?;
+        let scene = observe_scene(self.agent_view, at, self.by.looks, self.names_object)?;
         self.effort.looks += 1;
         self.effort.undescribed += scene.undescribed;
-        self.memory.saw(self.number, &scene);
+        self.memory.remember_scene(self.number, &scene);
         self.scene = Some(scene);
         Ok(())
     }
 
     /// Takes a way out. Returns the reason if the walk ends instead. An error names the problem with the way's number.
-    fn step(&mut self, way: Option<usize>, why: &str) -> Result<Option<End>, String> {
-        let ways = self.ways();
+    fn take_step(&mut self, way: Option<usize>, why: &str) -> Result<Option<WalkEnd>, String> {
+        let ways = self.ways_out();
         let Some(number) = way else { return Err("a step needs the number of a way".to_owned()) };
         let to = number.checked_sub(1).and_then(|at| ways.get(at));
         let Some((to, _)) = to else {
             return Err(format!("there is no way {number} here: there are {}", ways.len()));
         };
         if self.steps.len() >= self.by.limits.max_hops {
-            return Ok(Some(End::Cap));
+            return Ok(Some(WalkEnd::Cap));
         }
         let times = self.hopped.entry((self.here.clone(), to.clone())).or_default();
         if *times >= MOST_TIMES_A_HOP {
-            return Ok(Some(End::Circles));
+            return Ok(Some(WalkEnd::Circles));
         }
         *times += 1;
         let from = self.number;
-        let chosen = choice(self.agent_view, &self.steps, &self.here, to);
+        let chosen = choice_for_hop(self.agent_view, &self.steps, &self.here, to);
         let heading = self.agent_view.heading_to(&self.here, to).unwrap_or(self.heading);
-        self.stand(chosen, Some(why.to_owned()));
-        self.arrive(to.clone(), heading);
-        self.memory.hopped(from, self.number, why);
+        self.record_step(chosen, Some(why.to_owned()));
+        self.arrive_at(to.clone(), heading);
+        self.memory.remember_hop(from, self.number, why);
         Ok(None)
     }
 
     /// Records the decision at the current place as a step of the walk.
-    fn stand(&mut self, choice: Choice, reason: Option<String>) {
+    fn record_step(&mut self, choice: StepChoice, reason: Option<String>) {
         let scene = self.scene.as_ref();
-        let told = Told {
+        let told = SurroundingsSummary {
             room: scene.and_then(|scene| scene.room.clone()),
-            ways: self.ways().len(),
+            ways: self.ways_out().len(),
             things: scene.map_or(0, |scene| scene.things),
         };
         let reason = reason.filter(|reason| !reason.is_empty());
-        let step = Step::new(self.here.clone(), self.heading, choice);
-        self.steps.push(Step { told: Some(told), reason, ..step });
+        let step = AgentStep::new(self.here.clone(), self.heading, choice);
+        self.steps.push(AgentStep { told: Some(told), reason, ..step });
     }
 
     /// The object that the model names: one of those in the prompt, or the one around the place that its words fit best.
-    fn pointed(&self, object: &Pointed, shown: &[(ObjectId, String)]) -> Result<Option<ObjectId>, WalkError> {
+    fn find_object(&self, object: &ObjectChoice, shown: &[(ObjectId, String)]) -> Result<Option<ObjectId>, WalkError> {
         match object {
-            Pointed::Number(number) => Ok(number.checked_sub(1).and_then(|at| shown.get(at)).map(|(id, _)| id.clone())),
-            Pointed::Words(words) => {
-                let named = shown.iter().find(|(_, name)| normal(name) == normal(words));
-                match named.or_else(|| shown.iter().find(|(_, name)| agree(name, words))) {
+            ObjectChoice::Number(number) => {
+                Ok(number.checked_sub(1).and_then(|at| shown.get(at)).map(|(id, _)| id.clone()))
+            }
+            ObjectChoice::Words(words) => {
+                let named = shown.iter().find(|(_, name)| normalise_name(name) == normalise_name(words));
+                match named.or_else(|| shown.iter().find(|(_, name)| names_agree(name, words))) {
                     Some((id, _)) => Ok(Some(id.clone())),
-                    None => self.agent_view.point(&self.here, words),
+                    None => self.agent_view.point_at_object(&self.here, words),
                 }
             }
         }
     }
 
     /// Ends the walk and returns it; an error if no call got an answer.
-    pub(super) fn done(mut self, end: End) -> Result<Walked, WalkError> {
+    pub(super) fn finish_walk(mut self, end: WalkEnd) -> Result<AgentWalk, WalkError> {
         if let Some(failure) = self.failure.take().filter(|_| self.effort.calls == self.effort.useless.failed) {
             return Err(failure.into());
         }
         let (reason, object) = std::mem::take(&mut self.stop);
-        self.stand(Choice::Stop, reason);
-        Ok(Walked { steps: self.steps, end, object, effort: Some(self.effort) })
+        self.record_step(StepChoice::Stop, reason);
+        Ok(AgentWalk { steps: self.steps, end, object, effort: Some(self.effort) })
     }
 }

@@ -1,7 +1,7 @@
 //! A scripted eye that guesses on which side a thing lies.
 
-use super::draws::Draws;
-use wayword_core::{DVec3, Frame, Gaze, Heading, Label, PlatformError, View};
+use super::draws::EyeDraws;
+use wayword_core::{DVec3, Frame, Heading, ObjectLabel, PlatformError, View, ViewGaze};
 
 /// Gazes that differ by less than this are equal, radians.
 const SAME_RAD: f64 = 1e-9;
@@ -9,37 +9,37 @@ const SAME_RAD: f64 = 1e-9;
 /// The labels in a view of an eye that draws for each thing whether it lies left or right of the frame's heading. A thing that is drawn
 /// onto the wrong side gets the place that it would have if the world were mirrored at that heading. So it may move into another view,
 /// and things from the mirrored view (`look`) may move into this one.
-pub(super) fn guessed(
-    draws: &Draws<'_>,
+pub(super) fn guess_sides(
+    draws: &EyeDraws<'_>,
     from: &Frame,
-    gaze: Gaze,
+    gaze: ViewGaze,
     known: &View,
-    look: impl Fn(Gaze) -> Result<View, PlatformError>,
-) -> Result<Vec<Label>, PlatformError> {
-    let axis = Axis { eye: known.pose.position, heading: from.pose.heading };
-    let other_gaze = Gaze { heading: axis.mirrored(gaze.heading), ..gaze };
+    look: impl Fn(ViewGaze) -> Result<View, PlatformError>,
+) -> Result<Vec<ObjectLabel>, PlatformError> {
+    let axis = MirrorPlane { eye: known.pose.position, heading: from.pose.heading };
+    let other_gaze = ViewGaze { heading: axis.mirrored_heading(gaze.heading), ..gaze };
     let is_same = gaze.heading.turn_to(other_gaze.heading).abs() < SAME_RAD;
     let other = if is_same { known.clone() } else { look(other_gaze)? };
     let width_px = other.image.as_ref().map(|image| f64::from(image.width_px()));
-    let right_by_draw = |label: &Label| draws.uniform("side", label) < 0.5;
-    let kept = listed(known).filter(|label| axis.is_right(label.heading) == right_by_draw(label)).cloned();
-    let moved = listed(&other).filter(|label| axis.is_right(label.heading) != right_by_draw(label));
+    let right_by_draw = |label: &ObjectLabel| draws.draw_for_label("side", label) < 0.5;
+    let kept = listed_labels(known).filter(|label| axis.is_right(label.heading) == right_by_draw(label)).cloned();
+    let moved = listed_labels(&other).filter(|label| axis.is_right(label.heading) != right_by_draw(label));
     Ok(kept.chain(moved.map(|label| axis.mirrored_label(label, width_px))).collect())
 }
 
-fn listed(view: &View) -> impl Iterator<Item = &Label> {
+fn listed_labels(view: &View) -> impl Iterator<Item = &ObjectLabel> {
     view.ground_truth().into_iter().flat_map(|truth| &truth.labels)
 }
 
 /// The vertical plane through an eye along a heading.
-struct Axis {
+struct MirrorPlane {
     eye: DVec3,
     heading: Heading,
 }
 
-impl Axis {
-    fn mirrored(&self, heading: Heading) -> Heading {
-        self.heading.turned(-self.heading.turn_to(heading))
+impl MirrorPlane {
+    fn mirrored_heading(&self, heading: Heading) -> Heading {
+        self.heading.turned_by(-self.heading.turn_to(heading))
     }
 
     fn is_right(&self, heading: Heading) -> bool {
@@ -47,14 +47,14 @@ impl Axis {
     }
 
     /// Mirrors a label at the plane. `width_px` is the width of the view, in which its box is mirrored too.
-    fn mirrored_label(&self, label: &Label, width_px: Option<f64>) -> Label {
-        let heading = self.mirrored(label.heading);
+    fn mirrored_label(&self, label: &ObjectLabel, width_px: Option<f64>) -> ObjectLabel {
+        let heading = self.mirrored_heading(label.heading);
         let moved = |position: DVec3| {
             let level_m = (position - self.eye).truncate().length();
-            let level = self.eye + heading.direction() * level_m;
+            let level = self.eye + heading.unit_vector() * level_m;
             level.with_z(position.z)
         };
         let box_px = label.box_px.zip(width_px).map(|([x, y, width, height], all)| [all - x - width, y, width, height]);
-        Label { heading, position: label.position.map(moved), box_px, ..label.clone() }
+        ObjectLabel { heading, position: label.position.map(moved), box_px, ..label.clone() }
     }
 }

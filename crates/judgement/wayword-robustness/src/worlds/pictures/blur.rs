@@ -5,18 +5,18 @@ use wayword_core::{Image, image::WrongPixelCount};
 
 /// Blurs a picture by a gaussian that is cut off at three standard deviations. Outside the picture, the pixels of its edge are
 /// repeated.
-pub(super) fn blurred(image: &Image, sigma_px: f64) -> Result<Image, WrongPixelCount> {
-    let kernel = kernel(sigma_px);
+pub(super) fn blur_image(image: &Image, sigma_px: f64) -> Result<Image, WrongPixelCount> {
+    let kernel = gaussian_kernel(sigma_px);
     let [width, height] = [image.width_px(), image.height_px()].map(|side| side as usize);
     let linear: Vec<f64> = (0..=u8::MAX).map(linear_from_srgb).collect();
-    let light: Vec<f64> = image.rgb().iter().map(|level| linear[usize::from(*level)]).collect();
-    let along_rows = convolved(&light, &kernel, (width, 3), (height, width * 3));
-    let along_columns = convolved(&along_rows, &kernel, (height, width * 3), (width, 3));
+    let light: Vec<f64> = image.rgb_bytes().iter().map(|level| linear[usize::from(*level)]).collect();
+    let along_rows = convolve_lines(&light, &kernel, (width, 3), (height, width * 3));
+    let along_columns = convolve_lines(&along_rows, &kernel, (height, width * 3), (width, 3));
     Image::new(image.width_px(), image.height_px(), along_columns.into_iter().map(srgb_from_linear).collect())
 }
 
 /// The weights from the middle outwards. Over both sides they sum to 1.
-fn kernel(sigma_px: f64) -> Vec<f64> {
+fn gaussian_kernel(sigma_px: f64) -> Vec<f64> {
     let sigma_px = sigma_px.max(0.0);
     let reach = libm::ceil(3.0 * sigma_px) as usize;
     let weight = |step: usize| {
@@ -30,7 +30,7 @@ fn kernel(sigma_px: f64) -> Vec<f64> {
 
 /// Convolves three interleaved colours along one direction: `count` pixels at a `stride`, on each of `lines` lines, which begin
 /// `next_line` values apart.
-fn convolved(
+fn convolve_lines(
     light: &[f64],
     kernel: &[f64],
     (count, stride): (usize, usize),

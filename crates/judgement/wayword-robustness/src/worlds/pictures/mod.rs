@@ -5,7 +5,7 @@ mod jpeg;
 mod light;
 mod noise;
 
-use super::{Alter, altered::Look};
+use super::{WorldAlteration, altered::AlteredLook};
 use std::sync::Arc;
 use wayword_core::{Image, PlatformError, View, image::WrongPixelCount};
 
@@ -44,17 +44,17 @@ pub enum PictureChange {
 
 /// A picture could not be changed.
 #[derive(Debug, thiserror::Error)]
-enum Unchanged {
+enum PictureChangeError {
     #[error(transparent)]
     Size(#[from] WrongPixelCount),
     #[error("its picture cannot be made a JPEG file: {0}")]
     Jpeg(#[from] image::ImageError),
 }
 
-impl Alter for PictureChange {
-    fn view_after(&self, look: Look<'_>, mut view: View) -> Result<View, PlatformError> {
+impl WorldAlteration for PictureChange {
+    fn view_after(&self, look: AlteredLook<'_>, mut view: View) -> Result<View, PlatformError> {
         let Some(image) = &view.image else { return Ok(view) };
-        let after = self.applied(look, image);
+        let after = self.apply_to(look, image);
         let after =
             after.map_err(|why| PlatformError::NotDrawn { scene: look.scene.clone(), reason: why.to_string() })?;
         view.image = Some(Arc::new(after));
@@ -63,12 +63,12 @@ impl Alter for PictureChange {
 }
 
 impl PictureChange {
-    fn applied(self, look: Look<'_>, image: &Image) -> Result<Image, Unchanged> {
+    fn apply_to(self, look: AlteredLook<'_>, image: &Image) -> Result<Image, PictureChangeError> {
         Ok(match self {
-            Self::Exposure { stops } => light::lit(image, [libm::exp2(stops); 3])?,
-            Self::ColourTemperature { kelvin } => light::lit(image, light::gains(kelvin))?,
-            Self::Blur { sigma_px } => blur::blurred(image, sigma_px)?,
-            Self::Noise { percent, seed } => noise::noisy(image, percent, &mut noise::dice(look, seed))?,
+            Self::Exposure { stops } => light::scale_light(image, [libm::exp2(stops); 3])?,
+            Self::ColourTemperature { kelvin } => light::scale_light(image, light::temperature_gains(kelvin))?,
+            Self::Blur { sigma_px } => blur::blur_image(image, sigma_px)?,
+            Self::Noise { percent, seed } => noise::add_noise(image, percent, &mut noise::noise_rng(look, seed))?,
             Self::Jpeg { quality_percent } => jpeg::through_jpeg(image, quality_percent)?,
         })
     }

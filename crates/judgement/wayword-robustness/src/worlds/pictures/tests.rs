@@ -1,13 +1,13 @@
 use super::*;
-use crate::worlds::{Altered, testing::*};
-use wayword_core::{Gaze, Platform};
+use crate::worlds::{AlteredPlatform, testing::*};
+use wayword_core::{Platform, ViewGaze};
 
 /// One view through a change, and the view without it.
 fn seen(change: PictureChange) -> [View; 2] {
     let (scene, path) = walk();
-    let gaze = Gaze::quarter(path.frames[1].pose.heading);
-    let after = Altered::new(House, change).look(&scene, &path.frames[1], gaze).unwrap();
-    [after, House.look(&scene, &path.frames[1], gaze).unwrap()]
+    let gaze = ViewGaze::quarter_view(path.frames[1].pose.heading);
+    let after = AlteredPlatform::new(House, change).look_from(&scene, &path.frames[1], gaze).unwrap();
+    [after, House.look_from(&scene, &path.frames[1], gaze).unwrap()]
 }
 
 fn difference(change: PictureChange) -> f64 {
@@ -16,7 +16,7 @@ fn difference(change: PictureChange) -> f64 {
 }
 
 fn mean(view: &View, colour: usize) -> f64 {
-    let rgb = view.image.as_ref().unwrap().rgb();
+    let rgb = view.image.as_ref().unwrap().rgb_bytes();
     rgb.chunks_exact(3).map(|pixel| f64::from(pixel[colour])).sum::<f64>() / (rgb.len() / 3) as f64
 }
 
@@ -62,10 +62,10 @@ fn light_gets_darker_and_warmer() {
 fn a_blur_spreads_one_pixel_and_keeps_its_light() {
     let mut rgb = vec![0; 41 * 41 * 3];
     rgb[(20 * 41 + 20) * 3] = 255;
-    let after = blur::blurred(&Image::new(41, 41, rgb).unwrap(), 1.0).unwrap();
-    let light: f64 = after.rgb().iter().map(|level| light::linear_from_srgb(*level)).sum();
+    let after = blur::blur_image(&Image::new(41, 41, rgb).unwrap(), 1.0).unwrap();
+    let light: f64 = after.rgb_bytes().iter().map(|level| light::linear_from_srgb(*level)).sum();
     assert!((light - 1.0).abs() < 0.02, "{light}");
-    let at = |x: usize, y: usize| after.rgb()[(y * 41 + x) * 3];
+    let at = |x: usize, y: usize| after.rgb_bytes()[(y * 41 + x) * 3];
     assert_eq!([at(19, 20), at(20, 19), at(20, 21)], [at(21, 20); 3]);
     // The middle of a gaussian of one pixel holds 0.399 of each of its two factors.
     assert_eq!(at(20, 20), light::srgb_from_linear(0.399_f64 * 0.399));
@@ -77,8 +77,8 @@ fn noise_is_the_same_for_the_same_look_and_has_its_spread() {
     assert_eq!(noise(1), noise(1));
     assert_ne!(noise(1), noise(2));
     let grey = Image::new(100, 100, vec![128; 30_000]).unwrap();
-    let noisy = noise::noisy(&grey, 4.0, &mut wayword_core::rng(1, &["test"])).unwrap();
-    let squares: f64 = noisy.rgb().iter().map(|level| (f64::from(*level) - 128.0).powi(2)).sum();
+    let noisy = noise::add_noise(&grey, 4.0, &mut wayword_core::seeded_rng(1, &["test"])).unwrap();
+    let squares: f64 = noisy.rgb_bytes().iter().map(|level| (f64::from(*level) - 128.0).powi(2)).sum();
     let deviation = (squares / 30_000.0).sqrt();
     assert!((deviation - 10.2).abs() < 0.3, "{deviation}");
 }

@@ -1,19 +1,20 @@
 use super::*;
-use crate::worlds::{Altered, testing::*};
-use wayword_core::{Gaze, Platform};
+use crate::worlds::{AlteredPlatform, testing::*};
+use wayword_core::{Platform, ViewGaze};
 
-type Twice<A> = Altered<Altered<House, A>, A>;
+type Twice<A> = AlteredPlatform<AlteredPlatform<House, A>, A>;
 
-fn twice<A: Alter + Copy>(alter: A) -> Twice<A> {
-    Altered::new(Altered::new(House, alter), alter)
+fn twice<A: WorldAlteration + Copy>(alter: A) -> Twice<A> {
+    AlteredPlatform::new(AlteredPlatform::new(House, alter), alter)
 }
 
 /// Asserts that a world shows the same views along a path as the unchanged one.
 fn assert_same(world: &impl Platform) {
     let (scene, path) = walk();
     for frame in path.frames.iter().step_by(2) {
-        for gaze in Gaze::around(frame.pose.heading) {
-            let [view, plain] = [world.look(&scene, frame, gaze), House.look(&scene, frame, gaze)].map(Result::unwrap);
+        for gaze in ViewGaze::around_heading(frame.pose.heading) {
+            let [view, plain] =
+                [world.look_from(&scene, frame, gaze), House.look_from(&scene, frame, gaze)].map(Result::unwrap);
             // Turning a heading rounds, which can shift an edge by a pixel.
             assert!(mean_difference(&view, &plain) < 0.1);
             assert!(view.pose.position.distance(plain.pose.position) < 1e-9);
@@ -30,19 +31,19 @@ fn assert_same(world: &impl Platform) {
 
 #[test]
 fn mirrored_twice_or_turned_four_times_it_is_the_same_world() {
-    assert_same(&twice(Mirror));
-    assert_same(&Altered::new(Altered::new(twice(QuarterTurn), QuarterTurn), QuarterTurn));
+    assert_same(&twice(WorldMirror));
+    assert_same(&AlteredPlatform::new(AlteredPlatform::new(twice(QuarterTurn), QuarterTurn), QuarterTurn));
 }
 
 #[test]
 fn in_a_mirrored_view_everything_lies_on_the_other_side() {
     let (scene, path) = walk();
-    let mirrored = Mirror.path_after(path.clone());
-    let world = Altered::new(House, Mirror);
+    let mirrored = WorldMirror.path_after(path.clone());
+    let world = AlteredPlatform::new(House, WorldMirror);
     let mut seen = 0;
     for (before, after) in path.frames.iter().zip(&mirrored.frames) {
-        let plain = House.look(&scene, before, Gaze::quarter(before.pose.heading)).unwrap();
-        let view = world.look(&scene, after, Gaze::quarter(after.pose.heading)).unwrap();
+        let plain = House.look_from(&scene, before, ViewGaze::quarter_view(before.pose.heading)).unwrap();
+        let view = world.look_from(&scene, after, ViewGaze::quarter_view(after.pose.heading)).unwrap();
         assert_eq!(labels(&view).len(), labels(&plain).len());
         for (a, b) in labels(&plain).iter().zip(labels(&view)) {
             seen += 1;
@@ -51,7 +52,8 @@ fn in_a_mirrored_view_everything_lies_on_the_other_side() {
             let towards = Heading::towards(after.pose.position, b.position.unwrap()).unwrap();
             assert!(towards.turn_to(b.heading).abs() < 1e-9);
         }
-        let [first, last] = [(&plain, 0), (&view, 159)].map(|(view, x)| view.image.as_ref().unwrap().rgb()[x * 3]);
+        let [first, last] =
+            [(&plain, 0), (&view, 159)].map(|(view, x)| view.image.as_ref().unwrap().rgb_bytes()[x * 3]);
         assert!(first.abs_diff(last) <= 1);
     }
     assert!(seen > 10);
@@ -61,10 +63,10 @@ fn in_a_mirrored_view_everything_lies_on_the_other_side() {
 fn a_turned_world_shows_the_same_pictures_to_an_eye_that_turns_too() {
     let (scene, path) = walk();
     let turned = QuarterTurn.path_after(path.clone());
-    let world = Altered::new(House, QuarterTurn);
+    let world = AlteredPlatform::new(House, QuarterTurn);
     for (before, after) in path.frames.iter().zip(&turned.frames) {
-        let plain = House.look(&scene, before, Gaze::quarter(before.pose.heading)).unwrap();
-        let view = world.look(&scene, after, Gaze::quarter(after.pose.heading)).unwrap();
+        let plain = House.look_from(&scene, before, ViewGaze::quarter_view(before.pose.heading)).unwrap();
+        let view = world.look_from(&scene, after, ViewGaze::quarter_view(after.pose.heading)).unwrap();
         assert!(mean_difference(&view, &plain) < 0.1);
         assert!((before.pose.heading.turn_to(after.pose.heading).to_degrees() - 90.0).abs() < 1e-9);
     }

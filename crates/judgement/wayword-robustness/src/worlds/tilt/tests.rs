@@ -1,15 +1,15 @@
 use super::*;
-use crate::worlds::{Altered, testing::*};
+use crate::worlds::{AlteredPlatform, testing::*};
 use wayword_core::{Heading, ObjectId, Platform, Pose};
 
-fn tilted(pitch_deg: f64, roll_deg: f64) -> Altered<House, Tilt> {
-    Altered::new(House, Tilt::new(pitch_deg, roll_deg).unwrap())
+fn tilted(pitch_deg: f64, roll_deg: f64) -> AlteredPlatform<House, CameraTilt> {
+    AlteredPlatform::new(House, CameraTilt::new(pitch_deg, roll_deg).unwrap())
 }
 
 /// Views along a path, ahead of each frame.
 fn views(platform: &impl Platform) -> Vec<View> {
     let (scene, path) = walk();
-    let look = |frame: &Frame| platform.look(&scene, frame, Gaze::quarter(frame.pose.heading)).unwrap();
+    let look = |frame: &Frame| platform.look_from(&scene, frame, ViewGaze::quarter_view(frame.pose.heading)).unwrap();
     path.frames.iter().map(look).collect()
 }
 
@@ -17,7 +17,7 @@ fn views(platform: &impl Platform) -> Vec<View> {
 fn no_tilt_is_the_identity_and_hardly_any_is_nearly() {
     for ((level, none), hardly) in views(&House).iter().zip(views(&tilted(0.0, 0.0))).zip(views(&tilted(1e-7, 1e-7))) {
         assert_eq!((&level.image, labels(level)), (&none.image, labels(&none)));
-        let rgb = |view: &View| view.image.clone().unwrap().rgb().to_vec();
+        let rgb = |view: &View| view.image.clone().unwrap().rgb_bytes().to_vec();
         let off = rgb(level).into_iter().zip(rgb(&hardly)).filter(|(a, b)| a.abs_diff(*b) > 1).count();
         assert!(off < 60, "{off}");
         let objects = |view: &View| labels(view).iter().map(|label| label.object.clone()).collect::<Vec<ObjectId>>();
@@ -27,17 +27,17 @@ fn no_tilt_is_the_identity_and_hardly_any_is_nearly() {
 
 #[test]
 fn tilts_that_no_level_view_reaches_are_refused() {
-    assert_eq!(Tilt::new(31.0, 0.0), Err(TiltError::Pitch(31.0)));
-    assert!(Tilt::new(0.0, f64::NAN).is_err());
-    assert!(Tilt::new(-30.0, 45.0).is_ok());
+    assert_eq!(CameraTilt::new(31.0, 0.0), Err(TiltError::Pitch(31.0)));
+    assert!(CameraTilt::new(0.0, f64::NAN).is_err());
+    assert!(CameraTilt::new(-30.0, 45.0).is_ok());
 }
 
 #[test]
 fn the_whole_picture_is_covered_within_the_limits() {
     for (pitch_deg, roll_deg) in [(30.0, 0.0), (-30.0, 0.0), (0.0, 45.0), (15.0, 20.0)] {
-        let tilt = Tilt::new(pitch_deg, roll_deg).unwrap();
+        let tilt = CameraTilt::new(pitch_deg, roll_deg).unwrap();
         let fov = std::f64::consts::FRAC_PI_2;
-        let warp = Warp {
+        let warp = TiltWarp {
             level_from_tilted: tilt.level_from_tilted(),
             level_tan: libm::tan(tilt.covering_rad(fov) / 2.0),
             tilted_tan: libm::tan(fov / 2.0),
@@ -50,11 +50,11 @@ fn the_whole_picture_is_covered_within_the_limits() {
 }
 
 /// A label at a direction from an eye that looks north.
-fn at(heading_deg: f64, elevation_deg: f64) -> Label {
-    Label {
+fn at(heading_deg: f64, elevation_deg: f64) -> ObjectLabel {
+    ObjectLabel {
         object: ObjectId::new("1").unwrap(),
         name: "lamp".to_owned(),
-        heading: Heading::NORTH.turned(heading_deg.to_radians()),
+        heading: Heading::NORTH.turned_by(heading_deg.to_radians()),
         elevation_rad: elevation_deg.to_radians(),
         box_px: None,
         distance_m: None,
@@ -65,13 +65,13 @@ fn at(heading_deg: f64, elevation_deg: f64) -> Label {
 
 #[test]
 fn a_camera_that_looks_up_loses_the_floor_and_one_that_is_rolled_turns_its_picture() {
-    let warp = |pitch_deg: f64, roll_deg: f64| Warp {
-        level_from_tilted: Tilt::new(pitch_deg, roll_deg).unwrap().level_from_tilted(),
+    let warp = |pitch_deg: f64, roll_deg: f64| TiltWarp {
+        level_from_tilted: CameraTilt::new(pitch_deg, roll_deg).unwrap().level_from_tilted(),
         level_tan: 3.0,
         tilted_tan: 1.0,
         size: [640.0, 480.0],
     };
-    let seen = |warp: &Warp, label: Label| warp.label(label, Heading::NORTH, true).is_some();
+    let seen = |warp: &TiltWarp, label: ObjectLabel| warp.tilt_label(label, Heading::NORTH, true).is_some();
     let (level, up) = (warp(0.0, 0.0), warp(20.0, 0.0));
     assert!(seen(&level, at(0.0, -30.0)) && !seen(&up, at(0.0, -30.0)));
     assert!(!seen(&level, at(0.0, 50.0)) && seen(&up, at(0.0, 50.0)));
@@ -93,28 +93,31 @@ fn boxes_go_with_their_pixels() {
         rgb[(y * 160 + 70) * 3..(y * 160 + 80) * 3].fill(255);
     }
     let level = Image::new(160, 120, rgb).unwrap();
-    let warp = Warp {
-        level_from_tilted: Tilt::new(8.0, 10.0).unwrap().level_from_tilted(),
+    let warp = TiltWarp {
+        level_from_tilted: CameraTilt::new(8.0, 10.0).unwrap().level_from_tilted(),
         level_tan: 1.5,
         tilted_tan: 1.0,
         size: [160.0, 120.0],
     };
     let [x, y, width, height] = warp.tilted_box([70.0, 50.0, 10.0, 10.0]).unwrap();
-    let tilted = redrawn(&warp, &level);
-    for (number, pixel) in tilted.rgb().chunks_exact(3).enumerate().filter(|(_, pixel)| pixel[0] > 200) {
+    let tilted = redraw_tilted(&warp, &level);
+    for (number, pixel) in tilted.rgb_bytes().chunks_exact(3).enumerate().filter(|(_, pixel)| pixel[0] > 200) {
         let [px, py] = [(number % 160) as f64 + 0.5, (number / 160) as f64 + 0.5];
         assert!((x..=x + width).contains(&px) && (y..=y + height).contains(&py), "{px} {py} {pixel:?}");
     }
-    assert!(tilted.rgb().iter().filter(|level| **level > 200).count() > 300);
+    assert!(tilted.rgb_bytes().iter().filter(|level| **level > 200).count() > 300);
 }
 
 #[test]
 fn a_tilted_view_contains_its_elevation_and_has_no_depth() {
     let (scene, path) = walk();
-    let gaze = Gaze::quarter(path.frames[0].pose.heading);
-    let view = tilted(-10.0, 0.0).look(&scene, &path.frames[0], gaze).unwrap();
-    let pose = Pose { elevation_rad: (-10f64).to_radians(), ..Pose::level(path.frames[0].pose.position, gaze.heading) };
+    let gaze = ViewGaze::quarter_view(path.frames[0].pose.heading);
+    let view = tilted(-10.0, 0.0).look_from(&scene, &path.frames[0], gaze).unwrap();
+    let pose = Pose {
+        elevation_rad: (-10f64).to_radians(),
+        ..Pose::looking_level(path.frames[0].pose.position, gaze.heading)
+    };
     assert_eq!(view.pose, pose);
     assert_eq!(view.horizontal_fov_rad, gaze.horizontal_fov_rad);
-    assert!(tilted(-10.0, 0.0).depth(&scene, &path.frames[0], gaze).unwrap().is_none());
+    assert!(tilted(-10.0, 0.0).view_depth(&scene, &path.frames[0], gaze).unwrap().is_none());
 }

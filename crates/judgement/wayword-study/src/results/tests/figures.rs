@@ -1,9 +1,9 @@
-use super::super::{Results, Strengths, results};
+use super::super::{ConditionStrengths, StudyReport, compute_results};
 use super::made::{START_MS, add_item, add_person, add_route, add_slot, empty, of_the_paper, small};
-use crate::{Answer, Choice, Data, Kind, Mode, Status};
+use crate::{ConditionKind, PairChoice, ParticipantAnswer, ParticipantStatus, StudyData, StudyTask};
 
-pub(super) fn of(data: &Data) -> Results {
-    results(data, START_MS + 3_600_000).unwrap()
+pub(super) fn of(data: &StudyData) -> StudyReport {
+    compute_results(data, START_MS + 3_600_000).unwrap()
 }
 
 /// The seed paper's own figures: 43.3, 83.3, 16.7 and 73.3 % of 30 people.
@@ -22,10 +22,10 @@ fn the_papers_figures_have_the_intervals_that_its_thirty_people_allow() {
         let interval = figure.interval.as_ref().unwrap();
         let found = [figure.value, interval.low, interval.high].map(|value| (1000.0 * value).round() / 10.0);
         assert_eq!(found, [share, low, high], "{name}");
-        assert_eq!(figure.method, wayword_metrics::Method::Wilson);
+        assert_eq!(figure.method, wayword_metrics::IntervalMethod::Wilson);
         assert_eq!([figure.answers, figure.persons, figure.items], [30, 30, 30]);
     }
-    let files = results.files().unwrap();
+    let files = results.render_files().unwrap();
     let markdown = &files.iter().find(|(name, _)| *name == "results.md").unwrap().1;
     for shown in ["83.3 \\[66.4, 92.7\\]", "73.3 \\[55.6, 85.8\\]", "43.3 \\[27.4, 60.8\\]", "16.7 \\[7.3, 33.6\\]"] {
         // Once of this study, once of the paper.
@@ -35,12 +35,12 @@ fn the_papers_figures_have_the_intervals_that_its_thirty_people_allow() {
 
 #[test]
 fn a_study_without_answers_can_be_read() {
-    for mode in [Mode::Follow, Mode::Rate, Mode::Pair] {
-        let mut data = empty(mode, &[("ours", Kind::Run), ("humans", Kind::People)]);
-        let both: &[usize] = if mode == Mode::Pair { &[0, 1] } else { &[0] };
+    for mode in [StudyTask::Follow, StudyTask::Rate, StudyTask::Pair] {
+        let mut data = empty(mode, &[("ours", ConditionKind::Run), ("humans", ConditionKind::People)]);
+        let both: &[usize] = if mode == StudyTask::Pair { &[0, 1] } else { &[0] };
         let route = add_route(&mut data);
         add_item(&mut data, route, both);
-        for (name, text) in of(&data).files().unwrap() {
+        for (name, text) in of(&data).render_files().unwrap() {
             assert!(!text.contains("NaN") && !text.contains("inf,"), "{mode:?} {name}");
             assert!(
                 name.ends_with(".csv")
@@ -55,19 +55,19 @@ fn a_study_without_answers_can_be_read() {
 
 #[test]
 fn answers_of_those_who_were_screened_out_or_practised_are_in_no_figure() {
-    let mut data = small(Mode::Rate);
+    let mut data = small(StudyTask::Rate);
     let before = of(&data).versions[0].answers;
-    let person = data.participants.iter().find(|one| one.status == Status::ScreenedOut).unwrap().id.clone();
-    add_slot(&mut data, &person, 0, Some(Answer::Rate { ratings: [1; 4] }));
+    let person = data.participants.iter().find(|one| one.status == ParticipantStatus::ScreenedOut).unwrap().id.clone();
+    add_slot(&mut data, &person, 0, Some(ParticipantAnswer::Rate { ratings: [1; 4] }));
     let other = data.participants[0].id.clone();
-    add_slot(&mut data, &other, 11, Some(Answer::Rate { ratings: [1; 4] }));
+    add_slot(&mut data, &other, 11, Some(ParticipantAnswer::Rate { ratings: [1; 4] }));
     data.slots.last_mut().unwrap().position = None;
     assert_eq!(of(&data).versions[0].answers, before);
 }
 
 #[test]
 fn the_second_version_leaves_out_those_who_did_not_finish_or_failed() {
-    let results = of(&small(Mode::Rate));
+    let results = of(&small(StudyTask::Rate));
     let [everybody, finished] = &results.versions;
     assert_eq!([everybody.persons, everybody.answers], [7, 36]);
     assert_eq!([finished.persons, finished.answers], [4, 24]);
@@ -83,17 +83,17 @@ fn the_second_version_leaves_out_those_who_did_not_finish_or_failed() {
 
 #[test]
 fn walks_are_scored_from_the_start_to_the_goal() {
-    let mut data = empty(Mode::Follow, &[("ours", Kind::Run)]);
+    let mut data = empty(StudyTask::Follow, &[("ours", ConditionKind::Run)]);
     let route = add_route(&mut data);
     let item = add_item(&mut data, route, &[0]);
     // Stops one place short of the goal, or at it.
     for looks in [0, 1] {
-        let person = add_person(&mut data, Status::Complete);
+        let person = add_person(&mut data, ParticipantStatus::Complete);
         add_slot(
             &mut data,
             &person,
             item,
-            Some(Answer::Follow { statements: [4, 5, 1], looks, stopped_ms: START_MS + 100_000 }),
+            Some(ParticipantAnswer::Follow { statements: [4, 5, 1], looks, stopped_ms: START_MS + 100_000 }),
         );
     }
     let results = of(&data);
@@ -110,14 +110,18 @@ fn walks_are_scored_from_the_start_to_the_goal() {
 
 #[test]
 fn sides_are_turned_back_before_wins_are_counted() {
-    let mut data = empty(Mode::Pair, &[("ours", Kind::Run), ("humans", Kind::People)]);
+    let mut data = empty(StudyTask::Pair, &[("ours", ConditionKind::Run), ("humans", ConditionKind::People)]);
     let route = add_route(&mut data);
     let item = add_item(&mut data, route, &[0, 1]);
-    for (is_turned, choice) in
-        [(false, Choice::B), (true, Choice::A), (true, Choice::Tie), (false, Choice::Bad), (true, Choice::B)]
-    {
-        let person = add_person(&mut data, Status::Complete);
-        add_slot(&mut data, &person, item, Some(Answer::Pair { choice }));
+    for (is_turned, choice) in [
+        (false, PairChoice::B),
+        (true, PairChoice::A),
+        (true, PairChoice::Tie),
+        (false, PairChoice::Bad),
+        (true, PairChoice::B),
+    ] {
+        let person = add_person(&mut data, ParticipantStatus::Complete);
+        add_slot(&mut data, &person, item, Some(ParticipantAnswer::Pair { choice }));
         data.slots.last_mut().unwrap().is_turned = is_turned;
     }
     let results = of(&data);
@@ -132,42 +136,42 @@ fn sides_are_turned_back_before_wins_are_counted() {
 
 #[test]
 fn strengths_that_cannot_be_computed_have_a_reason() {
-    let mut data = small(Mode::Pair);
+    let mut data = small(StudyTask::Pair);
     for slot in &mut data.slots {
         if slot.answer.is_some() {
-            slot.answer = Some(Answer::Pair { choice: Choice::Tie });
+            slot.answer = Some(ParticipantAnswer::Pair { choice: PairChoice::Tie });
         }
     }
     let results = of(&data);
-    let Strengths::Unknown { why, .. } = &results.versions[0].pairs.as_ref().unwrap().strengths else {
+    let ConditionStrengths::Unknown { why, .. } = &results.versions[0].pairs.as_ref().unwrap().strengths else {
         panic!("all are ties")
     };
-    let files = results.files().unwrap();
+    let files = results.render_files().unwrap();
     assert!(files[1].1.contains(why.as_str()), "{why}");
 }
 
 #[test]
 fn one_participant_and_one_condition_are_enough_for_files() {
-    for mode in [Mode::Follow, Mode::Rate, Mode::Pair] {
+    for mode in [StudyTask::Follow, StudyTask::Rate, StudyTask::Pair] {
         let mut data = small(mode);
         let person = data.participants[0].id.clone();
         data.slots.retain(|slot| slot.participant == person);
         data.participants.truncate(1);
-        for (name, text) in of(&data).files().unwrap() {
+        for (name, text) in of(&data).render_files().unwrap() {
             assert!(!text.contains("NaN"), "{mode:?} {name}");
         }
-        if mode != Mode::Pair {
+        if mode != StudyTask::Pair {
             data.plan.conditions.truncate(1);
             let results = of(&data);
             assert!(results.versions[0].differences.is_empty());
-            results.files().unwrap();
+            results.render_files().unwrap();
         }
     }
 }
 
 #[test]
 fn intervals_stay_on_the_scale() {
-    for mode in [Mode::Follow, Mode::Rate] {
+    for mode in [StudyTask::Follow, StudyTask::Rate] {
         let results = of(&small(mode));
         for version in &results.versions {
             for (row, measure) in

@@ -4,7 +4,7 @@ use super::{
     made::small,
     reader::{column, read},
 };
-use crate::{Mode, wording::QUESTIONS};
+use crate::{StudyTask, wording::RATE_QUESTIONS};
 
 fn hostile() -> Vec<String> {
     let texts = [
@@ -33,11 +33,11 @@ fn hostile() -> Vec<String> {
 #[test]
 fn free_text_is_inert_in_every_file() {
     let texts = hostile();
-    let mut data = small(Mode::Rate);
+    let mut data = small(StudyTask::Rate);
     for (slot, text) in data.slots.iter_mut().zip(texts.iter().cycle()) {
         slot.own_text = Some(text.clone());
     }
-    let files = of(&data).files().unwrap();
+    let files = of(&data).render_files().unwrap();
     for (name, text) in &files {
         assert!(!text.contains(['\0', '\u{1b}', '\u{7}', '\u{202e}', '\u{2066}', '\u{2028}']), "{name}");
         if *name != "answers.csv" {
@@ -56,7 +56,7 @@ fn free_text_is_inert_in_every_file() {
 /// Names of conditions, routes, scenes and the title come from files that somebody else may have made.
 #[test]
 fn names_are_inert_in_every_file() {
-    for (mode, text) in [Mode::Follow, Mode::Rate, Mode::Pair]
+    for (mode, text) in [StudyTask::Follow, StudyTask::Rate, StudyTask::Pair]
         .into_iter()
         .flat_map(|mode| hostile().into_iter().map(move |text| (mode, text)))
     {
@@ -72,7 +72,7 @@ fn names_are_inert_in_every_file() {
             told.text = text.clone();
         }
         data.routes[0].name = text.clone();
-        for (name, file) in of(&data).files().unwrap() {
+        for (name, file) in of(&data).render_files().unwrap() {
             let is_markup = name.ends_with(".html") || name.ends_with(".md");
             assert!(
                 !file.contains(['\0', '\u{1b}', '\u{7}', '\u{202e}', '\u{2066}', '\u{2028}']) || name == "results.json",
@@ -139,20 +139,20 @@ fn latex_is_whole(latex: &str) {
 
 #[test]
 fn numbers_are_never_taken_for_formulas() {
-    assert_eq!(inert::cell("-"), "\"'-\"");
-    assert_eq!(inert::cell("plain"), "plain");
-    assert_eq!(super::super::sheet::Cell::Number(-1.5, 1), super::super::sheet::Cell::number(Some(-1.5), 1));
-    let mut sheet = super::super::sheet::Sheet::new("x.csv", "x", vec![]);
-    sheet.rows.push(vec![super::super::sheet::Cell::Number(-1.5, 1), super::super::sheet::Cell::Whole(-2)]);
-    assert_eq!(sheet.csv(), "\r\n-1.5,-2\r\n");
+    assert_eq!(inert::escape_csv_cell("-"), "\"'-\"");
+    assert_eq!(inert::escape_csv_cell("plain"), "plain");
+    assert_eq!(super::super::sheet::SheetCell::Number(-1.5, 1), super::super::sheet::SheetCell::number(Some(-1.5), 1));
+    let mut sheet = super::super::sheet::DataSheet::new("x.csv", "x", vec![]);
+    sheet.rows.push(vec![super::super::sheet::SheetCell::Number(-1.5, 1), super::super::sheet::SheetCell::Whole(-2)]);
+    assert_eq!(sheet.to_csv(), "\r\n-1.5,-2\r\n");
 }
 
 #[test]
 fn the_wording_is_printed_whole() {
-    let files = of(&small(Mode::Rate)).files().unwrap();
+    let files = of(&small(StudyTask::Rate)).render_files().unwrap();
     for name in ["index.html", "results.md", "results.tex", "results.json"] {
         let text = &files.iter().find(|(other, _)| *other == name).unwrap().1;
-        for scale in QUESTIONS {
+        for scale in RATE_QUESTIONS {
             assert!(text.contains(scale.text), "{name}: {}", scale.text);
             assert!(scale.levels.iter().all(|level| text.contains(level)), "{name}: {}", scale.name);
         }

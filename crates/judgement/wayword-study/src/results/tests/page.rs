@@ -1,12 +1,12 @@
 //! The page itself.
 
 use super::{figures::of, made::small};
-use crate::Mode;
+use crate::StudyTask;
 
 #[test]
 fn page_loads_no_resources_and_runs_no_scripts() {
-    for mode in [Mode::Follow, Mode::Rate, Mode::Pair] {
-        let files = of(&small(mode)).files().unwrap();
+    for mode in [StudyTask::Follow, StudyTask::Rate, StudyTask::Pair] {
+        let files = of(&small(mode)).render_files().unwrap();
         let page = &files[0].1;
         for part in ["<script", "http://", "https://", "src=", "@import", "url(", " onload"] {
             assert!(!page.contains(part), "{mode:?}: {part}");

@@ -1,15 +1,15 @@
-use super::super::Outlook;
+use super::super::StudyOutlook;
 use super::made::{add_item, add_route, empty, small};
-use crate::{Data, Kind, Mode};
+use crate::{ConditionKind, StudyData, StudyTask};
 
-fn of(data: &Data) -> Outlook {
-    Outlook::new(&data.plan, &data.settings, &data.items)
+fn of(data: &StudyData) -> StudyOutlook {
+    StudyOutlook::new(&data.plan, &data.settings, &data.items)
 }
 
 /// 30 people with one item each in each of two groups detect about 35 points.
 #[test]
 fn thirty_people_in_each_group_detect_about_35_points() {
-    let mut data = empty(Mode::Rate, &[("ours", Kind::Run), ("theirs", Kind::Run)]);
+    let mut data = empty(StudyTask::Rate, &[("ours", ConditionKind::Run), ("theirs", ConditionKind::Run)]);
     for _ in 0..30 {
         let route = add_route(&mut data);
         add_item(&mut data, route, &[0]);
@@ -26,7 +26,7 @@ fn thirty_people_in_each_group_detect_about_35_points() {
 
 #[test]
 fn detectable_difference_shrinks_with_answers_and_grows_with_spread_only_between_groups() {
-    for mode in [Mode::Follow, Mode::Rate, Mode::Pair] {
+    for mode in [StudyTask::Follow, StudyTask::Rate, StudyTask::Pair] {
         let mut data = small(mode);
         let few = of(&data);
         data.plan.per_item *= 4;
@@ -44,6 +44,6 @@ fn detectable_difference_shrinks_with_answers_and_grows_with_spread_only_between
 
 #[test]
 fn outlook_of_an_empty_plan_prints_no_invalid_numbers() {
-    let text = of(&empty(Mode::Follow, &[("ours", Kind::Run)])).to_string();
+    let text = of(&empty(StudyTask::Follow, &[("ours", ConditionKind::Run)])).to_string();
     assert!(!text.contains("NaN") && text.contains("participants  0"), "{text}");
 }

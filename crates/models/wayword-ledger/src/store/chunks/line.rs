@@ -1,39 +1,39 @@
 //! A line of a chunk's file: a JSON object that begins with the checksum of the rest of the line.
 
-use crate::{Key, Row, store::End};
+use crate::{CallKey, LedgerEntry, store::RequestEnd};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 /// Version of the lines.
-pub(super) const FORMAT: u32 = 1;
+pub(super) const CHUNK_LINE_FORMAT: u32 = 1;
 
 /// How every line begins.
-const BEGIN: &str = "{\"sha256\":\"";
+const LINE_PREFIX: &str = "{\"sha256\":\"";
 /// Hexadecimal digits of a checksum.
-const DIGITS: usize = 64;
+const CHECKSUM_DIGITS: usize = 64;
 /// The characters between the checksum and the part of the line that it covers.
-const MIDDLE: &str = "\",";
+const CHECKSUM_SUFFIX: &str = "\",";
 
 /// The content of a line.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub(crate) enum Entry {
+pub(crate) enum ChunkEntry {
     /// The first line of a file.
     Ledger { format: u32 },
     /// A request is about to be sent.
-    Sent { number: i64, run: String, key: Key, most_usd: Option<f64>, at_unix_s: i64 },
+    Sent { number: i64, run: String, key: CallKey, most_usd: Option<f64>, at_unix_s: i64 },
     /// A request brought no answer.
-    Ended { number: i64, outcome: End, reason: String },
+    Ended { number: i64, outcome: RequestEnd, reason: String },
     /// A call was answered.
-    Answered { number: Option<i64>, row: Box<Row> },
+    Answered { number: Option<i64>, row: Box<LedgerEntry> },
 }
 
-impl Entry {
+impl ChunkEntry {
     /// Encodes the entry as a line, including the line end.
     pub(super) fn to_line(&self) -> serde_json::Result<Vec<u8>> {
         let json = serde_json::to_vec(self)?;
         let rest = json.get(1..).unwrap_or_default();
-        let mut line = format!("{BEGIN}{}{MIDDLE}", digits(rest)).into_bytes();
+        let mut line = format!("{LINE_PREFIX}{}{CHECKSUM_SUFFIX}", sha256_digits(rest)).into_bytes();
         line.extend_from_slice(rest);
         line.push(b'\n');
         Ok(line)
@@ -41,20 +41,20 @@ impl Entry {
 
     /// Whether bytes begin as a line of a chunk's file does.
     pub(crate) fn is_line(bytes: &[u8]) -> bool {
-        bytes.starts_with(BEGIN.as_bytes())
+        bytes.starts_with(LINE_PREFIX.as_bytes())
     }
 
     /// Reads a line, with or without the end of the line.
     ///
     /// # Errors
     /// The problem of the line.
-    pub(crate) fn of_line(line: &[u8]) -> Result<Self, String> {
+    pub(crate) fn from_line(line: &[u8]) -> Result<Self, String> {
         let line = line.strip_suffix(b"\n").unwrap_or(line);
         let changed = || "its checksum does not match, so the line was changed by hand or damaged".to_owned();
-        let behind = line.strip_prefix(BEGIN.as_bytes()).ok_or("it is no line of a recording in chunks")?;
-        let (checksum, rest) = behind.split_at_checked(DIGITS).ok_or_else(changed)?;
-        let rest = rest.strip_prefix(MIDDLE.as_bytes()).ok_or_else(changed)?;
-        if checksum != digits(rest).as_bytes() {
+        let behind = line.strip_prefix(LINE_PREFIX.as_bytes()).ok_or("it is no line of a recording in chunks")?;
+        let (checksum, rest) = behind.split_at_checked(CHECKSUM_DIGITS).ok_or_else(changed)?;
+        let rest = rest.strip_prefix(CHECKSUM_SUFFIX.as_bytes()).ok_or_else(changed)?;
+        if checksum != sha256_digits(rest).as_bytes() {
             return Err(changed());
         }
         let json = [b"{", rest].concat();
@@ -68,7 +68,7 @@ impl Entry {
     }
 }
 
-fn digits(bytes: &[u8]) -> String {
+fn sha256_digits(bytes: &[u8]) -> String {
     Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
@@ -85,13 +85,13 @@ mod tests {
             at in 0.0..1.0f64,
             bit in 0u8..8,
         ) {
-            let entry = Entry::Ended { number, outcome: End::Lost, reason };
+            let entry = ChunkEntry::Ended { number, outcome: RequestEnd::Lost, reason };
             let mut line = entry.to_line().unwrap();
             prop_assert_eq!(line.iter().filter(|byte| **byte == b'\n').count(), 1);
-            prop_assert_eq!(Entry::of_line(&line), Ok(entry));
+            prop_assert_eq!(ChunkEntry::from_line(&line), Ok(entry));
             let at = (at * (line.len() - 1) as f64) as usize;
             line[at] ^= 1 << bit;
-            prop_assert!(Entry::of_line(&line).is_err());
+            prop_assert!(ChunkEntry::from_line(&line).is_err());
         }
     }
 }

@@ -8,156 +8,165 @@ mod line;
 mod read;
 mod tally;
 
-use super::{Claimed, End, Holder, Order, Queries, Request, Sqlite, Store};
+use super::{CallOrder, CallQueries, CallStore, ClaimHolder, ClaimState, PendingRequest, RequestEnd, SqliteStore};
 use crate::{
-    Answer, By, CostLine, Filter, Key, LedgerError, Place, Refused, Row, Spending,
-    budget::{Spent, fits},
-    run::Sent,
+    CallAnswer, CallKey, CostGrouping, CostLine, LedgerEntry, LedgerError, LedgerFilter, LedgerLocation,
+    RequestRefusedError, RunSpending,
+    budget::{SpentBudget, check_limits},
+    run::SentRequest,
 };
-use append::Appender;
+use append::ChunkAppender;
 use std::{
     collections::BTreeMap,
     fs,
     path::{Path, PathBuf},
     sync::{Arc, Mutex, MutexGuard, PoisonError},
 };
-use tally::Tally;
+use tally::ChunkTally;
 
-pub(crate) use line::Entry;
+pub(crate) use line::ChunkEntry;
 
 /// The recordings of a shard. One of its chunks is current.
 #[derive(Debug, Default)]
-pub(crate) struct Chunks {
-    state: Mutex<State>,
+pub(crate) struct ChunkStore {
+    state: Mutex<ChunkStoreState>,
 }
 
 #[derive(Debug, Default)]
-struct State {
+struct ChunkStoreState {
     /// The spending in the files of the other chunks.
-    others: BTreeMap<PathBuf, Tally>,
-    current: Option<Arc<Chunk>>,
+    others: BTreeMap<PathBuf, ChunkTally>,
+    current: Option<Arc<OpenChunk>>,
     /// The spending in the file of the current chunk.
-    tally: Tally,
+    tally: ChunkTally,
 }
 
 /// The current chunk.
 #[derive(Debug)]
-struct Chunk {
+struct OpenChunk {
     path: PathBuf,
-    file: Appender,
+    file: ChunkAppender,
     /// The answers of this chunk.
-    memory: Sqlite,
+    memory: SqliteStore,
 }
 
-impl Chunks {
+impl ChunkStore {
     /// The recordings of a shard's chunks so far. A file that does not exist counts as empty.
     pub(crate) fn open(earlier: &[PathBuf]) -> Result<Self, LedgerError> {
         let mut others = BTreeMap::new();
         for path in earlier {
-            let path = whole(path)?;
-            let tally = tally_of(&path)?;
+            let path = absolute_path(path)?;
+            let tally = read_tally(&path)?;
             others.insert(path, tally);
         }
-        Ok(Self { state: Mutex::new(State { others, ..State::default() }) })
+        Ok(Self { state: Mutex::new(ChunkStoreState { others, ..ChunkStoreState::default() }) })
     }
 
-    fn state(&self) -> MutexGuard<'_, State> {
+    fn lock_state(&self) -> MutexGuard<'_, ChunkStoreState> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn current(&self) -> Result<Arc<Chunk>, LedgerError> {
-        self.state().current.clone().ok_or_else(none)
+    fn current_chunk(&self) -> Result<Arc<OpenChunk>, LedgerError> {
+        self.lock_state().current.clone().ok_or_else(no_chunk_error)
     }
 
     /// Reserves the money of a request.
-    fn reserve(&self, request: &Request<'_>) -> Result<(Arc<Chunk>, Entry), Refused> {
-        let mut state = self.state();
-        let chunk = state.current.clone().ok_or_else(none)?;
-        fits(request.limits, state.spent(request.run), request.most_usd)?;
-        let entry = Entry::Sent {
-            number: state.tally.next(),
+    fn reserve_request(
+        &self,
+        request: &PendingRequest<'_>,
+    ) -> Result<(Arc<OpenChunk>, ChunkEntry), RequestRefusedError> {
+        let mut state = self.lock_state();
+        let chunk = state.current.clone().ok_or_else(no_chunk_error)?;
+        check_limits(request.limits, state.spent_by_run(request.run), request.most_usd)?;
+        let entry = ChunkEntry::Sent {
+            number: state.tally.next_number(),
             run: request.run.to_owned(),
             key: request.key.clone(),
             most_usd: request.most_usd,
             at_unix_s: request.at_unix_s,
         };
-        state.tally.take(&entry);
+        state.tally.count_entry(&entry);
         Ok((chunk, entry))
     }
 }
 
-impl State {
-    fn tallies(&self) -> impl Iterator<Item = &Tally> {
+impl ChunkStoreState {
+    fn all_tallies(&self) -> impl Iterator<Item = &ChunkTally> {
         self.others.values().chain([&self.tally])
     }
 
-    fn spent(&self, run: &str) -> Spent {
-        self.tallies().map(|tally| tally.spent(run)).fold(Spent::default(), |all, one| Spent {
+    fn spent_by_run(&self, run: &str) -> SpentBudget {
+        self.all_tallies().map(|tally| tally.spent_by_run(run)).fold(SpentBudget::default(), |all, one| SpentBudget {
             usd: all.usd + one.usd,
             reserved_usd: all.reserved_usd + one.reserved_usd,
             calls: all.calls.saturating_add(one.calls),
         })
     }
 
-    fn spending(&self, run: Option<&str>) -> Spending {
-        self.tallies().map(|tally| tally.spending(run)).fold(Spending::default(), Spending::plus)
+    fn spending_by_run(&self, run: Option<&str>) -> RunSpending {
+        self.all_tallies().map(|tally| tally.spending_by_run(run)).fold(RunSpending::default(), RunSpending::plus)
     }
 }
 
-impl Chunk {
+impl OpenChunk {
     /// Opens a chunk's file, or makes it. An incomplete last line, which a crash can leave, is cut off.
-    fn open(path: &Path) -> Result<(Self, Tally), LedgerError> {
+    fn open(path: &Path) -> Result<(Self, ChunkTally), LedgerError> {
         if let Some(folder) = path.parent() {
-            fs::create_dir_all(folder).map_err(LedgerError::io(folder, "make the folder"))?;
+            fs::create_dir_all(folder).map_err(LedgerError::io_error(folder, "make the folder"))?;
         }
-        let (mut tally, memory) = (Tally::default(), Sqlite::in_memory()?);
-        let sound = read::read(path, |entry| {
-            tally.take(&entry);
-            if let Entry::Answered { row, .. } = entry {
-                memory.fill(*row);
+        let (mut tally, memory) = (ChunkTally::default(), SqliteStore::in_memory()?);
+        let sound = read::read_entries(path, |entry| {
+            tally.count_entry(&entry);
+            if let ChunkEntry::Answered { row, .. } = entry {
+                memory.add_recorded_answer(*row);
             }
         })?;
         memory.flush()?;
-        let file = Appender::start(path, sound)?;
+        let file = ChunkAppender::start(path, sound)?;
         Ok((Self { path: path.to_owned(), file, memory }, tally))
     }
 }
 
 /// The spending of all runs in a file. A file that does not exist counts as empty.
-pub(crate) fn spent_in(path: &Path) -> Result<Spending, LedgerError> {
-    Ok(tally_of(path)?.spending(None))
+pub(crate) fn spent_in(path: &Path) -> Result<RunSpending, LedgerError> {
+    Ok(read_tally(path)?.spending_by_run(None))
 }
 
-fn tally_of(path: &Path) -> Result<Tally, LedgerError> {
-    let mut tally = Tally::default();
-    read::read(path, |entry| tally.take(&entry))?;
+fn read_tally(path: &Path) -> Result<ChunkTally, LedgerError> {
+    let mut tally = ChunkTally::default();
+    read::read_entries(path, |entry| tally.count_entry(&entry))?;
     Ok(tally)
 }
 
 /// The absolute path of a file, so that one file has one name.
-fn whole(path: &Path) -> Result<PathBuf, LedgerError> {
-    std::path::absolute(path).map_err(LedgerError::io(path, "find the recording"))
+fn absolute_path(path: &Path) -> Result<PathBuf, LedgerError> {
+    std::path::absolute(path).map_err(LedgerError::io_error(path, "find the recording"))
 }
 
-fn none() -> LedgerError {
-    LedgerError::Misuse { place: Place::file(Path::new("recording")), reason: "no chunk was turned to yet" }
+fn no_chunk_error() -> LedgerError {
+    LedgerError::Misuse {
+        place: LedgerLocation::from_path(Path::new("recording")),
+        reason: "no chunk was turned to yet",
+    }
 }
 
-impl Store for Chunks {
-    fn place(&self) -> Place {
-        Place::File(self.current().map_or_else(|_| PathBuf::from("recording"), |chunk| chunk.path.clone()))
+impl CallStore for ChunkStore {
+    fn ledger_location(&self) -> LedgerLocation {
+        LedgerLocation::File(
+            self.current_chunk().map_or_else(|_| PathBuf::from("recording"), |chunk| chunk.path.clone()),
+        )
     }
 
     fn turn_to(&self, path: &Path) -> Result<(), LedgerError> {
-        let path = whole(path)?;
-        let mut state = self.state();
+        let path = absolute_path(path)?;
+        let mut state = self.lock_state();
         if let Some(chunk) = &state.current {
             if chunk.path == path {
                 return Ok(());
             }
             chunk.file.flush()?;
         }
-        let (chunk, tally) = Chunk::open(&path)?;
+        let (chunk, tally) = OpenChunk::open(&path)?;
         // The file is counted once: as the current one.
         state.others.remove(&path);
         let tally = std::mem::replace(&mut state.tally, tally);
@@ -167,49 +176,49 @@ impl Store for Chunks {
         Ok(())
     }
 
-    fn answer(&self, key: &Key, run: &str) -> Result<Option<Answer>, LedgerError> {
-        self.current()?.memory.answer(key, run)
+    fn find_answer(&self, key: &CallKey, run: &str) -> Result<Option<CallAnswer>, LedgerError> {
+        self.current_chunk()?.memory.find_answer(key, run)
     }
 
-    fn claim(&self, _: &Key, _: Option<&str>) -> Result<Claimed, LedgerError> {
-        Ok(Claimed::Ours)
+    fn claim_call(&self, _: &CallKey, _: Option<&str>) -> Result<ClaimState, LedgerError> {
+        Ok(ClaimState::Ours)
     }
 
-    fn release(&self, _: &Key) {}
+    fn release_call(&self, _: &CallKey) {}
 
-    fn holder(&self, _: &Key) -> Result<Option<Holder>, LedgerError> {
+    fn claim_holder(&self, _: &CallKey) -> Result<Option<ClaimHolder>, LedgerError> {
         Ok(None)
     }
 
-    fn sent(&self, request: &Request<'_>) -> Result<i64, Refused> {
-        let (chunk, entry) = self.reserve(request)?;
-        let Entry::Sent { number, .. } = entry else { return Err(none().into()) };
-        if let Err(error) = chunk.file.keep(&entry) {
-            let cancelled = Entry::Ended { number, outcome: End::Cancelled, reason: String::new() };
-            self.state().tally.take(&cancelled);
+    fn write_request(&self, request: &PendingRequest<'_>) -> Result<i64, RequestRefusedError> {
+        let (chunk, entry) = self.reserve_request(request)?;
+        let ChunkEntry::Sent { number, .. } = entry else { return Err(no_chunk_error().into()) };
+        if let Err(error) = chunk.file.write_line(&entry) {
+            let cancelled = ChunkEntry::Ended { number, outcome: RequestEnd::Cancelled, reason: String::new() };
+            self.lock_state().tally.count_entry(&cancelled);
             return Err(error.into());
         }
         Ok(number)
     }
 
-    fn ended(&self, sent: &Sent, end: End, reason: &str) {
-        let entry = Entry::Ended { number: sent.number, outcome: end, reason: reason.to_owned() };
-        if let Ok(chunk) = self.current() {
-            self.state().tally.take(&entry);
-            chunk.file.note(&entry);
+    fn write_end(&self, sent: &SentRequest, end: RequestEnd, reason: &str) {
+        let entry = ChunkEntry::Ended { number: sent.number, outcome: end, reason: reason.to_owned() };
+        if let Ok(chunk) = self.current_chunk() {
+            self.lock_state().tally.count_entry(&entry);
+            chunk.file.queue_line(&entry);
         }
     }
 
-    fn answered(&self, sent: Option<&Sent>, row: Row) -> Result<bool, LedgerError> {
-        let chunk = self.current()?;
-        let entry = Entry::Answered { number: sent.map(|sent| sent.number), row: Box::new(row.clone()) };
-        chunk.file.keep(&entry)?;
-        self.state().tally.take(&entry);
-        chunk.memory.answered(None, row)
+    fn write_answer(&self, sent: Option<&SentRequest>, row: LedgerEntry) -> Result<bool, LedgerError> {
+        let chunk = self.current_chunk()?;
+        let entry = ChunkEntry::Answered { number: sent.map(|sent| sent.number), row: Box::new(row.clone()) };
+        chunk.file.write_line(&entry)?;
+        self.lock_state().tally.count_entry(&entry);
+        chunk.memory.write_answer(None, row)
     }
 
     fn flush(&self) -> Result<(), LedgerError> {
-        let chunk = self.current()?;
+        let chunk = self.current_chunk()?;
         chunk.file.flush()?;
         chunk.memory.flush()
     }
@@ -219,41 +228,41 @@ impl Store for Chunks {
     }
 }
 
-impl Queries for Chunks {
-    fn spent(&self, run: &str) -> Result<Spent, LedgerError> {
-        Ok(self.state().spent(run))
+impl CallQueries for ChunkStore {
+    fn spent_budget(&self, run: &str) -> Result<SpentBudget, LedgerError> {
+        Ok(self.lock_state().spent_by_run(run))
     }
 
-    fn spending(&self, run: &str) -> Result<Spending, LedgerError> {
-        Ok(self.state().spending(Some(run)))
+    fn run_spending(&self, run: &str) -> Result<RunSpending, LedgerError> {
+        Ok(self.lock_state().spending_by_run(Some(run)))
     }
 
-    fn each(
+    fn for_each_call(
         &self,
-        filter: &Filter,
-        order: Order,
-        take: &mut dyn FnMut(Row) -> Result<(), LedgerError>,
+        filter: &LedgerFilter,
+        order: CallOrder,
+        take: &mut dyn FnMut(LedgerEntry) -> Result<(), LedgerError>,
     ) -> Result<(), LedgerError> {
-        self.current()?.memory.each(filter, order, take)
+        self.current_chunk()?.memory.for_each_call(filter, order, take)
     }
 
-    fn prune(&self, _: &Filter) -> Result<usize, LedgerError> {
-        Err(LedgerError::Misuse { place: self.place(), reason: "nothing can be dropped from a recording" })
+    fn prune_calls(&self, _: &LedgerFilter) -> Result<usize, LedgerError> {
+        Err(LedgerError::Misuse { place: self.ledger_location(), reason: "nothing can be dropped from a recording" })
     }
 
     fn prune_changed(&self) -> Result<usize, LedgerError> {
-        self.prune(&Filter::default())
+        self.prune_calls(&LedgerFilter::default())
     }
 
-    fn has_answers_of(&self, model: &str, base_url: &str) -> Result<bool, LedgerError> {
-        self.current()?.memory.has_answers_of(model, base_url)
+    fn has_answers_from(&self, model: &str, base_url: &str) -> Result<bool, LedgerError> {
+        self.current_chunk()?.memory.has_answers_from(model, base_url)
     }
 
-    fn costs(&self, by: By) -> Result<Vec<CostLine>, LedgerError> {
-        self.current()?.memory.costs(by)
+    fn sum_costs(&self, by: CostGrouping) -> Result<Vec<CostLine>, LedgerError> {
+        self.current_chunk()?.memory.sum_costs(by)
     }
 
-    fn lost(&self) -> Result<u64, LedgerError> {
-        Ok(self.state().spending(None).lost)
+    fn count_lost_requests(&self) -> Result<u64, LedgerError> {
+        Ok(self.lock_state().spending_by_run(None).lost)
     }
 }

@@ -1,6 +1,6 @@
 //! Reads a chunk's file, and finds out where its intact part ends.
 
-use super::line::{Entry, FORMAT};
+use super::line::{CHUNK_LINE_FORMAT, ChunkEntry};
 use crate::{LedgerError, recording::MOST_LINE_BYTES};
 use std::{
     fs::File,
@@ -13,8 +13,8 @@ use std::{
 ///
 /// # Errors
 /// When the file cannot be read, is no chunk's file, or a line was changed.
-pub(super) fn read(path: &Path, mut take: impl FnMut(Entry)) -> Result<u64, LedgerError> {
-    let failed = LedgerError::io(path, "read the recording");
+pub(super) fn read_entries(path: &Path, mut take: impl FnMut(ChunkEntry)) -> Result<u64, LedgerError> {
+    let failed = LedgerError::io_error(path, "read the recording");
     let mut reader = match File::open(path) {
         Ok(file) => BufReader::new(file),
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(0),
@@ -24,7 +24,7 @@ pub(super) fn read(path: &Path, mut take: impl FnMut(Entry)) -> Result<u64, Ledg
     let mut sound = 0;
     for line in 1.. {
         let broken = |reason: String| LedgerError::Chunk { path: path.to_owned(), line, reason };
-        if !next(&mut reader, &mut bytes).map_err(&failed)? {
+        if !read_next_line(&mut reader, &mut bytes).map_err(&failed)? {
             break;
         }
         if bytes.len() as u64 > MOST_LINE_BYTES {
@@ -33,9 +33,9 @@ pub(super) fn read(path: &Path, mut take: impl FnMut(Entry)) -> Result<u64, Ledg
         if bytes.last() != Some(&b'\n') {
             break;
         }
-        match Entry::of_line(&bytes) {
-            Ok(Entry::Ledger { format: FORMAT }) if line == 1 => {}
-            Ok(Entry::Ledger { format }) if line == 1 => {
+        match ChunkEntry::from_line(&bytes) {
+            Ok(ChunkEntry::Ledger { format: CHUNK_LINE_FORMAT }) if line == 1 => {}
+            Ok(ChunkEntry::Ledger { format }) if line == 1 => {
                 return Err(broken(format!("a newer version of this program wrote it (format {format})")));
             }
             Ok(_) if line == 1 => return Err(broken("it does not begin as a recording in chunks".to_owned())),
@@ -50,7 +50,7 @@ pub(super) fn read(path: &Path, mut take: impl FnMut(Entry)) -> Result<u64, Ledg
 }
 
 /// Reads the next line, or the beginning of one that is too long. Returns whether there is one.
-fn next(reader: &mut BufReader<File>, bytes: &mut Vec<u8>) -> std::io::Result<bool> {
+fn read_next_line(reader: &mut BufReader<File>, bytes: &mut Vec<u8>) -> std::io::Result<bool> {
     bytes.clear();
     reader.by_ref().take(MOST_LINE_BYTES + 1).read_until(b'\n', bytes)?;
     Ok(!bytes.is_empty())
@@ -58,8 +58,8 @@ fn next(reader: &mut BufReader<File>, bytes: &mut Vec<u8>) -> std::io::Result<bo
 
 /// Whether none of the following lines is intact.
 fn is_all_torn(reader: &mut BufReader<File>, bytes: &mut Vec<u8>) -> std::io::Result<bool> {
-    while next(reader, bytes)? {
-        if Entry::of_line(bytes).is_ok() {
+    while read_next_line(reader, bytes)? {
+        if ChunkEntry::from_line(bytes).is_ok() {
             return Ok(false);
         }
     }

@@ -1,44 +1,44 @@
 //! Sums up the requests and the spending of each run over the entries of a chunk's file.
 
-use super::line::Entry;
-use crate::{Spending, budget::Spent, store::End};
+use super::line::ChunkEntry;
+use crate::{RunSpending, budget::SpentBudget, store::RequestEnd};
 use std::collections::BTreeMap;
 
 /// The sums over the entries of a file.
 #[derive(Debug, Default)]
-pub(super) struct Tally {
-    runs: BTreeMap<String, Sums>,
+pub(super) struct ChunkTally {
+    runs: BTreeMap<String, RunSums>,
     /// Requests without a known end: they are in flight, or were when a program was killed.
-    open: BTreeMap<i64, Open>,
+    open: BTreeMap<i64, OpenRequest>,
     /// The highest number of a request.
     last: i64,
 }
 
 #[derive(Debug)]
-struct Open {
+struct OpenRequest {
     run: String,
     most_usd: Option<f64>,
 }
 
 #[derive(Debug, Default)]
-struct Sums {
-    known: Spending,
+struct RunSums {
+    known: RunSpending,
     /// The amount that counts against the run's limit. An answer without a price counts at its upper bound.
     against_usd: f64,
 }
 
-impl Tally {
+impl ChunkTally {
     /// Counts an entry.
-    pub(super) fn take(&mut self, entry: &Entry) {
+    pub(super) fn count_entry(&mut self, entry: &ChunkEntry) {
         match entry {
-            Entry::Ledger { .. } => {}
-            Entry::Sent { number, run, most_usd, .. } => {
+            ChunkEntry::Ledger { .. } => {}
+            ChunkEntry::Sent { number, run, most_usd, .. } => {
                 self.last = self.last.max(*number);
                 self.runs.entry(run.clone()).or_default().known.requests += 1;
-                self.open.insert(*number, Open { run: run.clone(), most_usd: *most_usd });
+                self.open.insert(*number, OpenRequest { run: run.clone(), most_usd: *most_usd });
             }
-            Entry::Ended { number, outcome, .. } => self.ended(*number, *outcome),
-            Entry::Answered { number, row } => {
+            ChunkEntry::Ended { number, outcome, .. } => self.count_end(*number, *outcome),
+            ChunkEntry::Answered { number, row } => {
                 let open = number.and_then(|number| self.open.remove(&number));
                 let sums = self.runs.entry(row.run.clone()).or_default();
                 sums.known.answered += 1;
@@ -48,13 +48,13 @@ impl Tally {
         }
     }
 
-    fn ended(&mut self, number: i64, end: End) {
+    fn count_end(&mut self, number: i64, end: RequestEnd) {
         let Some(open) = self.open.remove(&number) else { return };
         let sums = self.runs.entry(open.run).or_default();
         match end {
-            End::Cancelled => sums.known.requests = sums.known.requests.saturating_sub(1),
-            End::Failed => {}
-            End::Lost => {
+            RequestEnd::Cancelled => sums.known.requests = sums.known.requests.saturating_sub(1),
+            RequestEnd::Failed => {}
+            RequestEnd::Lost => {
                 let usd = open.most_usd.unwrap_or(0.0);
                 sums.known.lost += 1;
                 sums.known.maybe_usd += usd;
@@ -64,15 +64,15 @@ impl Tally {
     }
 
     /// The number of the next request.
-    pub(super) fn next(&self) -> i64 {
+    pub(super) fn next_number(&self) -> i64 {
         self.last.saturating_add(1)
     }
 
     /// The spending of a run that counts against its limits.
-    pub(super) fn spent(&self, run: &str) -> Spent {
+    pub(super) fn spent_by_run(&self, run: &str) -> SpentBudget {
         let sums = self.runs.get(run);
         let open = self.open.values().filter(|open| open.run == run);
-        Spent {
+        SpentBudget {
             usd: sums.map_or(0.0, |sums| sums.against_usd),
             reserved_usd: open.map(|open| open.most_usd.unwrap_or(0.0)).sum(),
             calls: sums.map_or(0, |sums| sums.known.requests),
@@ -80,10 +80,10 @@ impl Tally {
     }
 
     /// The spending of a run, or of all runs.
-    pub(super) fn spending(&self, run: Option<&str>) -> Spending {
+    pub(super) fn spending_by_run(&self, run: Option<&str>) -> RunSpending {
         let is_of = |name: &str| run.is_none_or(|run| run == name);
         let runs = self.runs.iter().filter(|(name, _)| is_of(name)).map(|(_, sums)| sums.known);
-        let mut all = runs.fold(Spending::default(), Spending::plus);
+        let mut all = runs.fold(RunSpending::default(), RunSpending::plus);
         for open in self.open.values().filter(|open| is_of(&open.run)) {
             all.lost += 1;
             all.maybe_usd += open.most_usd.unwrap_or(0.0);

@@ -2,8 +2,8 @@
 
 use super::amount;
 use crate::{
-    Key, LedgerError, Place,
-    store::{End, Request},
+    CallKey, LedgerError, LedgerLocation,
+    store::{PendingRequest, RequestEnd},
 };
 use std::{
     hash::{BuildHasher, RandomState},
@@ -15,19 +15,19 @@ use std::{
     time::{SystemTime, UNIX_EPOCH},
 };
 use wayword_database::{
-    Pool,
+    ConnectionPool,
     postgres::{self, error::SqlState},
 };
 
 /// Connections for everything but signs of life, which have one more.
-const CONNECTIONS: usize = 3;
+const MAX_CONNECTIONS: usize = 3;
 
 /// Number of rows of `settled` for one run, over which programs spread their changes.
-const SLOTS: u64 = 16;
+const SETTLED_ROWS_PER_RUN: u64 = 16;
 
 /// Reserves the money of a request and writes the request down, if no limit is exceeded. Executed a second time, it has no effect. The
 /// released amounts that it reads may have grown since the statement began, but never shrunk, so the limits hold.
-const RESERVE: &str = "
+const RESERVE_SQL: &str = "
 WITH back AS (
     SELECT coalesce(sum(released - spent), 0)::bigint AS usd, coalesce(sum(cancelled), 0)::bigint AS calls
     FROM wayword_ledger.settled WHERE run = $3
@@ -50,7 +50,7 @@ SELECT EXISTS (SELECT FROM written) OR EXISTS (SELECT FROM wayword_ledger.sent W
 const NEW_RUN: &str = "INSERT INTO wayword_ledger.runs (run) VALUES ($1) ON CONFLICT DO NOTHING";
 
 /// Ends a request and releases its money, as far as it was not lost. Executed a second time, it has no effect.
-const END: &str = "
+const END_SQL: &str = "
 WITH moved AS (
     UPDATE wayword_ledger.sent SET outcome = $3, reason = $4
     WHERE program = $1 AND number = $2 AND outcome IS NULL RETURNING run, coalesce(most, 0) AS most
@@ -60,31 +60,31 @@ SELECT run, $5, most, CASE $3 WHEN 'lost' THEN most ELSE 0 END, CASE $3 WHEN 'ca
 ON CONFLICT (run, slot) DO UPDATE SET released = s.released + EXCLUDED.released, spent = s.spent + EXCLUDED.spent,
     cancelled = s.cancelled + EXCLUDED.cancelled";
 
-const RELEASE: &str = "DELETE FROM wayword_ledger.claims WHERE key = $1 AND holder = $2";
+const RELEASE_SQL: &str = "DELETE FROM wayword_ledger.claims WHERE key = $1 AND holder = $2";
 
 /// A program's link to the database.
 #[derive(Debug)]
-pub(super) struct Link {
-    pub(super) pool: Pool,
+pub(super) struct DatabaseLink {
+    pub(super) pool: ConnectionPool,
     /// The unique name of this program.
     pub(super) program: String,
     /// Which of a run's rows of `settled` this program changes.
     pub(super) slot: i16,
     /// The number of the next request.
     next: AtomicI64,
-    owed: Mutex<Vec<Owed>>,
+    owed: Mutex<Vec<OwedWrite>>,
 }
 
 /// A write that could not be made, and will be made later.
 #[derive(Debug)]
-enum Owed {
-    End { number: i64, end: End, reason: String },
-    Release(Key),
+enum OwedWrite {
+    End { number: i64, end: RequestEnd, reason: String },
+    Release(CallKey),
 }
 
-/// The result of [`Link::reserve`].
+/// The result of [`DatabaseLink::reserve_request`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Reserved {
+pub(super) enum ReserveOutcome {
     Yes,
     /// A limit would be exceeded.
     No,
@@ -92,60 +92,66 @@ pub(super) enum Reserved {
     Again,
 }
 
-impl Link {
-    pub(super) fn new(database: wayword_database::Database) -> Self {
+impl DatabaseLink {
+    pub(super) fn new(database: wayword_database::PostgresDatabase) -> Self {
         let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_micros();
         // Programs on many machines need different names, so the clock is not enough.
         let random = RandomState::new().hash_one((since, std::process::id()));
         Self {
-            pool: Pool::new(database, CONNECTIONS),
+            pool: ConnectionPool::new(database, MAX_CONNECTIONS),
             program: format!("{:x}-{since:x}-{random:x}", std::process::id()),
-            slot: i16::try_from(random % SLOTS).unwrap_or(0),
+            slot: i16::try_from(random % SETTLED_ROWS_PER_RUN).unwrap_or(0),
             next: AtomicI64::new(0),
             owed: Mutex::default(),
         }
     }
 
-    pub(super) fn place(&self) -> Place {
-        Place::Database(self.pool.database().shown().to_owned())
+    pub(super) fn ledger_location(&self) -> LedgerLocation {
+        LedgerLocation::Database(self.pool.database().shown_name().to_owned())
     }
 
     /// A number for a request.
-    pub(super) fn number(&self) -> i64 {
+    pub(super) fn next_request_number(&self) -> i64 {
         self.next.fetch_add(1, Ordering::Relaxed)
     }
 
     /// Executes a statement.
-    pub(super) fn rows(
+    pub(super) fn query_rows(
         &self,
         doing: &'static str,
         sql: &'static str,
         values: &[&(dyn postgres::types::ToSql + Sync)],
     ) -> Result<Vec<postgres::Row>, LedgerError> {
-        Ok(self.pool.with(doing, |connection| connection.rows(sql, values))?)
+        Ok(self.pool.with_connection(doing, |connection| connection.query_rows(sql, values))?)
     }
 
     /// Executes a statement that gives one row, and reads it.
-    pub(super) fn row<T>(
+    pub(super) fn query_row<T>(
         &self,
         doing: &'static str,
         sql: &'static str,
         values: &[&(dyn postgres::types::ToSql + Sync)],
         read: impl Fn(&postgres::Row) -> Result<T, postgres::Error>,
     ) -> Result<Option<T>, LedgerError> {
-        Ok(self.pool.with(doing, |connection| connection.rows(sql, values)?.first().map(&read).transpose())?)
+        Ok(self
+            .pool
+            .with_connection(doing, |connection| connection.query_rows(sql, values)?.first().map(&read).transpose())?)
     }
 
     /// Reserves the money of a request and writes it down.
-    pub(super) fn reserve(&self, number: i64, request: &Request<'_>) -> Result<Reserved, LedgerError> {
-        let Request { run, key, most_usd, at_unix_s, limits } = request;
-        let (most, key) = (most_usd.map(amount::up), key.as_str());
-        let max_usd = limits.max_usd.map(amount::limit);
-        let max_calls = limits.max_calls.map(super::rows::count);
-        let done = self.pool.with("write a request down", |connection| {
+    pub(super) fn reserve_request(
+        &self,
+        number: i64,
+        request: &PendingRequest<'_>,
+    ) -> Result<ReserveOutcome, LedgerError> {
+        let PendingRequest { run, key, most_usd, at_unix_s, limits } = request;
+        let (most, key) = (most_usd.map(amount::nanos_rounded_up), key.as_str());
+        let max_usd = limits.max_usd.map(amount::limit_nanos);
+        let max_calls = limits.max_calls.map(super::rows::count_to_i64);
+        let done = self.pool.with_connection("write a request down", |connection| {
             let values: [&(dyn postgres::types::ToSql + Sync); 8] =
                 [&self.program, &number, run, &key, &most, at_unix_s, &max_usd, &max_calls];
-            match connection.rows(RESERVE, &values) {
+            match connection.query_rows(RESERVE_SQL, &values) {
                 Ok(rows) => rows.first().map(|row| Ok((row.try_get(0)?, row.try_get(1)?))).transpose(),
                 // The same statement was sent before the connection was lost, and is carried out at this moment.
                 Err(error) if error.code() == Some(&SqlState::UNIQUE_VIOLATION) => Ok(None),
@@ -153,40 +159,42 @@ impl Link {
             }
         })?;
         match done {
-            Some((true, _)) => Ok(Reserved::Yes),
-            Some((false, true)) => Ok(Reserved::No),
+            Some((true, _)) => Ok(ReserveOutcome::Yes),
+            Some((false, true)) => Ok(ReserveOutcome::No),
             Some((false, false)) => {
-                self.rows("begin a run", NEW_RUN, &[run])?;
-                Ok(Reserved::Again)
+                self.query_rows("begin a run", NEW_RUN, &[run])?;
+                Ok(ReserveOutcome::Again)
             }
-            None => Ok(Reserved::Again),
+            None => Ok(ReserveOutcome::Again),
         }
     }
 
     /// Ends a request, now or later.
-    pub(super) fn end(&self, number: i64, end: End, reason: &str) {
-        self.owe(Owed::End { number, end, reason: super::rows::text(reason) });
+    pub(super) fn end_request(&self, number: i64, end: RequestEnd, reason: &str) {
+        self.write_now_or_later(OwedWrite::End { number, end, reason: super::rows::without_nul(reason) });
     }
 
     /// Gives the right to make a call back, now or later.
-    pub(super) fn release(&self, key: &Key) {
-        self.owe(Owed::Release(key.clone()));
+    pub(super) fn release_claim(&self, key: &CallKey) {
+        self.write_now_or_later(OwedWrite::Release(key.clone()));
     }
 
-    fn owe(&self, owed: Owed) {
-        if self.pay(&owed).is_err() {
+    fn write_now_or_later(&self, owed: OwedWrite) {
+        if self.make_write(&owed).is_err() {
             self.owed.lock().unwrap_or_else(PoisonError::into_inner).push(owed);
         }
     }
 
-    fn pay(&self, owed: &Owed) -> Result<(), LedgerError> {
+    fn make_write(&self, owed: &OwedWrite) -> Result<(), LedgerError> {
         match owed {
-            Owed::End { number, end, reason } => {
+            OwedWrite::End { number, end, reason } => {
                 let values: [&(dyn postgres::types::ToSql + Sync); 5] =
                     [&self.program, number, &end.name(), reason, &self.slot];
-                self.rows("write down how a request ended", END, &values).map(drop)
+                self.query_rows("write down how a request ended", END_SQL, &values).map(drop)
             }
-            Owed::Release(key) => self.rows("release a call", RELEASE, &[&key.as_str(), &self.program]).map(drop),
+            OwedWrite::Release(key) => {
+                self.query_rows("release a call", RELEASE_SQL, &[&key.as_str(), &self.program]).map(drop)
+            }
         }
     }
 
@@ -196,7 +204,7 @@ impl Link {
         let mut failed = Ok(());
         for one in owed {
             // After a failure the others would fail too, each after a long time.
-            failed = failed.and_then(|()| self.pay(&one));
+            failed = failed.and_then(|()| self.make_write(&one));
             if failed.is_err() {
                 self.owed.lock().unwrap_or_else(PoisonError::into_inner).push(one);
             }

@@ -12,22 +12,25 @@ mod rates;
 mod rows;
 mod tables;
 
-use super::{Claimed, End, Holder, Queries, Request, Slot, Store};
-use crate::{Answer, Key, LedgerError, Place, Rates, Refused, Row, budget::fits, checksum, run::Sent};
-use link::{Link, Reserved};
-use presence::Presence;
-use rows::{columns, count, sound, text};
+use super::{CallQueries, CallStore, ClaimHolder, ClaimState, PendingRequest, RequestEnd, SendSlot};
+use crate::{
+    CallAnswer, CallKey, LedgerEntry, LedgerError, LedgerLocation, ProviderRates, RequestRefusedError,
+    budget::check_limits, checksum, run::SentRequest,
+};
+use link::{DatabaseLink, ReserveOutcome};
+use presence::DatabasePresence;
+use rows::{columns, count_to_i64, read_checked_entry, without_nul};
 use std::sync::{Arc, OnceLock};
-use wayword_database::{Database, postgres::types::ToSql, prepare};
+use wayword_database::{PostgresDatabase, postgres::types::ToSql, prepare_tables};
 
-pub(crate) use presence::Pulse;
-pub use tables::TABLES;
+pub(crate) use presence::LeaseTiming;
+pub use tables::LEDGER_TABLES;
 
 /// How often a refused reservation is tried again if the request should fit by the current state of the ledger.
-const TRIES: usize = 20;
+const MAX_RESERVE_TRIES: usize = 20;
 
 /// Selects the answer of a call and notes that a run has used it.
-const ANSWER: &str = concat!(
+const ANSWER_SQL: &str = concat!(
     "WITH used AS (
         INSERT INTO wayword_ledger.uses (run, key)
         SELECT $2, key FROM wayword_ledger.calls WHERE key = $1
@@ -38,7 +41,7 @@ const ANSWER: &str = concat!(
     " FROM wayword_ledger.calls WHERE key = $1"
 );
 
-const CLAIM: &str = "
+const CLAIM_SQL: &str = "
 WITH given AS (
     INSERT INTO wayword_ledger.claims AS c (key, holder)
     SELECT $1, $2 WHERE NOT EXISTS (SELECT FROM wayword_ledger.calls WHERE key = $1)
@@ -50,7 +53,7 @@ const IS_ANSWERED: &str = "SELECT EXISTS (SELECT FROM wayword_ledger.calls WHERE
 
 /// Selects the holder of a claim. While the server has been running for less than a lease, no holder counts as gone, because programs
 /// could not give signs of life before.
-const HOLDER: &str = "
+const HOLDER_SQL: &str = "
 SELECT holder, (SELECT count(*) FROM wayword_ledger.sent AS s WHERE s.key = c.key AND s.program = c.holder),
     pg_postmaster_start_time() < clock_timestamp() - make_interval(secs => $2) AND NOT EXISTS (
         SELECT FROM wayword_ledger.presence AS p
@@ -60,7 +63,7 @@ FROM wayword_ledger.claims AS c WHERE key = $1";
 
 /// Stores an answer if it is the first, ends its request, releases the money that it did not cost, and releases the claim. The
 /// conditions on row counts, which are always true, only make one part wait for the other.
-const ANSWERED: &str = "
+const STORE_ANSWER_SQL: &str = "
 WITH moved AS (
     UPDATE wayword_ledger.sent SET outcome = 'answered', usd = $10
     WHERE program = $16 AND number = $17 AND outcome IS NULL RETURNING run, coalesce(most, 0) AS most
@@ -86,87 +89,87 @@ SELECT EXISTS (SELECT FROM kept)";
 
 /// A ledger in a database.
 #[derive(Debug)]
-pub(crate) struct Postgres {
-    link: Arc<Link>,
-    pulse: Pulse,
+pub(crate) struct PostgresStore {
+    link: Arc<DatabaseLink>,
+    pulse: LeaseTiming,
     /// Shows other programs that this one is running, from its first claim on.
-    presence: OnceLock<Result<Presence, LedgerError>>,
+    presence: OnceLock<Result<DatabasePresence, LedgerError>>,
 }
 
-impl Postgres {
-    pub(crate) fn open(database: &Database, pulse: Pulse) -> Result<Self, LedgerError> {
-        let link = Link::new(database.clone());
-        prepare(&link.pool, &TABLES)?;
+impl PostgresStore {
+    pub(crate) fn open(database: &PostgresDatabase, pulse: LeaseTiming) -> Result<Self, LedgerError> {
+        let link = DatabaseLink::new(database.clone());
+        prepare_tables(&link.pool, &LEDGER_TABLES)?;
         Ok(Self { link: Arc::new(link), pulse, presence: OnceLock::new() })
     }
 
     /// Shows other programs that this one is running.
-    fn appear(&self) -> Result<(), LedgerError> {
-        match self.presence.get_or_init(|| Presence::new(&self.link, self.pulse)) {
+    fn show_presence(&self) -> Result<(), LedgerError> {
+        match self.presence.get_or_init(|| DatabasePresence::new(&self.link, self.pulse)) {
             Ok(_) => Ok(()),
             Err(error) => Err(error.clone()),
         }
     }
 }
 
-impl Store for Postgres {
-    fn place(&self) -> Place {
-        self.link.place()
+impl CallStore for PostgresStore {
+    fn ledger_location(&self) -> LedgerLocation {
+        self.link.ledger_location()
     }
 
-    fn answer(&self, key: &Key, run: &str) -> Result<Option<Answer>, LedgerError> {
-        let rows = self.link.rows("look for an answer", ANSWER, &[&key.as_str(), &run])?;
-        rows.first().map(|row| sound(row, &self.place()).map(|kept| kept.answer)).transpose()
+    fn find_answer(&self, key: &CallKey, run: &str) -> Result<Option<CallAnswer>, LedgerError> {
+        let rows = self.link.query_rows("look for an answer", ANSWER_SQL, &[&key.as_str(), &run])?;
+        rows.first().map(|row| read_checked_entry(row, &self.ledger_location()).map(|kept| kept.answer)).transpose()
     }
 
-    fn claim(&self, key: &Key, from: Option<&str>) -> Result<Claimed, LedgerError> {
-        self.appear()?;
+    fn claim_call(&self, key: &CallKey, from: Option<&str>) -> Result<ClaimState, LedgerError> {
+        self.show_presence()?;
         let values: [&(dyn ToSql + Sync); 3] = [&key.as_str(), &self.link.program, &from];
         let read = |row: &wayword_database::postgres::Row| Ok((row.try_get(0)?, row.try_get(1)?));
-        match self.link.row("claim a call", CLAIM, &values, read)?.unwrap_or_default() {
-            (true, _) => return Ok(Claimed::Answered),
-            (false, false) => return Ok(Claimed::Others),
+        match self.link.query_row("claim a call", CLAIM_SQL, &values, read)?.unwrap_or_default() {
+            (true, _) => return Ok(ClaimState::Answered),
+            (false, false) => return Ok(ClaimState::Others),
             (false, true) => {}
         }
         // The statement may have waited for the one that stored the answer, and did not see it.
-        let is_answered = self.link.row("claim a call", IS_ANSWERED, &[&key.as_str()], |row| row.try_get(0))?;
+        let is_answered = self.link.query_row("claim a call", IS_ANSWERED, &[&key.as_str()], |row| row.try_get(0))?;
         if is_answered == Some(true) {
-            self.release(key);
-            return Ok(Claimed::Answered);
+            self.release_call(key);
+            return Ok(ClaimState::Answered);
         }
-        Ok(Claimed::Ours)
+        Ok(ClaimState::Ours)
     }
 
-    fn release(&self, key: &Key) {
-        self.link.release(key);
+    fn release_call(&self, key: &CallKey) {
+        self.link.release_claim(key);
     }
 
-    fn holder(&self, key: &Key) -> Result<Option<Holder>, LedgerError> {
+    fn claim_holder(&self, key: &CallKey) -> Result<Option<ClaimHolder>, LedgerError> {
         let gone_s = self.pulse.gone.as_secs_f64();
-        self.link.row("look who makes a call", HOLDER, &[&key.as_str(), &gone_s], |row| {
-            Ok(Holder { name: row.try_get(0)?, sent: row.try_get(1)?, is_gone: row.try_get(2)? })
+        self.link.query_row("look who makes a call", HOLDER_SQL, &[&key.as_str(), &gone_s], |row| {
+            Ok(ClaimHolder { name: row.try_get(0)?, sent: row.try_get(1)?, is_gone: row.try_get(2)? })
         })
     }
 
-    fn sent(&self, request: &Request<'_>) -> Result<i64, Refused> {
-        self.appear()?;
-        let Request { limits, most_usd, .. } = *request;
+    fn write_request(&self, request: &PendingRequest<'_>) -> Result<i64, RequestRefusedError> {
+        self.show_presence()?;
+        let PendingRequest { limits, most_usd, .. } = *request;
         if limits.max_usd.is_some() && most_usd.is_none() {
-            return Err(Refused::NoPrice);
+            return Err(RequestRefusedError::NoPrice);
         }
-        let number = self.link.number();
-        for _ in 0..TRIES {
-            match self.link.reserve(number, request)? {
-                Reserved::Yes => return Ok(number),
+        let number = self.link.next_request_number();
+        for _ in 0..MAX_RESERVE_TRIES {
+            match self.link.reserve_request(number, request)? {
+                ReserveOutcome::Yes => return Ok(number),
                 // If another request has ended meanwhile, this one may fit after all.
-                Reserved::No => fits(limits, self.spent(request.run)?, most_usd)?,
-                Reserved::Again => {}
+                ReserveOutcome::No => check_limits(limits, self.spent_budget(request.run)?, most_usd)?,
+                ReserveOutcome::Again => {}
             }
         }
-        let spent = self.spent(request.run)?;
+        let spent = self.spent_budget(request.run)?;
         Err(match (limits.max_usd, limits.max_calls) {
-            (None, Some(max_calls)) => Refused::MaxCalls { max_calls },
-            (max_usd, _) => Refused::MaxUsd {
+            (None, Some(max_calls)) => RequestRefusedError::MaxCalls { max_calls },
+            (max_usd, _) => RequestRefusedError::MaxUsd {
                 max_usd: max_usd.unwrap_or(f64::INFINITY),
                 spent_usd: spent.usd + spent.reserved_usd,
                 next_usd: most_usd.unwrap_or(0.0),
@@ -174,13 +177,13 @@ impl Store for Postgres {
         })
     }
 
-    fn ended(&self, sent: &Sent, end: End, reason: &str) {
-        self.link.end(sent.number, end, reason);
+    fn write_end(&self, sent: &SentRequest, end: RequestEnd, reason: &str) {
+        self.link.end_request(sent.number, end, reason);
     }
 
-    fn answered(&self, sent: Option<&Sent>, row: Row) -> Result<bool, LedgerError> {
+    fn write_answer(&self, sent: Option<&SentRequest>, row: LedgerEntry) -> Result<bool, LedgerError> {
         let (call, answer) = (&row.call, &row.answer);
-        let counts = [answer.tokens_in, answer.tokens_out, answer.latency_ms].map(count);
+        let counts = [answer.tokens_in, answer.tokens_out, answer.latency_ms].map(count_to_i64);
         let [tokens_in, tokens_out, latency_ms] = &counts;
         let request = call.request.to_string();
         let answer_json = serde_json::Value::from(answer.text.as_str()).to_string();
@@ -191,7 +194,7 @@ impl Store for Postgres {
             &request,
             &i64::from(call.replicate),
             &answer_json,
-            &text(&answer.finish),
+            &without_nul(&answer.finish),
             tokens_in,
             tokens_out,
             &answer.usd,
@@ -199,13 +202,13 @@ impl Store for Postgres {
             &i64::from(answer.attempts),
             &row.at_unix_s,
             &row.run,
-            &checksum::of(&row.key, answer),
+            &checksum::answer_checksum(&row.key, answer),
             &self.link.program,
             &sent.map(|sent| sent.number),
             &self.link.slot,
-            &answer.usd.map(amount::up),
+            &answer.usd.map(amount::nanos_rounded_up),
         ];
-        Ok(self.link.row("store an answer", ANSWERED, &values, |row| row.try_get(0))?.unwrap_or(false))
+        Ok(self.link.query_row("store an answer", STORE_ANSWER_SQL, &values, |row| row.try_get(0))?.unwrap_or(false))
     }
 
     fn flush(&self) -> Result<(), LedgerError> {
@@ -220,7 +223,7 @@ impl Store for Postgres {
         true
     }
 
-    fn turn(&self, provider: &str, rates: Rates, tokens: u64) -> Result<Option<Slot>, LedgerError> {
-        rates::turn(&self.link, provider, rates, tokens)
+    fn next_slot(&self, provider: &str, rates: ProviderRates, tokens: u64) -> Result<Option<SendSlot>, LedgerError> {
+        rates::take_turn(&self.link, provider, rates, tokens)
     }
 }

@@ -1,19 +1,19 @@
 //! The queries of the store in a database: lists, sums and removal of calls.
 
 use super::{
-    Postgres, amount,
-    rows::{columns, sound},
+    PostgresStore, amount,
+    rows::{columns, read_checked_entry},
 };
 use crate::{
-    By, CostLine, Filter, LedgerError, Row, Spending,
-    budget::Spent,
+    CostGrouping, CostLine, LedgerEntry, LedgerError, LedgerFilter, RunSpending,
+    budget::SpentBudget,
     ledger::now_unix_s,
-    store::{Order, Queries},
+    store::{CallOrder, CallQueries},
 };
 use wayword_database::postgres::{self, types::ToSql};
 
 /// How many rows are fetched, or dropped, at a time.
-const PAGE: i64 = 500;
+const PAGE_ROWS: i64 = 500;
 const MOST_DROPPED: i64 = 5000;
 
 /// The conditions of a filter: model, run, and time.
@@ -32,14 +32,14 @@ const BY_KEY: &str = concat!(
     " AND ($4::text IS NULL OR calls.key > $4) ORDER BY calls.key LIMIT $5"
 );
 
-const LATEST: &str = concat!(
+const LATEST_SQL: &str = concat!(
     "SELECT ",
     columns!(),
     filtered!(),
     " AND ($6::bigint IS NULL OR at < $6 OR (at = $6 AND calls.key > $4)) ORDER BY at DESC, calls.key LIMIT $5"
 );
 
-const PRUNE: &str = concat!(
+const PRUNE_SQL: &str = concat!(
     "WITH dropped AS (DELETE FROM wayword_ledger.calls WHERE key IN (SELECT calls.key",
     filtered!(),
     " ORDER BY calls.key LIMIT $4) RETURNING key),
@@ -47,7 +47,7 @@ const PRUNE: &str = concat!(
      SELECT count(*) FROM dropped"
 );
 
-const DROP: &str = "
+const DROP_SQL: &str = "
 WITH swept AS (DELETE FROM wayword_ledger.uses WHERE key = $1)
 DELETE FROM wayword_ledger.calls WHERE key = $1";
 
@@ -63,60 +63,62 @@ macro_rules! costs {
     };
 }
 
-const SPENT: &str = "
+const SPENT_SQL: &str = "
 SELECT r.reserved - coalesce(sum(s.released), 0)::bigint, coalesce(sum(s.spent), 0)::bigint,
     r.calls - coalesce(sum(s.cancelled), 0)::bigint
 FROM wayword_ledger.runs AS r LEFT JOIN wayword_ledger.settled AS s ON s.run = r.run
 WHERE r.run = $1 GROUP BY r.reserved, r.calls";
 
-const SPENDING: &str = "
+const SPENDING_SQL: &str = "
 SELECT count(*), count(*) FILTER (WHERE outcome = 'answered'),
     count(*) FILTER (WHERE outcome IS NULL OR outcome = 'lost'), coalesce(sum(usd), 0),
     coalesce(sum(most) FILTER (WHERE outcome IS NULL OR outcome = 'lost'), 0)::bigint
 FROM wayword_ledger.sent WHERE run = $1 AND outcome IS DISTINCT FROM 'cancelled'";
 
-const LOST: &str = "SELECT count(*) FROM wayword_ledger.sent WHERE outcome IS NULL OR outcome = 'lost'";
+const LOST_SQL: &str = "SELECT count(*) FROM wayword_ledger.sent WHERE outcome IS NULL OR outcome = 'lost'";
 
 /// The values of a filter's conditions.
-struct Values<'a> {
+struct FilterValues<'a> {
     model: Option<&'a str>,
     run: Option<&'a str>,
     before: Option<i64>,
 }
 
-impl<'a> Values<'a> {
-    fn of(filter: &'a Filter) -> Self {
+impl<'a> FilterValues<'a> {
+    fn from_filter(filter: &'a LedgerFilter) -> Self {
         let before = filter.older_than_s.map(|age_s| now_unix_s().saturating_sub_unsigned(age_s));
         Self { model: filter.model.as_deref(), run: filter.run.as_deref(), before }
     }
 
-    fn all(&self) -> [&(dyn ToSql + Sync); 3] {
+    fn as_sql_values(&self) -> [&(dyn ToSql + Sync); 3] {
         [&self.model, &self.run, &self.before]
     }
 }
 
-impl Queries for Postgres {
-    fn each(
+impl CallQueries for PostgresStore {
+    fn for_each_call(
         &self,
-        filter: &Filter,
-        order: Order,
-        take: &mut dyn FnMut(Row) -> Result<(), LedgerError>,
+        filter: &LedgerFilter,
+        order: CallOrder,
+        take: &mut dyn FnMut(LedgerEntry) -> Result<(), LedgerError>,
     ) -> Result<(), LedgerError> {
-        let values = Values::of(filter);
-        let limit = filter.limit.filter(|_| order == Order::Latest);
+        let values = FilterValues::from_filter(filter);
+        let limit = filter.limit.filter(|_| order == CallOrder::Latest);
         let mut left = limit.map_or(i64::MAX, |limit| i64::try_from(limit).unwrap_or(i64::MAX));
         let (mut key, mut at) = (None::<String>, None::<i64>);
         while left > 0 {
-            let page = left.min(PAGE);
-            let [model, run, before] = values.all();
+            let page = left.min(PAGE_ROWS);
+            let [model, run, before] = values.as_sql_values();
             let rows = match order {
-                Order::Key => self.link.rows("list calls", BY_KEY, &[model, run, before, &key, &page])?,
-                Order::Latest => self.link.rows("list calls", LATEST, &[model, run, before, &key, &page, &at])?,
+                CallOrder::Key => self.link.query_rows("list calls", BY_KEY, &[model, run, before, &key, &page])?,
+                CallOrder::Latest => {
+                    self.link.query_rows("list calls", LATEST_SQL, &[model, run, before, &key, &page, &at])?
+                }
             };
             let is_last = (rows.len() as i64) < page;
             left -= rows.len() as i64;
             for row in &rows {
-                let row = sound(row, &self.link.place())?;
+                let row = read_checked_entry(row, &self.link.ledger_location())?;
                 (key, at) = (Some(row.key.to_string()), Some(row.at_unix_s));
                 take(row)?;
             }
@@ -127,13 +129,14 @@ impl Queries for Postgres {
         Ok(())
     }
 
-    fn prune(&self, filter: &Filter) -> Result<usize, LedgerError> {
-        let values = Values::of(filter);
-        let [model, run, before] = values.all();
+    fn prune_calls(&self, filter: &LedgerFilter) -> Result<usize, LedgerError> {
+        let values = FilterValues::from_filter(filter);
+        let [model, run, before] = values.as_sql_values();
         let mut all = 0;
         loop {
             let values = [model, run, before, &MOST_DROPPED];
-            let dropped = self.link.row("drop calls", PRUNE, &values, |row| count(row, 0))?.unwrap_or(0);
+            let dropped =
+                self.link.query_row("drop calls", PRUNE_SQL, &values, |row| count_column(row, 0))?.unwrap_or(0);
             all += usize::try_from(dropped).unwrap_or(0);
             if dropped == 0 {
                 return Ok(all);
@@ -143,87 +146,87 @@ impl Queries for Postgres {
 
     fn prune_changed(&self) -> Result<usize, LedgerError> {
         let (mut changed, mut after) = (Vec::<String>::new(), None::<String>);
-        let all = Filter::default();
-        let values = Values::of(&all);
+        let all = LedgerFilter::default();
+        let values = FilterValues::from_filter(&all);
         loop {
-            let [model, run, before] = values.all();
-            let rows = self.link.rows("list calls", BY_KEY, &[model, run, before, &after, &PAGE])?;
+            let [model, run, before] = values.as_sql_values();
+            let rows = self.link.query_rows("list calls", BY_KEY, &[model, run, before, &after, &PAGE_ROWS])?;
             for row in &rows {
                 after = row.try_get(0).ok();
-                match sound(row, &self.link.place()) {
+                match read_checked_entry(row, &self.link.ledger_location()) {
                     Err(LedgerError::Changed { .. }) => changed.extend(after.clone()),
                     other => drop(other?),
                 }
             }
-            if (rows.len() as i64) < PAGE {
+            if (rows.len() as i64) < PAGE_ROWS {
                 break;
             }
         }
         for key in &changed {
-            self.link.rows("drop a call", DROP, &[key])?;
+            self.link.query_rows("drop a call", DROP_SQL, &[key])?;
         }
         Ok(changed.len())
     }
 
-    fn costs(&self, by: By) -> Result<Vec<CostLine>, LedgerError> {
+    fn sum_costs(&self, by: CostGrouping) -> Result<Vec<CostLine>, LedgerError> {
         let sql = match by {
-            By::Model => costs!("model"),
-            By::Run => costs!("run"),
-            By::Day => costs!("to_char(to_timestamp(at) AT TIME ZONE 'UTC', 'YYYY-MM-DD')"),
+            CostGrouping::Model => costs!("model"),
+            CostGrouping::Run => costs!("run"),
+            CostGrouping::Day => costs!("to_char(to_timestamp(at) AT TIME ZONE 'UTC', 'YYYY-MM-DD')"),
         };
         let line = |row: &postgres::Row| {
             Ok(CostLine {
                 of: row.try_get(0)?,
-                calls: count(row, 1)?,
-                tokens_in: count(row, 2)?,
-                tokens_out: count(row, 3)?,
+                calls: count_column(row, 1)?,
+                tokens_in: count_column(row, 2)?,
+                tokens_out: count_column(row, 3)?,
                 usd: row.try_get(4)?,
-                without_price: count(row, 5)?,
+                without_price: count_column(row, 5)?,
             })
         };
-        let lines = self.link.pool.with("sum up costs", |connection| {
-            connection.rows(sql, &[])?.iter().map(line).collect::<Result<Vec<_>, postgres::Error>>()
+        let lines = self.link.pool.with_connection("sum up costs", |connection| {
+            connection.query_rows(sql, &[])?.iter().map(line).collect::<Result<Vec<_>, postgres::Error>>()
         });
         Ok(lines?)
     }
 
-    fn has_answers_of(&self, model: &str, base_url: &str) -> Result<bool, LedgerError> {
+    fn has_answers_from(&self, model: &str, base_url: &str) -> Result<bool, LedgerError> {
         let sql = "SELECT 1 FROM wayword_ledger.calls WHERE model = $1 AND base_url = $2 LIMIT 1";
-        Ok(!self.link.rows("look for a model's answers", sql, &[&model, &base_url])?.is_empty())
+        Ok(!self.link.query_rows("look for a model's answers", sql, &[&model, &base_url])?.is_empty())
     }
 
-    fn lost(&self) -> Result<u64, LedgerError> {
+    fn count_lost_requests(&self) -> Result<u64, LedgerError> {
         self.link.catch_up()?;
-        Ok(self.link.row("count lost requests", LOST, &[], |row| count(row, 0))?.unwrap_or(0))
+        Ok(self.link.query_row("count lost requests", LOST_SQL, &[], |row| count_column(row, 0))?.unwrap_or(0))
     }
 
-    fn spent(&self, run: &str) -> Result<Spent, LedgerError> {
+    fn spent_budget(&self, run: &str) -> Result<SpentBudget, LedgerError> {
         self.link.catch_up()?;
         let spent = |row: &postgres::Row| {
-            Ok(Spent {
-                reserved_usd: amount::usd(row.try_get(0)?),
-                usd: amount::usd(row.try_get(1)?),
-                calls: count(row, 2)?,
+            Ok(SpentBudget {
+                reserved_usd: amount::usd_from_nanos(row.try_get(0)?),
+                usd: amount::usd_from_nanos(row.try_get(1)?),
+                calls: count_column(row, 2)?,
             })
         };
-        Ok(self.link.row("sum up what a run has spent", SPENT, &[&run], spent)?.unwrap_or_default())
+        Ok(self.link.query_row("sum up what a run has spent", SPENT_SQL, &[&run], spent)?.unwrap_or_default())
     }
 
-    fn spending(&self, run: &str) -> Result<Spending, LedgerError> {
+    fn run_spending(&self, run: &str) -> Result<RunSpending, LedgerError> {
         self.link.catch_up()?;
         let spending = |row: &postgres::Row| {
-            Ok(Spending {
-                requests: count(row, 0)?,
-                answered: count(row, 1)?,
-                lost: count(row, 2)?,
+            Ok(RunSpending {
+                requests: count_column(row, 0)?,
+                answered: count_column(row, 1)?,
+                lost: count_column(row, 2)?,
                 usd: row.try_get(3)?,
-                maybe_usd: amount::usd(row.try_get(4)?),
+                maybe_usd: amount::usd_from_nanos(row.try_get(4)?),
             })
         };
-        Ok(self.link.row("sum up what a run has spent", SPENDING, &[&run], spending)?.unwrap_or_default())
+        Ok(self.link.query_row("sum up what a run has spent", SPENDING_SQL, &[&run], spending)?.unwrap_or_default())
     }
 }
 
-fn count(row: &postgres::Row, at: usize) -> Result<u64, postgres::Error> {
+fn count_column(row: &postgres::Row, at: usize) -> Result<u64, postgres::Error> {
     row.try_get::<_, i64>(at).map(|count| u64::try_from(count).unwrap_or(0))
 }

@@ -1,9 +1,10 @@
 //! The tables of a ledger in a database.
 
-use wayword_database::Tables;
+use wayword_database::SchemaTables;
 
 /// The tables of a ledger.
-pub const TABLES: Tables = Tables { schema: "wayword_ledger", steps: &[FIRST], grants: GRANTS };
+pub const LEDGER_TABLES: SchemaTables =
+    SchemaTables { schema: "wayword_ledger", steps: &[CREATE_TABLES_SQL], grants: GRANT_SQL };
 
 /// `calls`, `uses`, `sent` and `claims` are as in a file. `answer` is a string of JSON, because a text of PostgreSQL
 /// cannot hold the character 0. Money is in whole billionths of a dollar, so that sums are exact.
@@ -14,7 +15,7 @@ pub const TABLES: Tables = Tables { schema: "wayword_ledger", steps: &[FIRST], g
 ///
 /// `presence` has the last sign of life of each program, and `rates` the times at which the next request and the next token to a
 /// provider are due.
-const FIRST: &str = "
+const CREATE_TABLES_SQL: &str = "
 CREATE TABLE wayword_ledger.calls (
     key TEXT COLLATE \"C\" PRIMARY KEY, model TEXT NOT NULL, base_url TEXT NOT NULL, request TEXT NOT NULL,
     replicate BIGINT NOT NULL, answer TEXT NOT NULL, finish TEXT NOT NULL, tokens_in BIGINT NOT NULL,
@@ -43,7 +44,7 @@ CREATE TABLE wayword_ledger.rates (
 ) WITH (fillfactor = 10);
 ";
 
-const GRANTS: &str = "
+const GRANT_SQL: &str = "
 GRANT USAGE ON SCHEMA wayword_ledger TO ROLE;
 GRANT SELECT ON wayword_ledger.version TO ROLE;
 GRANT SELECT, INSERT, UPDATE, DELETE ON wayword_ledger.calls, wayword_ledger.uses, wayword_ledger.sent,

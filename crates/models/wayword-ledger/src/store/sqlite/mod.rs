@@ -5,9 +5,11 @@ mod queries;
 mod schema;
 mod writer;
 
-use super::{Claimed, End, Holder, Request, Store};
-use crate::{Answer, Key, LedgerError, Place, Refused, Row, network_at, run::Sent};
-use presence::Presence;
+use super::{CallStore, ClaimHolder, ClaimState, PendingRequest, RequestEnd};
+use crate::{
+    CallAnswer, CallKey, LedgerEntry, LedgerError, LedgerLocation, RequestRefusedError, network_at, run::SentRequest,
+};
+use presence::PresenceFile;
 use rusqlite::{Connection, OpenFlags, OptionalExtension, params};
 use std::{
     fs,
@@ -16,41 +18,42 @@ use std::{
     time::Duration,
 };
 
-use writer::{Write, Writer};
+use writer::{LedgerWrite, LedgerWriter};
 
 /// How long SQLite waits for another program that is writing.
-const PATIENCE: Duration = Duration::from_secs(30);
+const BUSY_TIMEOUT: Duration = Duration::from_secs(30);
 
 /// A ledger's file, with one connection for reading and one thread for writing.
 #[derive(Debug)]
-pub(crate) struct Sqlite {
+pub(crate) struct SqliteStore {
     path: PathBuf,
     reader: Mutex<Connection>,
-    writer: Writer,
+    writer: LedgerWriter,
     /// Shows other programs that this one is running, from its first claim on. It is dropped after the writer, because
     /// the writer releases the claims.
-    presence: OnceLock<Result<Presence, LedgerError>>,
+    presence: OnceLock<Result<PresenceFile, LedgerError>>,
     is_shared: bool,
 }
 
-impl Sqlite {
+impl SqliteStore {
     pub(crate) fn open(path: &Path) -> Result<Self, LedgerError> {
         // SQLite gives names such as ":memory:" a special meaning. An absolute path is always a file.
-        let path = &std::path::absolute(path).map_err(LedgerError::io(path, "find the ledger"))?;
+        let path = &std::path::absolute(path).map_err(LedgerError::io_error(path, "find the ledger"))?;
         may_hold(path)?;
         if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
-            fs::create_dir_all(folder).map_err(LedgerError::io(folder, "make the folder"))?;
+            fs::create_dir_all(folder).map_err(LedgerError::io_error(folder, "make the folder"))?;
         }
         own_file(path)?;
         let flags = OpenFlags::SQLITE_OPEN_READ_WRITE | OpenFlags::SQLITE_OPEN_NO_MUTEX;
         let connect = || -> Result<Connection, LedgerError> {
-            let connection = Connection::open_with_flags(path, flags).map_err(LedgerError::store(path, "open"))?;
-            connection.busy_timeout(PATIENCE).map_err(LedgerError::store(path, "open"))?;
+            let connection =
+                Connection::open_with_flags(path, flags).map_err(LedgerError::store_error(path, "open"))?;
+            connection.busy_timeout(BUSY_TIMEOUT).map_err(LedgerError::store_error(path, "open"))?;
             Ok(connection)
         };
         let mut writing = connect()?;
-        schema::prepare(&mut writing, path)?;
-        let (reader, writer) = (Mutex::new(connect()?), Writer::start(writing, path)?);
+        schema::prepare_tables(&mut writing, path)?;
+        let (reader, writer) = (Mutex::new(connect()?), LedgerWriter::start(writing, path)?);
         Ok(Self { path: path.to_owned(), reader, writer, presence: OnceLock::new(), is_shared: true })
     }
 
@@ -65,30 +68,30 @@ impl Sqlite {
             NUMBER.fetch_add(1, Ordering::Relaxed)
         );
         let flags = OpenFlags::SQLITE_OPEN_READ_WRITE | OpenFlags::SQLITE_OPEN_CREATE | OpenFlags::SQLITE_OPEN_URI;
-        let connect = || Connection::open_with_flags(&name, flags).map_err(LedgerError::store(&path, "open"));
+        let connect = || Connection::open_with_flags(&name, flags).map_err(LedgerError::store_error(&path, "open"));
         let mut writing = connect()?;
-        schema::prepare(&mut writing, &path)?;
+        schema::prepare_tables(&mut writing, &path)?;
         let reader = connect()?;
         // Otherwise connections that share a cache would lock each other out.
-        reader.pragma_update(None, "read_uncommitted", true).map_err(LedgerError::store(&path, "open"))?;
-        let (reader, writer) = (Mutex::new(reader), Writer::start(writing, &path)?);
+        reader.pragma_update(None, "read_uncommitted", true).map_err(LedgerError::store_error(&path, "open"))?;
+        let (reader, writer) = (Mutex::new(reader), LedgerWriter::start(writing, &path)?);
         Ok(Self { path, reader, writer, presence: OnceLock::new(), is_shared: false })
     }
 
-    fn reader(&self) -> MutexGuard<'_, Connection> {
+    fn lock_reader(&self) -> MutexGuard<'_, Connection> {
         self.reader.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// The name under which other programs know this one; `None` for a ledger in memory, which has no other programs.
     /// The first call also removes the files and claims of programs that have ended.
-    fn name(&self) -> Result<Option<&str>, LedgerError> {
+    fn program_name(&self) -> Result<Option<&str>, LedgerError> {
         if !self.is_shared {
             return Ok(None);
         }
         let begin = || {
-            let presence = Presence::new(&self.path)?;
-            for by in presence::sweep(&self.path) {
-                self.writer.note(Write::Forget { by });
+            let presence = PresenceFile::new(&self.path)?;
+            for by in presence::remove_stale_files(&self.path) {
+                self.writer.queue_write(LedgerWrite::Forget { by });
             }
             Ok(presence)
         };
@@ -99,56 +102,60 @@ impl Sqlite {
     }
 
     /// The name under which other programs know this one, for a write.
-    fn by(&self) -> Result<Option<String>, LedgerError> {
-        Ok(self.name()?.map(str::to_owned))
+    fn owned_program_name(&self) -> Result<Option<String>, LedgerError> {
+        Ok(self.program_name()?.map(str::to_owned))
     }
 
     /// Adds an answer that was read from a recording.
-    pub(crate) fn fill(&self, row: Row) {
-        self.writer.note(Write::Answered { sent: None, row: Box::new(row), by: None });
+    pub(crate) fn add_recorded_answer(&self, row: LedgerEntry) {
+        self.writer.queue_write(LedgerWrite::Answered { sent: None, row: Box::new(row), by: None });
     }
 
     /// The answer of a call, if it has one.
-    fn find(&self, key: &Key) -> Result<Option<Answer>, LedgerError> {
-        let failed = LedgerError::store(&self.path, "read");
-        let reader = self.reader();
-        let sql = format!("SELECT {} FROM calls WHERE key = ?1", schema::COLUMNS);
+    fn read_answer(&self, key: &CallKey) -> Result<Option<CallAnswer>, LedgerError> {
+        let failed = LedgerError::store_error(&self.path, "read");
+        let reader = self.lock_reader();
+        let sql = format!("SELECT {} FROM calls WHERE key = ?1", schema::CALL_COLUMNS);
         let mut statement = reader.prepare_cached(&sql).map_err(&failed)?;
         let mut rows = statement.query(params![key.as_str()]).map_err(&failed)?;
         let Some(row) = rows.next().map_err(&failed)? else { return Ok(None) };
-        Ok(Some(schema::sound(row, &self.path)?.answer))
+        Ok(Some(schema::read_checked_entry(row, &self.path)?.answer))
     }
 }
 
-impl Store for Sqlite {
-    fn place(&self) -> Place {
-        Place::file(&self.path)
+impl CallStore for SqliteStore {
+    fn ledger_location(&self) -> LedgerLocation {
+        LedgerLocation::from_path(&self.path)
     }
 
-    fn answer(&self, key: &Key, run: &str) -> Result<Option<Answer>, LedgerError> {
-        let answer = self.find(key)?;
+    fn find_answer(&self, key: &CallKey, run: &str) -> Result<Option<CallAnswer>, LedgerError> {
+        let answer = self.read_answer(key)?;
         if answer.is_some() {
-            self.writer.note(Write::Used { run: run.to_owned(), key: key.to_string() });
+            self.writer.queue_write(LedgerWrite::Used { run: run.to_owned(), key: key.to_string() });
         }
         Ok(answer)
     }
 
-    fn claim(&self, key: &Key, from: Option<&str>) -> Result<Claimed, LedgerError> {
-        let Some(by) = self.by()? else { return Ok(Claimed::Ours) };
-        let written = self.writer.keep(Write::Claim { key: key.to_string(), by, from: from.map(str::to_owned) })?;
-        Ok(writer::claimed(written))
+    fn claim_call(&self, key: &CallKey, from: Option<&str>) -> Result<ClaimState, LedgerError> {
+        let Some(by) = self.owned_program_name()? else { return Ok(ClaimState::Ours) };
+        let written = self.writer.write_and_wait(LedgerWrite::Claim {
+            key: key.to_string(),
+            by,
+            from: from.map(str::to_owned),
+        })?;
+        Ok(writer::claim_from_number(written))
     }
 
-    fn release(&self, key: &Key) {
-        if let Ok(Some(by)) = self.by() {
-            self.writer.note(Write::Release { key: key.to_string(), by });
+    fn release_call(&self, key: &CallKey) {
+        if let Ok(Some(by)) = self.owned_program_name() {
+            self.writer.queue_write(LedgerWrite::Release { key: key.to_string(), by });
         }
     }
 
-    fn holder(&self, key: &Key) -> Result<Option<Holder>, LedgerError> {
-        let failed = LedgerError::store(&self.path, "read");
+    fn claim_holder(&self, key: &CallKey) -> Result<Option<ClaimHolder>, LedgerError> {
+        let failed = LedgerError::store_error(&self.path, "read");
         let holder = {
-            let reader = self.reader();
+            let reader = self.lock_reader();
             let mut statement =
                 reader.prepare_cached("SELECT holder, sent FROM claims WHERE key = ?1").map_err(&failed)?;
             let holder = |row: &rusqlite::Row<'_>| Ok((row.get(0)?, row.get(1)?));
@@ -156,24 +163,28 @@ impl Store for Sqlite {
         };
         Ok(holder.map(|(name, sent): (String, i64)| {
             let is_gone = presence::is_gone(&self.path, &name);
-            Holder { name, sent, is_gone }
+            ClaimHolder { name, sent, is_gone }
         }))
     }
 
-    fn sent(&self, request: &Request<'_>) -> Result<i64, Refused> {
-        let Request { run, key, most_usd, at_unix_s: at, .. } = *request;
-        let by = self.by()?;
-        let write = Write::Sent { run: run.to_owned(), key: key.to_string(), most_usd, at, by };
-        Ok(self.writer.keep(write)?)
+    fn write_request(&self, request: &PendingRequest<'_>) -> Result<i64, RequestRefusedError> {
+        let PendingRequest { run, key, most_usd, at_unix_s: at, .. } = *request;
+        let by = self.owned_program_name()?;
+        let write = LedgerWrite::Sent { run: run.to_owned(), key: key.to_string(), most_usd, at, by };
+        Ok(self.writer.write_and_wait(write)?)
     }
 
-    fn ended(&self, sent: &Sent, end: End, reason: &str) {
-        self.writer.note(Write::Ended { sent: sent.number, outcome: end.name(), reason: reason.to_owned() });
+    fn write_end(&self, sent: &SentRequest, end: RequestEnd, reason: &str) {
+        self.writer.queue_write(LedgerWrite::Ended {
+            sent: sent.number,
+            outcome: end.name(),
+            reason: reason.to_owned(),
+        });
     }
 
-    fn answered(&self, sent: Option<&Sent>, row: Row) -> Result<bool, LedgerError> {
-        let (sent, by) = (sent.map(|sent| sent.number), self.by()?);
-        Ok(self.writer.keep(Write::Answered { sent, row: Box::new(row), by })? != 0)
+    fn write_answer(&self, sent: Option<&SentRequest>, row: LedgerEntry) -> Result<bool, LedgerError> {
+        let (sent, by) = (sent.map(|sent| sent.number), self.owned_program_name()?);
+        Ok(self.writer.write_and_wait(LedgerWrite::Answered { sent, row: Box::new(row), by })? != 0)
     }
 
     fn flush(&self) -> Result<(), LedgerError> {
@@ -195,5 +206,5 @@ fn own_file(path: &Path) -> Result<(), LedgerError> {
     options.create(true).append(true);
     #[cfg(unix)]
     std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
-    options.open(path).map(drop).map_err(LedgerError::io(path, "make the ledger"))
+    options.open(path).map(drop).map_err(LedgerError::io_error(path, "make the ledger"))
 }

@@ -13,18 +13,18 @@ use std::{
 };
 
 /// The part of the file's name between the ledger's name and the program's.
-const MARK: &str = ".in-use-";
+const PRESENCE_FILE_MARK: &str = ".in-use-";
 
 /// A file that this program keeps locked as long as it uses the ledger.
 #[derive(Debug)]
-pub(super) struct Presence {
+pub(super) struct PresenceFile {
     name: String,
     path: PathBuf,
     /// Open as long as the lock is held.
     _locked: File,
 }
 
-impl Presence {
+impl PresenceFile {
     /// Makes and locks this program's file.
     pub(super) fn new(ledger: &Path) -> Result<Self, LedgerError> {
         static NUMBER: AtomicU64 = AtomicU64::new(0);
@@ -32,8 +32,8 @@ impl Presence {
             let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_micros();
             let number = NUMBER.fetch_add(1, Ordering::Relaxed);
             let name = format!("{:x}-{since:x}-{number:x}", std::process::id());
-            let path = beside(ledger, &name);
-            let failed = LedgerError::io(&path, "say that the ledger is in use");
+            let path = presence_path(ledger, &name);
+            let failed = LedgerError::io_error(&path, "say that the ledger is in use");
             let mut options = OpenOptions::new();
             options.create_new(true).write(true);
             #[cfg(unix)]
@@ -53,7 +53,7 @@ impl Presence {
     }
 }
 
-impl Drop for Presence {
+impl Drop for PresenceFile {
     fn drop(&mut self) {
         // If this fails, the next program removes the file.
         let _ = fs::remove_file(&self.path);
@@ -66,19 +66,19 @@ pub(super) fn is_gone(ledger: &Path, name: &str) -> bool {
     if name.is_empty() || !name.chars().all(|c| c.is_ascii_hexdigit() || c == '-') {
         return true;
     }
-    match File::open(beside(ledger, name)) {
+    match File::open(presence_path(ledger, name)) {
         Ok(file) => file.try_lock_shared().is_ok(),
         Err(error) => error.kind() == std::io::ErrorKind::NotFound,
     }
 }
 
 /// Removes the files of programs that have ended, and returns the programs' names.
-pub(super) fn sweep(ledger: &Path) -> Vec<String> {
+pub(super) fn remove_stale_files(ledger: &Path) -> Vec<String> {
     let (Some(folder), Some(file)) = (ledger.parent(), ledger.file_name()) else { return Vec::new() };
-    let prefix = format!("{}{MARK}", file.to_string_lossy());
+    let prefix = format!("{}{PRESENCE_FILE_MARK}", file.to_string_lossy());
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     let names = entries.filter_map(|entry| Some(entry.file_name().to_str()?.strip_prefix(&prefix)?.to_owned()));
-    names.filter(|name| is_removed(&beside(ledger, name))).collect()
+    names.filter(|name| is_removed(&presence_path(ledger, name))).collect()
 }
 
 /// Removes a file that no program has locked.
@@ -90,9 +90,9 @@ fn is_removed(path: &Path) -> bool {
     }
 }
 
-fn beside(ledger: &Path, name: &str) -> PathBuf {
+fn presence_path(ledger: &Path, name: &str) -> PathBuf {
     let mut path = ledger.as_os_str().to_owned();
-    path.push(format!("{MARK}{name}"));
+    path.push(format!("{PRESENCE_FILE_MARK}{name}"));
     path.into()
 }
 
@@ -104,10 +104,10 @@ mod tests {
     fn a_program_is_there_until_it_lets_go() {
         let folder = tempfile::tempdir().unwrap();
         let ledger = folder.path().join("l.db");
-        let here = Presence::new(&ledger).unwrap();
+        let here = PresenceFile::new(&ledger).unwrap();
         let name = here.name().to_owned();
         assert!(!is_gone(&ledger, &name));
-        assert_eq!(sweep(&ledger), Vec::<String>::new());
+        assert_eq!(remove_stale_files(&ledger), Vec::<String>::new());
         drop(here);
         assert!(is_gone(&ledger, &name));
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
@@ -117,11 +117,11 @@ mod tests {
     fn remove_stale_files_removes_the_file_of_a_killed_program() {
         let folder = tempfile::tempdir().unwrap();
         let ledger = folder.path().join("l.db");
-        let here = Presence::new(&ledger).unwrap();
-        fs::write(beside(&ledger, "1f-2e-0"), "").unwrap();
+        let here = PresenceFile::new(&ledger).unwrap();
+        fs::write(presence_path(&ledger, "1f-2e-0"), "").unwrap();
         fs::write(folder.path().join("other.db.in-use-1f-2e-0"), "").unwrap();
         assert!(is_gone(&ledger, "1f-2e-0"));
-        assert_eq!(sweep(&ledger), ["1f-2e-0"]);
+        assert_eq!(remove_stale_files(&ledger), ["1f-2e-0"]);
         assert!(!is_gone(&ledger, here.name()));
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
     }

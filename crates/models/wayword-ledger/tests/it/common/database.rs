@@ -2,16 +2,16 @@
 
 use super::Store;
 use std::{sync::Arc, time::Duration};
-use wayword_database::{Database, postgres::Client};
+use wayword_database::{PostgresDatabase, postgres::Client};
 use wayword_ledger::Ledger;
-use wayword_testkit::Postgres;
+use wayword_testkit::PostgresServer;
 
 /// A program without a sign of life for this long has ended. The tests do not wait a minute.
 const GONE: Duration = Duration::from_millis(1500);
 
 /// A new database; `None` where PostgreSQL is not installed.
 pub fn new(test: &str) -> Option<Store> {
-    let server = Postgres::shared();
+    let server = PostgresServer::shared();
     if server.is_none() {
         eprintln!("{test}: skipped for PostgreSQL: it is not installed");
     }
@@ -19,12 +19,12 @@ pub fn new(test: &str) -> Option<Store> {
 }
 
 /// A new database of a server.
-pub fn on(server: Arc<Postgres>) -> Store {
+pub fn on(server: Arc<PostgresServer>) -> Store {
     Store { spec: format!("postgres:{}", server.new_database()), _folder: None, _server: Some(server) }
 }
 
-pub fn named(url: &str) -> Database {
-    Database::named(url, None).unwrap()
+pub fn named(url: &str) -> PostgresDatabase {
+    PostgresDatabase::from_name(url, None).unwrap()
 }
 
 pub fn open(url: &str) -> Ledger {

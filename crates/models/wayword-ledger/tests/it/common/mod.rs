@@ -13,7 +13,7 @@ pub mod database;
 
 use std::path::Path;
 use tempfile::TempDir;
-use wayword_ledger::{Answer, Ledger};
+use wayword_ledger::{CallAnswer, Ledger};
 
 /// A place for a ledger, which is dropped with it.
 pub struct Store {
@@ -21,7 +21,7 @@ pub struct Store {
     spec: String,
     _folder: Option<TempDir>,
     #[cfg(feature = "postgres")]
-    _server: Option<std::sync::Arc<wayword_testkit::Postgres>>,
+    _server: Option<std::sync::Arc<wayword_testkit::PostgresServer>>,
 }
 
 impl Store {
@@ -109,7 +109,7 @@ pub fn in_folder(kind: &str, file: &str) -> Store {
     }
 }
 
-/// The ledger at a place that [`Store::spec`] names.
+/// The ledger at a place that [`CallStore::spec`] names.
 pub fn open(spec: &str) -> Ledger {
     let (kind, place) = spec.split_once(':').unwrap();
     match kind {
@@ -136,6 +136,14 @@ pub fn postgres(test: &str) -> Option<Store> {
 }
 
 /// A short answer.
-pub fn answer(text: &str, usd: Option<f64>) -> Answer {
-    Answer { text: text.into(), finish: "stop".into(), tokens_in: 3, tokens_out: 2, usd, latency_ms: 7, attempts: 1 }
+pub fn answer(text: &str, usd: Option<f64>) -> CallAnswer {
+    CallAnswer {
+        text: text.into(),
+        finish: "stop".into(),
+        tokens_in: 3,
+        tokens_out: 2,
+        usd,
+        latency_ms: 7,
+        attempts: 1,
+    }
 }

@@ -4,7 +4,7 @@ use super::{
     fake::{COMMIT, FakeHub, bytes, git, model, sha256},
     folder,
 };
-use crate::hub::{Hub, HubConfig, ModelName, Needs, cache::BlobHash};
+use crate::hub::{HubConfig, ModelHub, ModelName, NeededFiles, cache::BlobHash};
 use std::{fs, path::Path};
 
 const LATER: &str = "fedcba9876543210fedcba9876543210fedcba98";
@@ -51,7 +51,7 @@ fn cached_files_are_used_until_a_new_fetch() {
 
     let stored = fake.store.requests().len();
     let name = ModelName::parse("hf/org/name").unwrap();
-    let later = hub.fetch(&name, &Needs::of_any(&name), &()).unwrap();
+    let later = hub.fetch_model(&name, &NeededFiles::for_any_architecture(&name), &()).unwrap();
     assert_eq!(later.identity, LATER);
     assert_eq!(fs::read_to_string(later.path.join("config.json")).unwrap(), "{}");
     assert_eq!(fake.store.requests().len(), stored, "the weights are the same and came again");
@@ -83,7 +83,7 @@ fn a_fetch_that_fails_leaves_the_older_snapshot_in_use() {
     let first = folder(&hub, "hf/org/name").unwrap();
     fake.commit(LATER, "model.safetensors", &bytes(5000));
     let name = ModelName::parse("hf/org/name").unwrap();
-    assert!(hub.fetch(&name, &Needs::of_any(&name), &()).is_err());
+    assert!(hub.fetch_model(&name, &NeededFiles::for_any_architecture(&name), &()).is_err());
     assert_eq!(folder(&hub, "hf/org/name").unwrap(), first);
 }
 
@@ -91,7 +91,7 @@ fn a_fetch_that_fails_leaves_the_older_snapshot_in_use() {
 fn without_links_snapshots_contain_copies() {
     let cache = tempfile::tempdir().unwrap();
     let fake = FakeHub::start(model());
-    let hub = Hub::new(HubConfig { symlinks: false, ..fake.config(cache.path()) }).unwrap();
+    let hub = ModelHub::new(HubConfig { symlinks: false, ..fake.config(cache.path()) }).unwrap();
     let found = folder(&hub, "hf/org/name").unwrap();
     let weights = found.path.join("model.safetensors");
     assert!(fs::symlink_metadata(&weights).unwrap().is_file());
@@ -155,12 +155,12 @@ fn list_has_models_with_commits_and_lengths() {
     let cache = tempfile::tempdir().unwrap();
     let fake = FakeHub::start(model());
     let hub = fake.client(cache.path());
-    assert_eq!(hub.list().unwrap(), []);
+    assert_eq!(hub.list_models().unwrap(), []);
     let found = folder(&hub, "hf/org/name").unwrap();
     fs::create_dir_all(cache.path().join("datasets--org--data/snapshots/x")).unwrap();
     fs::create_dir_all(cache.path().join("models--gpt2/snapshots/x")).unwrap();
     fs::write(cache.path().join("version.txt"), "1").unwrap();
-    let [model] = &hub.list().unwrap()[..] else { panic!("one model") };
+    let [model] = &hub.list_models().unwrap()[..] else { panic!("one model") };
     assert_eq!((model.name.as_str(), model.commit.as_str()), ("hf/org/name", COMMIT));
     assert_eq!((&model.revisions[..], model.files), (&["main".to_owned()][..], 4));
     assert_eq!(model.bytes, (3 << 20) + 18 + 2 + 14);
@@ -176,10 +176,10 @@ fn files_are_compared_with_both_kinds_of_hash() {
     let git = "ce013625030ba8dba906f756967f9e9ca394464a";
     let sha256 = "5891b5b522d5df086d0ff0b110fbd9d21bb4fc7163af34d08286a2e846f6be03";
     for etag in [git, sha256, &format!("\"{git}\""), &format!("W/\"{sha256}\"")] {
-        assert!(BlobHash::from_etag(etag).unwrap().fits(&file).unwrap(), "{etag}");
+        assert!(BlobHash::from_etag(etag).unwrap().matches_file(&file).unwrap(), "{etag}");
     }
     let other = BlobHash::from_etag(&git.replace('c', "d")).unwrap();
-    assert!(!other.fits(&file).unwrap());
+    assert!(!other.matches_file(&file).unwrap());
 }
 
 #[test]

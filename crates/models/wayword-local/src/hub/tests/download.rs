@@ -5,7 +5,7 @@ use super::{
     folder, problem,
     server::Reply,
 };
-use crate::hub::{Hub, HubConfig, ModelName, Needs, Progress};
+use crate::hub::{DownloadProgress, HubConfig, ModelHub, ModelName, NeededFiles};
 use std::{
     fs,
     net::TcpListener,
@@ -170,8 +170,8 @@ fn a_server_that_breaks_off_for_ever_is_given_up() {
 #[test]
 fn two_concurrent_fetches_download_a_file_once() {
     struct Seen(Mutex<Vec<(String, u64)>>);
-    impl Progress for Seen {
-        fn bytes(&self, file: &str, done: u64, _: Option<u64>) {
+    impl DownloadProgress for Seen {
+        fn bytes_arrived(&self, file: &str, done: u64, _: Option<u64>) {
             self.0.lock().unwrap().push((file.to_owned(), done));
         }
     }
@@ -182,7 +182,7 @@ fn two_concurrent_fetches_download_a_file_once() {
         for _ in 0..4 {
             let hub = fake.client(cache.path());
             let (name, seen) = (&name, &seen);
-            scope.spawn(move || hub.folder(name, &Needs::of_any(name), seen).unwrap());
+            scope.spawn(move || hub.model_folder(name, &NeededFiles::for_any_architecture(name), seen).unwrap());
         }
     });
     assert!(is_whole(cache.path()));
@@ -251,6 +251,6 @@ fn an_unreachable_machine_is_reported_with_a_hint() {
     let endpoint = format!("http://{}", TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap());
     let cache = tempfile::tempdir().unwrap();
     let config = HubConfig { endpoint, ..HubConfig::new(cache.path().to_owned()) };
-    let problem = problem(&Hub::new(config).unwrap(), "hf/org/name");
+    let problem = problem(&ModelHub::new(config).unwrap(), "hf/org/name");
     assert!(problem.contains("127.0.0.1") && problem.contains("WAYWORD_OFFLINE=1"), "{problem}");
 }

@@ -1,7 +1,7 @@
 //! A hub with one model, and a storage on another port, to which the hub redirects for large files.
 
 use super::server::{Reply, Request, Server};
-use crate::hub::{Hub, HubConfig, config::Token};
+use crate::hub::{HubConfig, ModelHub, config::HubToken};
 use sha1::Sha1;
 use sha2::{Digest, Sha256};
 use std::{
@@ -70,14 +70,14 @@ impl FakeHub {
     }
 
     /// A client of this hub with a cache in a folder, a token, and short waits.
-    pub(super) fn client(&self, cache: &Path) -> Hub {
-        Hub::new(self.config(cache)).unwrap()
+    pub(super) fn client(&self, cache: &Path) -> ModelHub {
+        ModelHub::new(self.config(cache)).unwrap()
     }
 
     pub(super) fn config(&self, cache: &Path) -> HubConfig {
         HubConfig {
             endpoint: self.hub.url(),
-            token: Some(Token::new(TOKEN).unwrap()),
+            token: Some(HubToken::new(TOKEN).unwrap()),
             first_wait: Duration::from_millis(1),
             ..HubConfig::new(cache.to_owned())
         }

@@ -9,16 +9,16 @@ mod refusals;
 mod server;
 mod trust;
 
-use super::{Hub, ModelFolder, ModelName, Needs};
+use super::{ModelFolder, ModelHub, ModelName, NeededFiles};
 use crate::LocalError;
 
 /// The folder of the whole model, or the error.
-fn folder(hub: &Hub, name: &str) -> Result<ModelFolder, LocalError> {
+fn folder(hub: &ModelHub, name: &str) -> Result<ModelFolder, LocalError> {
     let name = ModelName::parse(name).unwrap();
-    hub.folder(&name, &Needs::of_any(&name), &())
+    hub.model_folder(&name, &NeededFiles::for_any_architecture(&name), &())
 }
 
 /// The error for a model that cannot be found or fetched.
-fn problem(hub: &Hub, name: &str) -> String {
+fn problem(hub: &ModelHub, name: &str) -> String {
     folder(hub, name).expect_err("it cannot be had").to_string()
 }

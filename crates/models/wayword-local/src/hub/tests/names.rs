@@ -3,7 +3,7 @@
 use crate::hub::{
     ModelName,
     cache::RepoFolder,
-    client::Address,
+    client::WebAddress,
     name::{ModelSource, OnHub},
 };
 use proptest::prelude::*;
@@ -88,30 +88,30 @@ fn nearly_a_name() -> impl Strategy<Value = String> {
 
 #[test]
 fn revisions_and_files_are_encoded() {
-    let hub = Address::endpoint("https://huggingface.co/").unwrap();
+    let hub = WebAddress::parse_endpoint("https://huggingface.co/").unwrap();
     let on_hub = OnHub { org: "org".into(), name: "name".into(), revision: "main".into(), file: None };
     assert_eq!(
-        hub.resolve(&on_hub, "refs/pr/1", "a/b+c.gguf"),
+        hub.file_address(&on_hub, "refs/pr/1", "a/b+c.gguf"),
         "https://huggingface.co/org/name/resolve/refs%2Fpr%2F1/a/b%2Bc.gguf"
     );
 }
 
 #[test]
 fn redirects_lead_within_the_host_or_elsewhere_but_never_from_https_to_http() {
-    let from = Address::parse("https://hub.example/a/b?c=d").unwrap();
-    assert_eq!(from.redirected("/x?y=z").unwrap().text, "https://hub.example:443/x?y=z");
-    assert_eq!(from.redirected("/x").unwrap().origin(), from.origin());
-    assert_eq!(from.redirected("//other.example/x").unwrap().origin().1, "other.example");
-    assert_ne!(from.redirected("https://hub.example:8443/").unwrap().origin(), from.origin());
+    let from = WebAddress::parse("https://hub.example/a/b?c=d").unwrap();
+    assert_eq!(from.follow_location("/x?y=z").unwrap().text, "https://hub.example:443/x?y=z");
+    assert_eq!(from.follow_location("/x").unwrap().server_origin(), from.server_origin());
+    assert_eq!(from.follow_location("//other.example/x").unwrap().server_origin().1, "other.example");
+    assert_ne!(from.follow_location("https://hub.example:8443/").unwrap().server_origin(), from.server_origin());
     for location in ["http://hub.example/", "ftp://hub.example/", "x", "", "https://u:p@hub.example/", "//"] {
-        assert!(from.redirected(location).is_err(), "{location}");
+        assert!(from.follow_location(location).is_err(), "{location}");
     }
 }
 
 #[test]
 fn error_does_not_repeat_an_invalid_endpoint() {
     for text in ["", "huggingface.co", "https://me:hunter2@host", "https://host/?q", "https://host/#x", "http://"] {
-        let problem = Address::endpoint(text).unwrap_err();
+        let problem = WebAddress::parse_endpoint(text).unwrap_err();
         assert!(!problem.contains("hunter2"));
     }
 }
@@ -124,11 +124,11 @@ proptest! {
         let ModelSource::Hub(model) = &name.source else { return Ok(()) };
         let repo = RepoFolder::new(Path::new("/cache"), model);
         let file = model.file.as_deref().unwrap_or("config.json");
-        let path = repo.snapshot(&model.revision).join(file);
+        let path = repo.snapshot_folder(&model.revision).join(file);
         let begin = Path::new("/cache").join(format!("models--{}--{}", model.org, model.name)).join("snapshots");
         let below = path.strip_prefix(&begin).unwrap();
         prop_assert!(below.components().all(|part| matches!(part, Component::Normal(_))), "{}", path.display());
-        let address = Address::endpoint("https://hub.example").unwrap().resolve(model, &model.revision, file);
+        let address = WebAddress::parse_endpoint("https://hub.example").unwrap().file_address(model, &model.revision, file);
         let parsed: ureq::http::Uri = address.parse().unwrap();
         prop_assert_eq!(parsed.host(), Some("hub.example"));
         prop_assert_eq!(parsed.query(), None);

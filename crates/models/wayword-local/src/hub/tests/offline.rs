@@ -5,11 +5,11 @@ use super::{
     fake::{COMMIT, FakeHub, bytes, model},
     folder, problem,
 };
-use crate::hub::{Hub, HubConfig, ModelName, Needs};
+use crate::hub::{HubConfig, ModelHub, ModelName, NeededFiles};
 use std::{fs, path::Path};
 
-fn offline(cache: &Path) -> Hub {
-    Hub::new(HubConfig { offline: true, ..HubConfig::new(cache.to_owned()) }).unwrap()
+fn offline(cache: &Path) -> ModelHub {
+    ModelHub::new(HubConfig { offline: true, ..HubConfig::new(cache.to_owned()) }).unwrap()
 }
 
 fn write_model(folder: &Path) {
@@ -26,7 +26,7 @@ fn offline_uses_the_cache_without_any_request() {
     let fake = FakeHub::start(model());
     let online = folder(&fake.client(cache.path()), "hf/org/name").unwrap();
     let asked = fake.requests();
-    let hub = Hub::new(HubConfig { offline: true, ..fake.config(cache.path()) }).unwrap();
+    let hub = ModelHub::new(HubConfig { offline: true, ..fake.config(cache.path()) }).unwrap();
     assert_eq!(folder(&hub, "hf/org/name").unwrap(), online);
     fs::remove_file(online.path.join("model.safetensors")).unwrap();
     let problem = problem(&hub, "hf/org/name");
@@ -61,13 +61,13 @@ fn offline_error_names_a_path_where_the_file_works() {
 fn a_tokenizer_is_fetched_without_its_model() {
     let cache = tempfile::tempdir().unwrap();
     let name = ModelName::parse("hf/org/name").unwrap();
-    let told = offline(cache.path()).folder(&name, &Needs::tokenizer(), &()).unwrap_err().to_string();
+    let told = offline(cache.path()).model_folder(&name, &NeededFiles::for_tokenizer(), &()).unwrap_err().to_string();
     assert!(told.contains("run `wayword models fetch --tokenizer hf/org/name`;"), "{told}");
     let fake = FakeHub::start(model());
-    let found = fake.client(cache.path()).fetch(&name, &Needs::tokenizer(), &()).unwrap();
+    let found = fake.client(cache.path()).fetch_model(&name, &NeededFiles::for_tokenizer(), &()).unwrap();
     assert!(found.path.join("tokenizer.json").is_file() && !found.path.join("model.safetensors").exists());
-    let again = Hub::new(HubConfig { offline: true, ..fake.config(cache.path()) }).unwrap();
-    assert_eq!(again.folder(&name, &Needs::tokenizer(), &()).unwrap(), found);
+    let again = ModelHub::new(HubConfig { offline: true, ..fake.config(cache.path()) }).unwrap();
+    assert_eq!(again.model_folder(&name, &NeededFiles::for_tokenizer(), &()).unwrap(), found);
 }
 
 #[test]

@@ -5,7 +5,7 @@ use super::{
     folder, problem,
     server::Reply,
 };
-use crate::hub::{Hub, HubConfig};
+use crate::hub::{HubConfig, ModelHub};
 
 fn refusing(status: u16, code: &str) -> FakeHub {
     let code = code.to_owned();
@@ -39,7 +39,7 @@ fn each_refusal_has_a_hint() {
 fn without_a_token_a_private_model_asks_for_one() {
     let cache = tempfile::tempdir().unwrap();
     let fake = refusing(401, "RepoNotFound");
-    let hub = Hub::new(HubConfig { token: None, ..fake.config(cache.path()) }).unwrap();
+    let hub = ModelHub::new(HubConfig { token: None, ..fake.config(cache.path()) }).unwrap();
     let problem = problem(&hub, "hf/org/name");
     assert!(problem.contains("or it is private") && problem.contains("HF_TOKEN"), "{problem}");
     assert!(!fake.hub.requests()[0].headers.contains_key("authorization"));
@@ -69,6 +69,6 @@ fn faults_that_stay_are_given_up() {
 #[test]
 fn client_refuses_an_invalid_endpoint_without_repeating_it() {
     let config = HubConfig { endpoint: "https://me:hunter2@host".to_owned(), ..HubConfig::new("/nowhere".into()) };
-    let problem = Hub::new(config).unwrap_err().to_string();
+    let problem = ModelHub::new(config).unwrap_err().to_string();
     assert!(problem.contains("HF_ENDPOINT") && !problem.contains("hunter2"), "{problem}");
 }

@@ -1,25 +1,27 @@
 //! Tests that a checkpoint must have the hash that is published, given by the user, or kept since its first use.
 
 use super::fake::{COMMIT, FakeHub, bytes, sha256};
-use crate::hub::{Hub, HubConfig, ModelName, Needs, Progress};
+use crate::hub::{DownloadProgress, HubConfig, ModelHub, ModelName, NeededFiles};
 use std::{fs, sync::Mutex};
 
 /// Collects the notes for the user.
 #[derive(Default)]
 struct Notes(Mutex<Vec<String>>);
 
-impl Progress for Notes {
-    fn bytes(&self, _: &str, _: u64, _: Option<u64>) {}
+impl DownloadProgress for Notes {
+    fn bytes_arrived(&self, _: &str, _: u64, _: Option<u64>) {}
 
-    fn told(&self, note: &str) {
+    fn show_note(&self, note: &str) {
         self.0.lock().unwrap().push(note.to_owned());
     }
 }
 
 /// Uses a model, and returns the notes for the user, or the error.
 fn used(config: HubConfig, name: &str) -> Result<Vec<String>, String> {
-    let (hub, name, notes) = (Hub::new(config).unwrap(), ModelName::parse(name).unwrap(), Notes::default());
-    let found = hub.folder(&name, &Needs::of_any(&name), &notes).map_err(|error| error.to_string())?;
+    let (hub, name, notes) = (ModelHub::new(config).unwrap(), ModelName::parse(name).unwrap(), Notes::default());
+    let found = hub
+        .model_folder(&name, &NeededFiles::for_any_architecture(&name), &notes)
+        .map_err(|error| error.to_string())?;
     assert!(found.file.unwrap().is_file());
     Ok(notes.0.into_inner().unwrap())
 }

@@ -51,21 +51,21 @@ fn pickle(count: u8, offset: u8, shape: &[u8], strides: &[u8]) -> Vec<u8> {
 }
 
 fn told(folder: &Path, pickle: &[u8], shape: &[usize]) -> Result<Vec<f32>, String> {
-    let file = Trained::open(&made(folder, pickle)).map_err(|error| error.to_string())?;
-    let tensor = file.read("w", shape).map_err(|error| error.to_string())?;
+    let file = TrainingCheckpoint::open(&made(folder, pickle)).map_err(|error| error.to_string())?;
+    let tensor = file.read_tensor("w", shape).map_err(|error| error.to_string())?;
     Ok(tensor.flatten_all().unwrap().to_vec1().unwrap())
 }
 
 #[test]
 fn only_the_weights_are_read() {
-    let file = Trained::open(&fixture()).unwrap();
-    assert!(file.names().all(|name| !name.starts_with("module.") && !name.contains("exp_avg")));
-    assert_eq!(file.shape("rpn.head.bias0").unwrap(), [1]);
-    let bias = file.read("rpn.head.bias0", &[1]).unwrap().to_vec1::<f32>().unwrap()[0];
+    let file = TrainingCheckpoint::open(&fixture()).unwrap();
+    assert!(file.tensor_names().all(|name| !name.starts_with("module.") && !name.contains("exp_avg")));
+    assert_eq!(file.tensor_shape("rpn.head.bias0").unwrap(), [1]);
+    let bias = file.read_tensor("rpn.head.bias0", &[1]).unwrap().to_vec1::<f32>().unwrap()[0];
     assert!((-1.5..-0.5).contains(&bias), "{bias}");
     let index = "backbone.body.layers.0.blocks.0.attn.relative_position_index";
-    assert_eq!(file.read(index, &[9, 9]).unwrap().to_vec2::<i64>().unwrap()[8][8], 80);
-    let error = file.read("rpn.head.bias0", &[2]).unwrap_err().to_string();
+    assert_eq!(file.read_tensor(index, &[9, 9]).unwrap().to_vec2::<i64>().unwrap()[8][8], 80);
+    let error = file.read_tensor("rpn.head.bias0", &[2]).unwrap_err().to_string();
     assert!(
         error.contains("glip.pth") && error.contains("rpn.head.bias0") && error.contains("[1], not [2]"),
         "{error}"
@@ -122,7 +122,7 @@ fn a_file_that_is_cut_off_is_refused() {
     let (whole, path) = (std::fs::read(fixture()).unwrap(), folder.path().join("cut.pth"));
     for length in [0, 30, whole.len() / 2, whole.len() - 1] {
         std::fs::write(&path, &whole[..length]).unwrap();
-        let error = Trained::open(&path).err().expect("it is refused").to_string();
+        let error = TrainingCheckpoint::open(&path).err().expect("it is refused").to_string();
         assert!(error.contains("cut.pth") && error.contains("cut off"), "{error}");
     }
     // A number of a tensor that was changed is found by its checksum.
@@ -131,7 +131,8 @@ fn a_file_that_is_cut_off_is_refused() {
     let at = changed.windows(name.len()).position(|window| window == name).unwrap() + 200;
     changed[at] ^= 0x40;
     std::fs::write(&path, &changed).unwrap();
-    let file = Trained::open(&path).unwrap();
-    let problems = file.names().filter(|name| file.read(name, &file.shape(name).unwrap()).is_err()).count();
+    let file = TrainingCheckpoint::open(&path).unwrap();
+    let problems =
+        file.tensor_names().filter(|name| file.read_tensor(name, &file.tensor_shape(name).unwrap()).is_err()).count();
     assert_eq!(problems, 1);
 }

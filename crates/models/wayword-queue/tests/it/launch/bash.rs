@@ -11,8 +11,8 @@ use std::{
 };
 use tempfile::TempDir;
 use wayword_queue::launch::{
-    Worker,
-    slurm::{SlurmJob, script},
+    LaunchWorker,
+    slurm::{SlurmJob, write_script},
 };
 
 /// A worker: writes its arguments to a file, reports its start by another, and ends as its variables ask.
@@ -46,9 +46,9 @@ impl Trial {
             fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).unwrap();
         }
         let arguments = arguments.iter().map(|&text| text.to_owned()).collect();
-        let job = SlurmJob::new(Worker { program, arguments, workers: 40 }, "90");
+        let job = SlurmJob::new(LaunchWorker { program, arguments, workers: 40 }, "90");
         // A second signal after 90 s is too long for a test.
-        let text = script(&job).unwrap().replace("sleep 90", "sleep 0.3");
+        let text = write_script(&job).unwrap().replace("sleep 90", "sleep 0.3");
         fs::write(folder.path().join("script"), text).unwrap();
         Self { folder }
     }

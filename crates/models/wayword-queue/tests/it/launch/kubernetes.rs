@@ -5,7 +5,7 @@ use serde::Deserialize as _;
 use serde_json::{Value, json};
 use wayword_queue::launch::{
     LaunchError,
-    kubernetes::{KubernetesJob, SecretEnv, SecretFile, SharedFolder, manifest},
+    kubernetes::{KubernetesJob, SecretEnv, SecretFile, SharedFolder, write_manifest},
 };
 
 const IMAGE: &str = "registry.example/wayword:0.1.0";
@@ -40,7 +40,7 @@ fn read(text: &str) -> Vec<Value> {
 }
 
 fn job(job: &KubernetesJob) -> Value {
-    let mut documents = read(&manifest(job).unwrap());
+    let mut documents = read(&write_manifest(job).unwrap());
     assert_eq!(documents.len(), 1);
     documents.remove(0)
 }
@@ -72,12 +72,12 @@ fn arguments(job: &Value) -> Vec<String> {
 
 #[test]
 fn a_small_manifest_has_a_part_for_each_worker() {
-    insta::assert_snapshot!("kubernetes_small", manifest(&small()).unwrap());
+    insta::assert_snapshot!("kubernetes_small", write_manifest(&small()).unwrap());
 }
 
 #[test]
 fn a_full_manifest_has_a_queue_secrets_and_a_shared_folder() {
-    insta::assert_snapshot!("kubernetes_full", manifest(&full()).unwrap());
+    insta::assert_snapshot!("kubernetes_full", write_manifest(&full()).unwrap());
 }
 
 #[test]
@@ -210,7 +210,7 @@ fn manifest_refuses_values_that_kubernetes_would_refuse() {
         KubernetesJob { worker: worker(&[], 0), ..small() },
     ];
     for given in wrong {
-        let error = manifest(&given).unwrap_err();
+        let error = write_manifest(&given).unwrap_err();
         assert!(!matches!(error, LaunchError::Template(_)), "{given:?}: {error}");
         let error = error.to_string();
         assert!(error.contains("\nhint: ") && !error.contains("geheim"), "{error}");

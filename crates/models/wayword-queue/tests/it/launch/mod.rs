@@ -9,7 +9,7 @@ mod rules;
 mod schema;
 mod slurm;
 
-use wayword_queue::launch::Worker;
+use wayword_queue::launch::LaunchWorker;
 
 /// Arguments that mean something to bash, YAML, sbatch or Kubernetes unless they are quoted.
 const HOSTILE: [&str; 14] = [
@@ -29,15 +29,15 @@ const HOSTILE: [&str; 14] = [
     "- yes",
 ];
 
-fn worker(arguments: &[&str], workers: u32) -> Worker {
+fn worker(arguments: &[&str], workers: u32) -> LaunchWorker {
     let arguments = arguments.iter().map(|&text| text.to_owned()).collect();
-    Worker { program: "wayword".to_owned(), arguments, workers }
+    LaunchWorker { program: "wayword".to_owned(), arguments, workers }
 }
 
-fn by_part() -> Worker {
+fn by_part() -> LaunchWorker {
     worker(&["generate", "--platform", "habitat", "--paths", "100000", "--out", "runs/it's big"], 40)
 }
 
-fn by_queue(workers: u32) -> Worker {
+fn by_queue(workers: u32) -> LaunchWorker {
     worker(&["generate", "--out", "runs/big", "--queue", "postgresql://wayword@db:5432/wayword"], workers)
 }

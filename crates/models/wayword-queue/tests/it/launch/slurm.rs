@@ -3,7 +3,7 @@
 use super::{by_part, by_queue, worker};
 use wayword_queue::launch::{
     LaunchError,
-    slurm::{SlurmJob, script},
+    slurm::{SlurmJob, write_script},
 };
 
 fn small() -> SlurmJob {
@@ -12,7 +12,7 @@ fn small() -> SlurmJob {
 
 #[test]
 fn a_small_script_has_a_part_for_each_worker() {
-    insta::assert_snapshot!("slurm_small", script(&small()).unwrap());
+    insta::assert_snapshot!("slurm_small", write_script(&small()).unwrap());
 }
 
 #[test]
@@ -28,14 +28,14 @@ fn a_full_script_has_a_queue_and_all_that_slurm_can_be_asked_for() {
         export: ["PGPASSFILE", "OPENAI_API_KEY", "HOME"].map(str::to_owned).to_vec(),
         ..SlurmJob::new(by_queue(2000), "1-12:00:00")
     };
-    insta::assert_snapshot!("slurm_full", script(&job).unwrap());
+    insta::assert_snapshot!("slurm_full", write_script(&job).unwrap());
 }
 
 #[test]
 fn script_of_a_large_array_warns_about_cluster_limits() {
     let has_hint = |workers| {
         let job = SlurmJob::new(by_queue(workers), "90");
-        script(&job).unwrap().contains("MaxArraySize")
+        write_script(&job).unwrap().contains("MaxArraySize")
     };
     assert_eq!([1, 1001, 1002].map(has_hint), [false, false, true]);
 }
@@ -63,10 +63,10 @@ fn script_refuses_values_that_slurm_would_misread() {
         SlurmJob { worker: worker(&["a\nb"], 1), ..small() },
         SlurmJob { worker: worker(&["--queue=postgresql://me:geheim@host/db"], 1), ..small() },
         SlurmJob { worker: worker(&[], 0), ..small() },
-        SlurmJob { worker: wayword_queue::launch::Worker { program: String::new(), ..by_part() }, ..small() },
+        SlurmJob { worker: wayword_queue::launch::LaunchWorker { program: String::new(), ..by_part() }, ..small() },
     ];
     for given in wrong {
-        let error = script(&given).unwrap_err();
+        let error = write_script(&given).unwrap_err();
         assert!(!matches!(error, LaunchError::Template(_)), "{given:?}: {error}");
         let error = error.to_string();
         assert!(error.contains("\nhint: ") && !error.contains("geheim"), "{error}");

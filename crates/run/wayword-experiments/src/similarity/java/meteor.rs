@@ -1,37 +1,37 @@
 //! Runs METEOR 1.5 in the same way as `meteor.py` of `pycocoevalcap`: it sends `SCORE` for each text, then `EVAL` for all of them.
 
-use super::{Running, Said, line};
-use crate::similarity::args::Similarity as Args;
+use super::{JavaProcess, TextWithReferences, read_output_line};
+use crate::similarity::args::SimilarityArgs as Args;
 use std::{
     io::{BufReader, Write},
     path::Path,
     process::Command,
 };
-use wayword_run::error::Error;
+use wayword_run::error::CommandError;
 
 /// The METEOR score of a set of texts.
-pub(super) fn score(args: &Args, jar: &Path, said: &[Said]) -> Result<f64, Error> {
+pub(super) fn meteor_score(args: &Args, jar: &Path, said: &[TextWithReferences]) -> Result<f64, CommandError> {
     let mut command = Command::new(&args.java);
     command.args(["-Xmx2G", "-jar"]).arg(jar).args(["-", "-", "-stdio", "-l", "en", "-norm"]);
-    let (_running, pipes) = Running::start(&mut command)?;
+    let (_running, pipes) = JavaProcess::start(&mut command)?;
     let ended = || {
         let problem = format!("{}: the program ended, or did not answer as METEOR does", jar.display());
-        Error::usage(problem, "use meteor-1.5.jar, with its folder data/ beside it")
+        CommandError::usage(problem, "use meteor-1.5.jar, with its folder data/ beside it")
     };
     let (Some(mut input), Some(output)) = (pipes.input, pipes.output) else { return Err(ended()) };
     let mut output = BufReader::new(output);
     let mut ask = |question: String| writeln!(input, "{question}").and_then(|()| input.flush()).map_err(|_| ended());
     let mut statistics = String::from("EVAL");
-    for Said { text, references } in said {
+    for TextWithReferences { text, references } in said {
         let parts: Vec<String> = references.iter().chain([text]).map(|part| without_bars(part)).collect();
         ask(format!("SCORE ||| {}", parts.join(" ||| ")))?;
         statistics.push_str(" ||| ");
-        statistics.push_str(&line(&mut output).ok_or_else(ended)?);
+        statistics.push_str(&read_output_line(&mut output).ok_or_else(ended)?);
     }
     ask(statistics)?;
     // A score for each text, then that of all.
     let scores: Vec<f64> =
-        (0..=said.len()).map_while(|_| line(&mut output)).map_while(|score| score.parse().ok()).collect();
+        (0..=said.len()).map_while(|_| read_output_line(&mut output)).map_while(|score| score.parse().ok()).collect();
     scores.get(said.len()).copied().filter(|score| score.is_finite()).ok_or_else(ended)
 }
 

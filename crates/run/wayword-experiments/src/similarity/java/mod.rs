@@ -4,7 +4,7 @@
 mod meteor;
 mod spice;
 
-use crate::similarity::args::Similarity as Args;
+use crate::similarity::args::SimilarityArgs as Args;
 use serde::Serialize;
 use std::{
     io::{BufRead, Read},
@@ -14,8 +14,8 @@ use std::{
     thread::{self, JoinHandle},
     time::Duration,
 };
-use wayword_metrics::captions::{Row, Sets, Text, Vocabulary};
-use wayword_run::error::Error;
+use wayword_metrics::captions::{CaptionRow, CaptionRowSets, CaptionVocabulary, NumberedText};
+use wayword_run::error::CommandError;
 
 /// Time limit for a program over one set of texts.
 const MOST_TIME: Duration = Duration::from_secs(1800);
@@ -24,7 +24,7 @@ const MOST_LINE: u64 = 64 << 20;
 
 /// The scores of one program, over the same sets of texts as the other metrics.
 #[derive(Debug, Serialize)]
-pub(super) struct Outside {
+pub(super) struct JavaScores {
     pub(super) name: &'static str,
     pub(super) all: Option<f64>,
     pub(super) rest: Option<f64>,
@@ -33,41 +33,47 @@ pub(super) struct Outside {
 }
 
 /// A text and its references, in tokens with blanks between.
-struct Said {
+struct TextWithReferences {
     text: String,
     references: Vec<String>,
 }
 
 /// Scores one set of texts.
-type Scorer = fn(&Args, &Path, &[Said]) -> Result<f64, Error>;
+type JavaScorer = fn(&Args, &Path, &[TextWithReferences]) -> Result<f64, CommandError>;
 
 /// Runs the programs that the user named, and gives their scores.
 ///
 /// # Errors
 /// When one cannot be started, ends early, takes too long, or answers something else.
-pub(super) fn of(args: &Args, sets: &Sets<'_>, vocabulary: &Vocabulary) -> Result<Vec<Outside>, Error> {
-    let words = vocabulary.words();
-    let line = |text: &Text| text.line(&words);
+pub(super) fn run_java_scorers(
+    args: &Args,
+    sets: &CaptionRowSets<'_>,
+    vocabulary: &CaptionVocabulary,
+) -> Result<Vec<JavaScores>, CommandError> {
+    let words = vocabulary.words_by_number();
+    let line = |text: &NumberedText| text.to_line(&words);
     let mut found = Vec::new();
-    let programs: [(&'static str, Option<&Path>, Scorer); 2] =
-        [("METEOR", args.meteor_jar.as_deref(), meteor::score), ("SPICE", args.spice_jar.as_deref(), spice::score)];
+    let programs: [(&'static str, Option<&Path>, JavaScorer); 2] = [
+        ("METEOR", args.meteor_jar.as_deref(), meteor::meteor_score),
+        ("SPICE", args.spice_jar.as_deref(), spice::spice_score),
+    ];
     for (name, jar, score) in programs {
         let Some(jar) = jar else { continue };
         if !jar.is_file() {
             let problem = format!("{}: there is no such file", jar.display());
-            return Err(Error::usage(problem, "give the .jar of the program (docs/CRITICS.md)"));
+            return Err(CommandError::usage(problem, "give the .jar of the program (docs/CRITICS.md)"));
         }
-        let of_rows = |rows: &[Row<'_>]| -> Result<Option<f64>, Error> {
-            let said: Vec<Said> = rows
+        let of_rows = |rows: &[CaptionRow<'_>]| -> Result<Option<f64>, CommandError> {
+            let said: Vec<TextWithReferences> = rows
                 .iter()
-                .map(|row| Said {
+                .map(|row| TextWithReferences {
                     text: line(row.text),
                     references: row.references.iter().map(|reference| line(reference)).collect(),
                 })
                 .collect();
             (!said.is_empty()).then(|| score(args, jar, &said)).transpose()
         };
-        found.push(Outside {
+        found.push(JavaScores {
             name,
             all: of_rows(&sets.all)?,
             rest: of_rows(&sets.rest)?,
@@ -79,20 +85,23 @@ pub(super) fn of(args: &Args, sets: &Sets<'_>, vocabulary: &Vocabulary) -> Resul
 }
 
 /// A running program. It is killed when it exceeds the time limit, and when this value is dropped.
-struct Running {
+struct JavaProcess {
     child: Arc<Mutex<Child>>,
     done: Option<mpsc::Sender<()>>,
     watch: Option<JoinHandle<()>>,
 }
 
-impl Running {
-    fn start(command: &mut Command) -> Result<(Self, Pipes), Error> {
+impl JavaProcess {
+    fn start(command: &mut Command) -> Result<(Self, JavaPipes), CommandError> {
         command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null());
         let name = command.get_program().to_string_lossy().into_owned();
         let mut child = command.spawn().map_err(|error| {
-            Error::usage(format!("{name} cannot be started: {error}"), "install Java, or name it with --java PROGRAM")
+            CommandError::usage(
+                format!("{name} cannot be started: {error}"),
+                "install Java, or name it with --java PROGRAM",
+            )
         })?;
-        let pipes = Pipes { input: child.stdin.take(), output: child.stdout.take() };
+        let pipes = JavaPipes { input: child.stdin.take(), output: child.stdout.take() };
         let child = Arc::new(Mutex::new(child));
         let (done, is_done) = mpsc::channel();
         let watched = Arc::clone(&child);
@@ -117,7 +126,7 @@ impl Running {
     }
 }
 
-impl Drop for Running {
+impl Drop for JavaProcess {
     fn drop(&mut self) {
         drop(self.done.take());
         if let Some(watch) = self.watch.take() {
@@ -130,13 +139,13 @@ impl Drop for Running {
 }
 
 /// The ends of a program's pipes.
-struct Pipes {
+struct JavaPipes {
     input: Option<std::process::ChildStdin>,
     output: Option<std::process::ChildStdout>,
 }
 
 /// Reads a line of a program's output; `None` at its end.
-fn line(from: &mut impl BufRead) -> Option<String> {
+fn read_output_line(from: &mut impl BufRead) -> Option<String> {
     let mut line = String::new();
     let count = from.by_ref().take(MOST_LINE).read_line(&mut line).ok()?;
     (count > 0).then(|| line.trim().to_owned())

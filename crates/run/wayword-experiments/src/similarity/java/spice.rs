@@ -1,38 +1,38 @@
 //! Runs SPICE 1.0 in the same way as `spice.py` of `pycocoevalcap`: it gets texts as JSON in a file, and writes scores to another.
 
-use super::{Running, Said};
-use crate::similarity::args::Similarity as Args;
+use super::{JavaProcess, TextWithReferences};
+use crate::similarity::args::SimilarityArgs as Args;
 use serde_json::{Value, json};
 use std::{
     fs,
     path::{Path, PathBuf},
     process::{self, Command},
 };
-use wayword_run::error::Error;
+use wayword_run::error::CommandError;
 
 /// Most bytes of its file of scores.
 const MOST_SCORES: u64 = 256 << 20;
 
 /// The mean F score of a set of texts. Texts whose score is no number are left out, as in the reference.
-pub(super) fn score(args: &Args, jar: &Path, said: &[Said]) -> Result<f64, Error> {
-    let folder = Folder::new()?;
+pub(super) fn spice_score(args: &Args, jar: &Path, said: &[TextWithReferences]) -> Result<f64, CommandError> {
+    let folder = SpiceFolder::new()?;
     let [asked, answered, cache] = ["in.json", "out.json", "cache"].map(|name| folder.0.join(name));
-    let one = |(at, said): (usize, &Said)| json!({ "image_id": at, "test": said.text, "refs": said.references });
+    let one = |(at, said): (usize, &TextWithReferences)| json!({ "image_id": at, "test": said.text, "refs": said.references });
     let all = Value::from(said.iter().enumerate().map(one).collect::<Vec<_>>());
-    fs::write(&asked, all.to_string()).map_err(Error::io(&asked, "write"))?;
-    fs::create_dir(&cache).map_err(Error::io(&cache, "make the folder"))?;
+    fs::write(&asked, all.to_string()).map_err(CommandError::io(&asked, "write"))?;
+    fs::create_dir(&cache).map_err(CommandError::io(&cache, "make the folder"))?;
     let mut command = Command::new(&args.java);
     command
         .arg("-Xmx8G")
         .arg("-jar")
-        .arg(absolute(jar))
+        .arg(absolute_path(jar))
         .arg(&asked)
         .arg("-cache")
         .arg(&cache)
         .arg("-out")
         .arg(&answered);
     command.args(["-subset", "-silent"]);
-    let (running, pipes) = Running::start(&mut command)?;
+    let (running, pipes) = JavaProcess::start(&mut command)?;
     // Its output has no use, but is read, because a full pipe would block the program.
     drop(pipes.input);
     if let Some(mut output) = pipes.output {
@@ -40,13 +40,13 @@ pub(super) fn score(args: &Args, jar: &Path, said: &[Said]) -> Result<f64, Error
     }
     let failed = || {
         let problem = format!("{}: the program failed, or did not answer as SPICE does", jar.display());
-        Error::usage(problem, "use spice-1.0.jar with Stanford's models in lib/ beside it, and Java 8")
+        CommandError::usage(problem, "use spice-1.0.jar with Stanford's models in lib/ beside it, and Java 8")
     };
     let is_there = fs::metadata(&answered).is_ok_and(|file| file.len() <= MOST_SCORES);
     if !running.is_well_at_end() || !is_there {
         return Err(failed());
     }
-    let text = fs::read_to_string(&answered).map_err(Error::io(&answered, "read"))?;
+    let text = fs::read_to_string(&answered).map_err(CommandError::io(&answered, "read"))?;
     let found: Vec<Value> = serde_json::from_str(&text).map_err(|_| failed())?;
     let scores: Vec<f64> = found.iter().filter_map(|one| one["scores"]["All"]["f"].as_f64()).collect();
     if found.len() != said.len() || scores.is_empty() {
@@ -55,25 +55,25 @@ pub(super) fn score(args: &Args, jar: &Path, said: &[Said]) -> Result<f64, Error
     Ok(scores.iter().sum::<f64>() / scores.len() as f64)
 }
 
-fn absolute(file: &Path) -> PathBuf {
+fn absolute_path(file: &Path) -> PathBuf {
     file.canonicalize().unwrap_or_else(|_| file.to_owned())
 }
 
 /// A temporary folder, deleted when this value is dropped.
-struct Folder(PathBuf);
+struct SpiceFolder(PathBuf);
 
-impl Folder {
-    fn new() -> Result<Self, Error> {
+impl SpiceFolder {
+    fn new() -> Result<Self, CommandError> {
         let name = |number: u32| std::env::temp_dir().join(format!("wayword-spice-{}-{number}", process::id()));
         let made = (0..100).map(name).find(|folder| fs::create_dir(folder).is_ok());
         made.map(Self).ok_or_else(|| {
             let problem = format!("{}: no folder can be made there", std::env::temp_dir().display());
-            Error::usage(problem, "make room, or set TMPDIR to a folder that can be written")
+            CommandError::usage(problem, "make room, or set TMPDIR to a folder that can be written")
         })
     }
 }
 
-impl Drop for Folder {
+impl Drop for SpiceFolder {
     fn drop(&mut self) {
         let _ = fs::remove_dir_all(&self.0);
     }

@@ -4,7 +4,7 @@
 use minijinja::{Error, Output, State, Value, value::ValueKind};
 
 /// Characters with a meaning in Markdown or HTML; a backslash in front takes it away.
-const MARKS: &str = "\\`*_{}[]<>()#.!|&~:$^@";
+const ESCAPED_CHARACTERS: &str = "\\`*_{}[]<>()#.!|&~:$^@";
 
 /// Escapes a text so that Markdown shows it unchanged, on one line.
 fn in_markdown(text: &str) -> String {
@@ -14,7 +14,7 @@ fn in_markdown(text: &str) -> String {
             escaped.push(' ');
             continue;
         }
-        if MARKS.contains(c) {
+        if ESCAPED_CHARACTERS.contains(c) {
             escaped.push('\\');
         }
         escaped.push(c);
@@ -23,7 +23,7 @@ fn in_markdown(text: &str) -> String {
 }
 
 /// Writes a value into the card: texts are escaped unless a filter has made them safe.
-pub(super) fn write(out: &mut Output<'_>, _state: &State<'_, '_>, value: &Value) -> Result<(), Error> {
+pub(super) fn write_card_value(out: &mut Output<'_>, _state: &State<'_, '_>, value: &Value) -> Result<(), Error> {
     match value.as_str().filter(|_| value.kind() == ValueKind::String && !value.is_safe()) {
         Some(text) => out.write_str(&in_markdown(text)).map_err(Error::from),
         None => out.write_str(&value.to_string()).map_err(Error::from),
@@ -32,18 +32,18 @@ pub(super) fn write(out: &mut Output<'_>, _state: &State<'_, '_>, value: &Value)
 
 /// Filter `yaml`: the text as a quoted YAML string. A JSON string is a valid YAML string.
 #[expect(clippy::needless_pass_by_value, reason = "a filter gets its values")]
-pub(super) fn yaml(text: String) -> Value {
+pub(super) fn yaml_filter(text: String) -> Value {
     let seen: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
     Value::from_safe_string(serde_json::Value::from(seen).to_string())
 }
 
 /// Filter `plain`: passes a text through unescaped. Only for texts that this program has checked or made: names of splits and files.
-pub(super) fn plain(text: String) -> Value {
+pub(super) fn plain_filter(text: String) -> Value {
     Value::from_safe_string(text)
 }
 
 /// Filter `join`: escapes texts and joins them with a separator.
 #[expect(clippy::needless_pass_by_value, reason = "a filter gets its values")]
-pub(super) fn join(texts: Vec<String>, between: &str) -> Value {
+pub(super) fn join_filter(texts: Vec<String>, between: &str) -> Value {
     Value::from_safe_string(texts.iter().map(|text| in_markdown(text)).collect::<Vec<_>>().join(between))
 }

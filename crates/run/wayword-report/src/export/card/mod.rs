@@ -3,33 +3,33 @@
 
 mod escape;
 
-use crate::export::args::Export;
+use crate::export::args::ExportArgs;
 use minijinja::{Environment, UndefinedBehavior};
 use serde::Serialize;
 use std::{
     collections::{BTreeMap, BTreeSet},
     path::Path,
 };
-use wayword_core::{Ambiguity, Check, SceneId, Verdict};
-use wayword_formats::jsonl::Record;
+use wayword_core::{CheckKind, SceneId, TextAmbiguity, Verdict};
+use wayword_formats::jsonl::InstructionRecord;
 use wayword_run::{
-    count::count,
-    error::Error,
-    run_folder::{Rejected, file, read_lines},
+    count::count_phrase,
+    error::CommandError,
+    run_folder::{RejectedText, file, read_lines},
     terms,
 };
 
-const TEMPLATE: &str = include_str!("card.md");
+const CARD_TEMPLATE: &str = include_str!("card.md");
 /// The hub's classes of size, each with its upper limit.
-const SIZES: [(usize, &str); 4] =
+const HUB_SIZE_CLASSES: [(usize, &str); 4] =
     [(1_000, "n<1K"), (10_000, "1K<n<10K"), (100_000, "10K<n<100K"), (1_000_000, "100K<n<1M")];
 /// Names of the roles that no model plays.
-const LABELS: &str = "labels";
-const RULES: &str = "rules";
+const LABELS_ROLE: &str = "labels";
+const RULES_ROLE: &str = "rules";
 
 /// The values that the template of the card shows.
 #[derive(Debug, Serialize)]
-struct Card {
+struct DatasetCard {
     name: String,
     version: &'static str,
     size: &'static str,
@@ -45,7 +45,7 @@ struct Card {
     seeds: BTreeSet<String>,
     repaired: usize,
     #[serde(flatten)]
-    outcome: Outcome,
+    outcome: CardVerdictCounts,
     rejected: usize,
     checks: Vec<CheckLine>,
     ambiguous: usize,
@@ -68,11 +68,11 @@ struct SplitLine {
 struct RoleLine {
     instructions: usize,
     #[serde(flatten)]
-    roles: Roles,
+    roles: CardRoles,
 }
 
 #[derive(Debug, Serialize, PartialEq, Eq, PartialOrd, Ord)]
-struct Roles {
+struct CardRoles {
     asker: String,
     answerer: String,
     summariser: String,
@@ -83,7 +83,7 @@ struct Roles {
 
 /// How many texts got each verdict.
 #[derive(Debug, Default, Serialize)]
-struct Outcome {
+struct CardVerdictCounts {
     passed: usize,
     unverified: usize,
     failed: usize,
@@ -93,7 +93,7 @@ struct Outcome {
 struct CheckLine {
     name: &'static str,
     #[serde(flatten)]
-    outcome: Outcome,
+    outcome: CardVerdictCounts,
 }
 
 #[derive(Debug, Serialize)]
@@ -113,60 +113,66 @@ pub(super) fn file_name(split: &str) -> String {
 ///
 /// # Errors
 /// When the runs' rejected texts cannot be read.
-pub(super) fn of(args: &Export, out: &Path, records: &[Record], splits: &[String]) -> Result<String, Error> {
+pub(super) fn card_text(
+    args: &ExportArgs,
+    out: &Path,
+    records: &[InstructionRecord],
+    splits: &[String],
+) -> Result<String, CommandError> {
     let name = out.file_name().map_or_else(|| "Wayword".to_owned(), |name| name.to_string_lossy().into_owned());
-    drawn(&Card::new(name, records, splits, rejected(args)?))
-        .map_err(|error| Error::usage(format!("the dataset card cannot be written: {error:#}"), "report this as a bug"))
+    render_card(&DatasetCard::new(name, records, splits, count_rejected(args)?)).map_err(|error| {
+        CommandError::usage(format!("the dataset card cannot be written: {error:#}"), "report this as a bug")
+    })
 }
 
-fn drawn(card: &Card) -> Result<String, minijinja::Error> {
+fn render_card(card: &DatasetCard) -> Result<String, minijinja::Error> {
     let mut templates = Environment::new();
     templates.set_undefined_behavior(UndefinedBehavior::Strict);
     templates.set_keep_trailing_newline(true);
-    templates.set_formatter(escape::write);
-    templates.add_function("count", |number: u64, of: &str| count(number, of));
-    templates.add_filter("yaml", escape::yaml);
-    templates.add_filter("plain", escape::plain);
-    templates.add_filter("join", escape::join);
-    templates.add_template("card.md", TEMPLATE)?;
+    templates.set_formatter(escape::write_card_value);
+    templates.add_function("count", |number: u64, of: &str| count_phrase(number, of));
+    templates.add_filter("yaml", escape::yaml_filter);
+    templates.add_filter("plain", escape::plain_filter);
+    templates.add_filter("join", escape::join_filter);
+    templates.add_template("card.md", CARD_TEMPLATE)?;
     templates.get_template("card.md")?.render(card)
 }
 
 /// How many texts the runs rejected, of the style that is exported.
-fn rejected(args: &Export) -> Result<usize, Error> {
+fn count_rejected(args: &ExportArgs) -> Result<usize, CommandError> {
     let mut rejected = 0;
     for run in &args.run {
-        let of_run: Vec<Rejected> = read_lines(&run.join(file::REJECTED))?;
-        let is_of_style = |text: &&Rejected| args.style.as_ref().is_none_or(|style| *style == text.style);
+        let of_run: Vec<RejectedText> = read_lines(&run.join(file::REJECTED))?;
+        let is_of_style = |text: &&RejectedText| args.style.as_ref().is_none_or(|style| *style == text.style);
         rejected += of_run.iter().filter(is_of_style).count();
     }
     Ok(rejected)
 }
 
-impl Card {
-    fn new(name: String, records: &[Record], splits: &[String], rejected: usize) -> Self {
-        let count = |is: fn(&Record) -> bool| records.iter().filter(|record| is(record)).count();
+impl DatasetCard {
+    fn new(name: String, records: &[InstructionRecord], splits: &[String], rejected: usize) -> Self {
+        let count = |is: fn(&InstructionRecord) -> bool| records.iter().filter(|record| is(record)).count();
         let looked_at = records.iter().filter_map(|record| record.instruction.ambiguity.as_ref());
         let largest = "1M<n<10M";
-        let all: Vec<&Record> = records.iter().collect();
+        let all: Vec<&InstructionRecord> = records.iter().collect();
         Self {
             name,
             version: env!("CARGO_PKG_VERSION"),
-            size: SIZES.iter().find(|(most, _)| records.len() < *most).map_or(largest, |(_, size)| size),
+            size: HUB_SIZE_CLASSES.iter().find(|(most, _)| records.len() < *most).map_or(largest, |(_, size)| size),
             instructions: records.len(),
-            paths: paths(&all),
-            scenes: scenes(&all),
+            paths: count_paths(&all),
+            scenes: count_scenes(&all),
             splits: split_lines(records, splits),
             roles: role_lines(records),
-            labels: count(|record| record.instruction.provenance.answerer == LABELS),
-            rules: count(|record| record.instruction.provenance.writer == RULES),
+            labels: count(|record| record.instruction.provenance.answerer == LABELS_ROLE),
+            rules: count(|record| record.instruction.provenance.writer == RULES_ROLE),
             styles: records.iter().map(|record| record.instruction.style.clone()).collect(),
             seeds: records.iter().map(|record| record.instruction.provenance.seed.to_string()).collect(),
             repaired: count(|record| record.instruction.provenance.repairs > 0),
-            outcome: Outcome::of(records.iter().map(|record| record.instruction.verdict)),
+            outcome: CardVerdictCounts::from_verdicts(records.iter().map(|record| record.instruction.verdict)),
             rejected,
             checks: check_lines(records),
-            ambiguous: looked_at.clone().filter(|ambiguity| Ambiguity::is_ambiguous(ambiguity)).count(),
+            ambiguous: looked_at.clone().filter(|ambiguity| TextAmbiguity::is_ambiguous(ambiguity)).count(),
             looked_at: looked_at.count(),
             platforms: platform_lines(records),
             is_somebodys: records.iter().any(|record| terms::are_somebodys(&record.platform)),
@@ -174,8 +180,8 @@ impl Card {
     }
 }
 
-impl Outcome {
-    fn of(verdicts: impl Iterator<Item = Verdict>) -> Self {
+impl CardVerdictCounts {
+    fn from_verdicts(verdicts: impl Iterator<Item = Verdict>) -> Self {
         let mut outcome = Self::default();
         for verdict in verdicts {
             match verdict {
@@ -189,39 +195,43 @@ impl Outcome {
 }
 
 /// The number of different paths.
-fn paths(records: &[&Record]) -> usize {
-    let name = |record: &&Record| (record.platform.clone(), record.path.scene.clone(), record.path_id());
+fn count_paths(records: &[&InstructionRecord]) -> usize {
+    let name = |record: &&InstructionRecord| (record.platform.clone(), record.path.scene.clone(), record.path_id());
     records.iter().map(name).collect::<BTreeSet<_>>().len()
 }
 
 /// The number of different scenes.
-fn scenes(records: &[&Record]) -> usize {
-    let name = |record: &&Record| -> (String, SceneId) { (record.platform.clone(), record.path.scene.clone()) };
+fn count_scenes(records: &[&InstructionRecord]) -> usize {
+    let name =
+        |record: &&InstructionRecord| -> (String, SceneId) { (record.platform.clone(), record.path.scene.clone()) };
     records.iter().map(name).collect::<BTreeSet<_>>().len()
 }
 
 /// Groups records by a key that is computed from the index and the record.
-fn by<K: Ord>(records: &[Record], key: impl Fn(usize, &Record) -> K) -> BTreeMap<K, Vec<&Record>> {
-    let mut parts: BTreeMap<K, Vec<&Record>> = BTreeMap::new();
+fn group_records<K: Ord>(
+    records: &[InstructionRecord],
+    key: impl Fn(usize, &InstructionRecord) -> K,
+) -> BTreeMap<K, Vec<&InstructionRecord>> {
+    let mut parts: BTreeMap<K, Vec<&InstructionRecord>> = BTreeMap::new();
     for (index, record) in records.iter().enumerate() {
         parts.entry(key(index, record)).or_default().push(record);
     }
     parts
 }
 
-fn split_lines(records: &[Record], splits: &[String]) -> Vec<SplitLine> {
-    let line = |(split, of_split): (&str, Vec<&Record>)| SplitLine {
+fn split_lines(records: &[InstructionRecord], splits: &[String]) -> Vec<SplitLine> {
+    let line = |(split, of_split): (&str, Vec<&InstructionRecord>)| SplitLine {
         name: split.to_owned(),
         file: file_name(split),
         instructions: of_split.len(),
-        paths: paths(&of_split),
-        scenes: scenes(&of_split),
+        paths: count_paths(&of_split),
+        scenes: count_scenes(&of_split),
     };
-    by(records, |index, _| splits.get(index).map_or("", String::as_str)).into_iter().map(line).collect()
+    group_records(records, |index, _| splits.get(index).map_or("", String::as_str)).into_iter().map(line).collect()
 }
 
-fn role_lines(records: &[Record]) -> Vec<RoleLine> {
-    let roles = |_: usize, record: &Record| {
+fn role_lines(records: &[InstructionRecord]) -> Vec<RoleLine> {
+    let roles = |_: usize, record: &InstructionRecord| {
         let provenance = record.instruction.provenance.clone();
         let seen_by = match provenance.detector {
             Some(detector) => format!("{}, with the detector {detector}", provenance.answerer),
@@ -231,7 +241,7 @@ fn role_lines(records: &[Record]) -> Vec<RoleLine> {
             Some(other) => format!("{}, where {other} failed", provenance.writer),
             None => provenance.writer,
         };
-        Roles {
+        CardRoles {
             asker: provenance.asker,
             answerer: seen_by,
             summariser: provenance.summariser,
@@ -240,26 +250,26 @@ fn role_lines(records: &[Record]) -> Vec<RoleLine> {
             version: provenance.wayword,
         }
     };
-    by(records, roles).into_iter().map(|(roles, of)| RoleLine { instructions: of.len(), roles }).collect()
+    group_records(records, roles).into_iter().map(|(roles, of)| RoleLine { instructions: of.len(), roles }).collect()
 }
 
-fn check_lines(records: &[Record]) -> Vec<CheckLine> {
+fn check_lines(records: &[InstructionRecord]) -> Vec<CheckLine> {
     let findings = || records.iter().flat_map(|record| &record.instruction.findings);
-    let line = |check: Check| {
+    let line = |check: CheckKind| {
         let of_check = findings().filter(|finding| finding.check == check).map(|finding| finding.verdict);
-        CheckLine { name: check.name(), outcome: Outcome::of(of_check) }
+        CheckLine { name: check.name(), outcome: CardVerdictCounts::from_verdicts(of_check) }
     };
-    Check::ALL.into_iter().map(line).collect()
+    CheckKind::ALL.into_iter().map(line).collect()
 }
 
-fn platform_lines(records: &[Record]) -> Vec<PlatformLine> {
-    let line = |(platform, of): (String, Vec<&Record>)| PlatformLine {
+fn platform_lines(records: &[InstructionRecord]) -> Vec<PlatformLine> {
+    let line = |(platform, of): (String, Vec<&InstructionRecord>)| PlatformLine {
         instructions: of.len(),
-        scenes: scenes(&of),
-        terms: terms::of(&platform),
+        scenes: count_scenes(&of),
+        terms: terms::scene_terms(&platform),
         name: platform,
     };
-    by(records, |_, record| record.platform.clone()).into_iter().map(line).collect()
+    group_records(records, |_, record| record.platform.clone()).into_iter().map(line).collect()
 }
 
 #[cfg(test)]

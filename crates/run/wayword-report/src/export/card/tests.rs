@@ -3,7 +3,7 @@
 use super::*;
 use serde_json::json;
 
-fn records(platform: &str, model: &str) -> Vec<Record> {
+fn records(platform: &str, model: &str) -> Vec<InstructionRecord> {
     let line = json!({
         "format": "wayword/1", "platform": platform,
         "path": {"id": "p", "scene": "s", "frames": [{"pose": {"position": [0.0, 0.0, 1.5], "heading": 0.0, "elevation_rad": 0.0}}]},
@@ -16,11 +16,11 @@ fn records(platform: &str, model: &str) -> Vec<Record> {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("records.jsonl");
     std::fs::write(&file, format!("{line}\n")).unwrap();
-    wayword_formats::jsonl::read(&file).unwrap()
+    wayword_formats::jsonl::read_records(&file).unwrap()
 }
 
-fn card(name: &str, records: &[Record]) -> String {
-    drawn(&Card::new(name.to_owned(), records, &["train".to_owned()], 3)).unwrap()
+fn card(name: &str, records: &[InstructionRecord]) -> String {
+    render_card(&DatasetCard::new(name.to_owned(), records, &["train".to_owned()], 3)).unwrap()
 }
 
 #[test]

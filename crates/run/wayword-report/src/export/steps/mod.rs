@@ -7,41 +7,41 @@ mod settings;
 mod store;
 mod walks;
 
-pub use replay::{Replayed, replayed};
+pub use replay::{TrajectoryReplay, replay_export};
 
 use super::{items, splits, tell_terms};
 use crate::{
-    export::args::{Export, ExportFormat},
-    walking::Scenes,
+    export::args::{ExportArgs, ExportFormat},
+    walking::WalkingScenes,
 };
 use serde::Serialize;
-use settings::Steps;
+use settings::StepExportSettings;
 use sha2::{Digest, Sha256};
 use std::{
     collections::{BTreeMap, BTreeSet},
     fs,
     path::{Path, PathBuf},
 };
-use store::{Maker, Store};
-use walks::{Walk, walks};
+use store::{TrajectoryMaker, TrajectoryStore};
+use walks::{ExportedWalk, walks_from_records};
 use wayword_formats::{
-    Format,
-    jsonl::Record,
-    trajectories::{Trajectory, read},
-    vlnce_actions::{self, Acted},
+    DatasetFormat,
+    jsonl::InstructionRecord,
+    trajectories::{ActionTrajectory, read_trajectories},
+    vlnce_actions::{self, EpisodeActions},
 };
 use wayword_run::{
-    count::count,
-    error::{Error, Exit},
-    in_order::{cores, in_order},
+    count::count_phrase,
+    error::{CommandError, Exit},
+    in_order::{core_count, in_order},
     interrupt,
-    output::Output,
-    run_folder::{hold, keep_config, settings_of},
+    output::CommandOutput,
+    run_folder::{keep_config, lock_folder, settings_of},
 };
 
 /// Result of an export of trajectories.
 #[derive(Debug, Serialize)]
-struct Written {
+struct WrittenTrajectories {
     folder: PathBuf,
     walks: usize,
     instructions: usize,
@@ -52,40 +52,55 @@ struct Written {
     farthest_off_m: f64,
 }
 
-pub(super) fn write(args: &Export, out: &Path, records: &[Record], output: &Output) -> Result<Exit, Error> {
+pub(super) fn write_steps(
+    args: &ExportArgs,
+    out: &Path,
+    records: &[InstructionRecord],
+    output: &CommandOutput,
+) -> Result<Exit, CommandError> {
     items::refuse_without_poses(ExportFormat::Steps, records)?;
     let splits = splits::of_records(args, records)?;
-    let steps = Steps::of(&args.steps, hash(records, &splits))?;
-    let [run] = args.run.as_slice() else { return Err(Error::usage("--run is missing", "give one run")) };
-    let scenes = Scenes::open(&settings_of(run)?, [steps.width_px, steps.height_px])?;
-    fs::create_dir_all(out).map_err(Error::io(out, "make the folder"))?;
-    let _held = hold(out)?;
+    let steps = StepExportSettings::from_flags(&args.steps, hash_texts(records, &splits))?;
+    let [run] = args.run.as_slice() else { return Err(CommandError::usage("--run is missing", "give one run")) };
+    let scenes = WalkingScenes::open_run(&settings_of(run)?, [steps.width_px, steps.height_px])?;
+    fs::create_dir_all(out).map_err(CommandError::io(out, "make the folder"))?;
+    let _held = lock_folder(out)?;
     keep_config(out, &steps)?;
-    let mut store = Store::open(out)?;
-    let walks = walks(records, &splits);
-    take(&walks, &Maker { folder: out, scenes: &scenes, steps: &steps, done: store.done() }, &mut store, output)?;
-    store.finish(&walks)?;
+    let mut store = TrajectoryStore::open(out)?;
+    let walks = walks_from_records(records, &splits);
+    take_walks(
+        &walks,
+        &TrajectoryMaker { folder: out, scenes: &scenes, steps: &steps, done: store.finished_ids() },
+        &mut store,
+        output,
+    )?;
+    store.sort_and_sync(&walks)?;
     // Reads the file back, so that the reported figures are those of the file.
-    let taken = read(&store.file())?;
+    let taken = read_trajectories(&store.trajectories_file())?;
     write_episodes(args, out, &walks, &taken, output)?;
     tell_terms(records, output);
-    tell(out, &taken, store.failed(), output)
+    report_written(out, &taken, store.failed_count(), output)
 }
 
 /// Takes all walks that are not done yet, several at the same time.
-fn take(walks: &[Walk<'_>], maker: &Maker<'_>, store: &mut Store, output: &Output) -> Result<(), Error> {
+fn take_walks(
+    walks: &[ExportedWalk<'_>],
+    maker: &TrajectoryMaker<'_>,
+    store: &mut TrajectoryStore,
+    output: &CommandOutput,
+) -> Result<(), CommandError> {
     let numbers: Vec<usize> = (0..walks.len()).collect();
     let units: Vec<&[usize]> = numbers.chunks(maker.steps.shard.unwrap_or(1)).collect();
-    let bar = output.progress(walks.len(), "walks");
+    let bar = output.progress_bar(walks.len(), "walks");
     let _graceful = interrupt::finish_first(None);
     let made = |unit: &&[usize]| {
-        interrupt::check()?;
-        maker.make(walks, unit)
+        interrupt::check_interrupt()?;
+        maker.make_unit(walks, unit)
     };
-    let kept = in_order(&units, cores(), made, |unit, made| {
-        store.keep(&made?)?;
+    let kept = in_order(&units, core_count(), made, |unit, made| {
+        store.keep_batch(&made?)?;
         bar.inc(unit.len() as u64);
-        Ok::<bool, Error>(true)
+        Ok::<bool, CommandError>(true)
     });
     bar.finish_and_clear();
     kept
@@ -93,13 +108,13 @@ fn take(walks: &[Walk<'_>], maker: &Maker<'_>, store: &mut Store, output: &Outpu
 
 /// Adds VLN-CE's files to the folder: the episodes of each split, and their actions.
 fn write_episodes(
-    args: &Export,
+    args: &ExportArgs,
     out: &Path,
-    walks: &[Walk<'_>],
-    taken: &[Trajectory],
-    output: &Output,
-) -> Result<(), Error> {
-    let by_id: BTreeMap<&str, &Trajectory> = taken.iter().map(|taken| (taken.id.as_str(), taken)).collect();
+    walks: &[ExportedWalk<'_>],
+    taken: &[ActionTrajectory],
+    output: &CommandOutput,
+) -> Result<(), CommandError> {
+    let by_id: BTreeMap<&str, &ActionTrajectory> = taken.iter().map(|taken| (taken.id.as_str(), taken)).collect();
     let splits: BTreeSet<&str> = taken.iter().map(|taken| taken.split.as_str()).collect();
     for split in splits {
         let (mut records, mut names, mut acted) = (Vec::new(), Vec::new(), BTreeMap::new());
@@ -108,21 +123,26 @@ fn write_episodes(
             for (name, record) in &walk.texts {
                 records.push((*record).clone());
                 names.push(name.clone());
-                acted.insert(name.clone(), Acted::of(&taken.actions, &taken.positions));
+                acted.insert(name.clone(), EpisodeActions::from_positions(&taken.actions, &taken.positions));
             }
         }
-        let mut episodes = items::episodes(Format::Vlnce, &args.run, &records, output);
+        let mut episodes = items::episodes_from_records(DatasetFormat::Vlnce, &args.run, &records, output);
         for (episode, name) in episodes.iter_mut().zip(names) {
             episode.id = name;
         }
-        items::write(Format::Vlnce, &out.join(format!("{split}.json.gz")), &records, episodes)?;
-        vlnce_actions::write(&out.join(format!("{split}_gt.json.gz")), &acted)?;
+        items::write_items(DatasetFormat::Vlnce, &out.join(format!("{split}.json.gz")), &records, episodes)?;
+        vlnce_actions::write_actions(&out.join(format!("{split}_gt.json.gz")), &acted)?;
     }
     Ok(())
 }
 
-fn tell(out: &Path, taken: &[Trajectory], failed: usize, output: &Output) -> Result<Exit, Error> {
-    let written = Written {
+fn report_written(
+    out: &Path,
+    taken: &[ActionTrajectory],
+    failed: usize,
+    output: &CommandOutput,
+) -> Result<Exit, CommandError> {
+    let written = WrittenTrajectories {
         folder: out.to_owned(),
         walks: taken.len(),
         instructions: taken.iter().map(|taken| taken.instructions.len()).sum(),
@@ -132,15 +152,15 @@ fn tell(out: &Path, taken: &[Trajectory], failed: usize, output: &Output) -> Res
     };
     let failures = match failed {
         0 => String::new(),
-        _ => format!("; {} cannot be taken, and errors.jsonl says why", count(failed, "walk")),
+        _ => format!("; {} cannot be taken, and errors.jsonl says why", count_phrase(failed, "walk")),
     };
-    output.data(
+    output.print_result(
         &written,
         format_args!(
             "{} with {} and {} in {}, each ends within {:.2} m of its walk's end{failures}",
-            count(written.walks, "walk"),
-            count(written.instructions, "instruction"),
-            count(written.pictures, "picture"),
+            count_phrase(written.walks, "walk"),
+            count_phrase(written.instructions, "instruction"),
+            count_phrase(written.pictures, "picture"),
             out.display(),
             written.farthest_off_m
         ),
@@ -149,7 +169,7 @@ fn tell(out: &Path, taken: &[Trajectory], failed: usize, output: &Output) -> Res
 }
 
 /// SHA-256 of the texts, their paths and their splits.
-fn hash(records: &[Record], splits: &[String]) -> String {
+fn hash_texts(records: &[InstructionRecord], splits: &[String]) -> String {
     let mut hash = Sha256::new();
     for (record, split) in records.iter().zip(splits) {
         // A record that was read can be written.

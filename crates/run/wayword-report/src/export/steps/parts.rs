@@ -4,14 +4,14 @@
 
 use wayword_core::{Instruction, MentionKind};
 use wayword_formats::trajectories::SubInstruction;
-use wayword_language::reading::{read, steps::steps};
+use wayword_language::reading::{read_instruction, steps::read_steps};
 
 /// Words between two parts, which belong to neither.
-const BETWEEN: [&str; 3] = ["and", "then", "or"];
+const CONJUNCTIONS: [&str; 3] = ["and", "then", "or"];
 
 /// A part of an instruction, with the frames of its mentions.
 #[derive(Debug, Clone, Copy)]
-struct Part {
+struct InstructionPart {
     span: [usize; 2],
     /// The last frame of its mentions; a turn ends one frame later.
     end: usize,
@@ -21,26 +21,26 @@ struct Part {
 
 /// The parts of an instruction. The first begins at the first frame, each begins where the one before ends, and the
 /// last ends at the last frame. Words without evidence belong to the part before them, or to the first.
-pub(super) fn parts(instruction: &Instruction, frame_steps: &[usize]) -> Vec<SubInstruction> {
+pub(super) fn split_instruction(instruction: &Instruction, frame_steps: &[usize]) -> Vec<SubInstruction> {
     let text = instruction.text.as_str();
     let Some(last) = frame_steps.len().checked_sub(1) else { return Vec::new() };
-    let mut all: Vec<Part> = Vec::new();
+    let mut all: Vec<InstructionPart> = Vec::new();
     let mut waiting: Option<usize> = None;
-    for step in steps(text, &read(text, &std::collections::BTreeSet::new())) {
+    for step in read_steps(text, &read_instruction(text, &std::collections::BTreeSet::new())) {
         let begin = waiting.take().unwrap_or(step.span[0]);
         let span = [begin, step.span[1]];
-        match (part(instruction, span, last), all.last_mut()) {
+        match (part_from_span(instruction, span, last), all.last_mut()) {
             (Some(part), _) => all.push(part),
             (None, Some(before)) => before.span[1] = span[1],
             (None, None) => waiting = Some(begin),
         }
     }
-    let ends = ends(&all, last);
+    let ends = end_frames(&all, last);
     let mut from = 0;
     let told = all.iter().zip(ends).map(|(part, to)| {
         let frames = [from, to];
         from = to;
-        let span = trimmed(text, part.span);
+        let span = trim_span(text, part.span);
         let words = text.get(span[0]..span[1]).unwrap_or_default().to_owned();
         SubInstruction { text: words, span, frames, steps: frames.map(|frame| frame_steps[frame]) }
     });
@@ -48,20 +48,20 @@ pub(super) fn parts(instruction: &Instruction, frame_steps: &[usize]) -> Vec<Sub
 }
 
 /// The part for a span of the text; `None` if no mention lies in it.
-fn part(instruction: &Instruction, span: [usize; 2], last: usize) -> Option<Part> {
-    let within = |mention: &&wayword_core::Mention| span[0] <= mention.span[0] && mention.span[1] <= span[1];
+fn part_from_span(instruction: &Instruction, span: [usize; 2], last: usize) -> Option<InstructionPart> {
+    let within = |mention: &&wayword_core::TextMention| span[0] <= mention.span[0] && mention.span[1] <= span[1];
     let told: Vec<_> = instruction.mentions.iter().filter(within).collect();
-    let over = |mention: &wayword_core::Mention| {
+    let over = |mention: &wayword_core::TextMention| {
         if mention.kind == MentionKind::Turn { (mention.frame + 1).min(last) } else { mention.frame.min(last) }
     };
     let end = told.iter().map(|mention| over(mention)).max()?;
     let opening = told.iter().min_by_key(|mention| mention.span[0]);
     let turns_at = opening.filter(|mention| mention.kind == MentionKind::Turn).map(|mention| mention.frame.min(last));
-    Some(Part { span, end, turns_at })
+    Some(InstructionPart { span, end, turns_at })
 }
 
 /// The frame at which each part ends: the frame of the turn with which the next part begins, or else its own last frame.
-fn ends(parts: &[Part], last: usize) -> Vec<usize> {
+fn end_frames(parts: &[InstructionPart], last: usize) -> Vec<usize> {
     let mut before = 0;
     let mut ends = Vec::with_capacity(parts.len());
     for (number, part) in parts.iter().enumerate() {
@@ -76,14 +76,15 @@ fn ends(parts: &[Part], last: usize) -> Vec<usize> {
 }
 
 /// A span without the conjunctions, marks and blanks at its ends.
-fn trimmed(text: &str, [mut from, mut to]: [usize; 2]) -> [usize; 2] {
+fn trim_span(text: &str, [mut from, mut to]: [usize; 2]) -> [usize; 2] {
     let is_mark = |c: char| c.is_whitespace() || matches!(c, ',' | ';' | '.' | ':');
     loop {
         let part = text.get(from..to).unwrap_or_default();
         let inner = part.trim_start_matches(is_mark);
         from += part.len() - inner.len();
         let word = inner.split(|c: char| !c.is_alphanumeric()).next().unwrap_or_default();
-        let is_between = BETWEEN.iter().any(|between| word.eq_ignore_ascii_case(between)) && word.len() < inner.len();
+        let is_between =
+            CONJUNCTIONS.iter().any(|between| word.eq_ignore_ascii_case(between)) && word.len() < inner.len();
         if !is_between {
             to = from + inner.trim_end_matches(is_mark).len();
             return [from, to];
@@ -115,7 +116,7 @@ mod tests {
         }))
         .unwrap();
         let steps: Vec<usize> = (0..frames).map(|frame| frame * 4).collect();
-        let parts = parts(&instruction, &steps);
+        let parts = split_instruction(&instruction, &steps);
         assert!(parts.iter().all(|part| text.get(part.span[0]..part.span[1]) == Some(&part.text)));
         parts.into_iter().map(|part| (part.text, part.frames, part.steps)).collect()
     }

@@ -1,18 +1,18 @@
 //! Verifies an export of trajectories by walking them again: do the actions lead to the end of the path, and do the poses give the
 //! same pictures?
 
-use super::{settings::Steps, store::picture};
-use crate::walking::{Scenes, feet};
+use super::{settings::StepExportSettings, store::take_picture};
+use crate::walking::{WalkingScenes, floor_positions};
 use serde::Serialize;
 use std::{collections::BTreeMap, path::Path};
 use wayword_core::DVec3;
 use wayword_formats::{
     jsonl,
-    trajectories::{Trajectory, pictures, read},
+    trajectories::{ActionTrajectory, read_pictures, read_trajectories},
 };
-use wayword_habitat::walk::{Stance, replay};
+use wayword_habitat::walk::{AgentStance, replay_actions};
 use wayword_run::{
-    error::Error,
+    error::CommandError,
     run_folder::{config_of, file, settings_of},
 };
 
@@ -21,7 +21,7 @@ const SAME_M: f64 = 0.001;
 
 /// Counts of a replay.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
-pub struct Replayed {
+pub struct TrajectoryReplay {
     /// Walks that were replayed.
     pub walks: usize,
     /// Walks in which the ground blocked a step, or a pose differed from the written one.
@@ -38,39 +38,43 @@ pub struct Replayed {
 ///
 /// # Errors
 /// When a file breaks a rule of its format, or a scene cannot be drawn.
-pub fn replayed(folder: &Path, run: &Path, every: usize) -> Result<Replayed, Error> {
-    let steps: Steps = config_of(folder)?;
-    let scenes = Scenes::open(&settings_of(run)?, [steps.width_px, steps.height_px])?;
-    let ends: BTreeMap<String, DVec3> = jsonl::read(&run.join(file::INSTRUCTIONS))?
+pub fn replay_export(folder: &Path, run: &Path, every: usize) -> Result<TrajectoryReplay, CommandError> {
+    let steps: StepExportSettings = config_of(folder)?;
+    let scenes = WalkingScenes::open_run(&settings_of(run)?, [steps.width_px, steps.height_px])?;
+    let ends: BTreeMap<String, DVec3> = jsonl::read_records(&run.join(file::INSTRUCTIONS))?
         .into_iter()
-        .filter_map(|record| feet(&record.path).last().map(|end| (record.path.id, *end)))
+        .filter_map(|record| floor_positions(&record.path).last().map(|end| (record.path.id, *end)))
         .collect();
-    let mut told = Replayed::default();
-    for trajectory in read(&folder.join(super::store::TRAJECTORIES))? {
+    let mut told = TrajectoryReplay::default();
+    for trajectory in read_trajectories(&folder.join(super::store::TRAJECTORIES_FILE))? {
         told.walks += 1;
-        match end(&trajectory, &scenes, &steps)?.zip(ends.get(&trajectory.id)) {
+        match replay_end(&trajectory, &scenes, &steps)?.zip(ends.get(&trajectory.id)) {
             Some((end, wanted)) => {
                 told.farthest_off_m = told.farthest_off_m.max((end - *wanted).truncate().length());
             }
             None => told.astray += 1,
         }
-        for (number, written) in pictures(folder, &trajectory)?.into_iter().enumerate().step_by(every.max(1)) {
+        for (number, written) in read_pictures(folder, &trajectory)?.into_iter().enumerate().step_by(every.max(1)) {
             told.pictures += 1;
-            told.others += usize::from(picture(&scenes, &steps, &trajectory, number)? != written);
+            told.others += usize::from(take_picture(&scenes, &steps, &trajectory, number)? != written);
         }
     }
     Ok(told)
 }
 
 /// The place to which the actions of a walk lead; `None` if a step is blocked, or a pose differs from the written one.
-fn end(trajectory: &Trajectory, scenes: &Scenes, steps: &Steps) -> Result<Option<DVec3>, Error> {
+fn replay_end(
+    trajectory: &ActionTrajectory,
+    scenes: &WalkingScenes,
+    steps: &StepExportSettings,
+) -> Result<Option<DVec3>, CommandError> {
     let ground = scenes.ground(&trajectory.scene)?;
     let (Some(first), Some(heading)) = (trajectory.positions.first(), trajectory.headings.first()) else {
         return Ok(None);
     };
-    let Some(foothold) = ground.nearest(*first) else { return Ok(None) };
-    let start = Stance::new(foothold, *heading);
-    let taken: Option<Vec<DVec3>> = replay(&ground, start, &trajectory.actions, steps.gait()?)
+    let Some(foothold) = ground.nearest_foothold(*first) else { return Ok(None) };
+    let start = AgentStance::new(foothold, *heading);
+    let taken: Option<Vec<DVec3>> = replay_actions(&ground, start, &trajectory.actions, steps.gait()?)
         .map(|stance| stance.map(|stance| stance.foothold.place))
         .collect();
     let is_same = |taken: &Vec<DVec3>| {

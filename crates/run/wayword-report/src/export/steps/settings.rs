@@ -2,8 +2,8 @@
 
 use crate::export::steps_args::AskedSteps;
 use serde::{Deserialize, Serialize};
-use wayword_habitat::walk::Gait;
-use wayword_run::{error::Error, own_format::OwnFormat};
+use wayword_habitat::walk::AgentGait;
+use wayword_run::{error::CommandError, own_format::OwnFormat};
 
 /// Sides of pictures, pixels.
 const SIDE_PX: std::ops::RangeInclusive<u32> = 16..=4096;
@@ -14,7 +14,7 @@ const MOST_IN_SHARD: usize = 500;
 /// The agent's gait and camera, and the way in which pictures are stored.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Steps {
+pub(super) struct StepExportSettings {
     pub(super) forward_m: f64,
     pub(super) turn_deg: f64,
     pub(super) tolerance_m: f64,
@@ -31,15 +31,15 @@ pub(super) struct Steps {
     pub(super) texts: String,
 }
 
-impl OwnFormat for Steps {
+impl OwnFormat for StepExportSettings {
     const NAME: &str = "wayword-steps/1";
 }
 
-impl Steps {
+impl StepExportSettings {
     /// The settings from the flags; defaults are VLN-CE's gait, and pictures as its agents see them.
-    pub(super) fn of(asked: &AskedSteps, texts: String) -> Result<Self, Error> {
-        let gait = Gait::default();
-        let [width_px, height_px] = asked.size_px.as_deref().map_or(Ok([224, 224]), size)?;
+    pub(super) fn from_flags(asked: &AskedSteps, texts: String) -> Result<Self, CommandError> {
+        let gait = AgentGait::default();
+        let [width_px, height_px] = asked.size_px.as_deref().map_or(Ok([224, 224]), parse_size)?;
         let steps = Self {
             forward_m: asked.forward_m.unwrap_or(gait.forward_m()),
             turn_deg: asked.turn_deg.unwrap_or(gait.turn_deg()),
@@ -52,15 +52,16 @@ impl Steps {
             shard: asked.shard,
             texts,
         };
-        steps.check()?;
+        steps.check_ranges()?;
         Ok(steps)
     }
 
-    fn check(&self) -> Result<(), Error> {
+    fn check_ranges(&self) -> Result<(), CommandError> {
         self.gait()?;
         let within = |flag: &str, value: f64, low: f64, high: f64| {
             let fits = (low..=high).contains(&value);
-            let wrong = || Error::usage(format!("{flag} {value}"), format!("give a number from {low} to {high}"));
+            let wrong =
+                || CommandError::usage(format!("{flag} {value}"), format!("give a number from {low} to {high}"));
             if fits { Ok(()) } else { Err(wrong()) }
         };
         within("--tolerance-m", self.tolerance_m, 0.05, 2.0)?;
@@ -68,22 +69,25 @@ impl Steps {
         within("--eye-m", self.eye_m, 0.1, 2.2)?;
         if let Some(shard) = self.shard.filter(|shard| !(1..=MOST_IN_SHARD).contains(shard)) {
             let hint = format!("give the number of walks in a shard, from 1 to {MOST_IN_SHARD}, as in --shard 100");
-            return Err(Error::usage(format!("--shard {shard}"), hint));
+            return Err(CommandError::usage(format!("--shard {shard}"), hint));
         }
         Ok(())
     }
 
     /// The length of the agent's step and the angle of its turn.
-    pub(super) fn gait(&self) -> Result<Gait, Error> {
-        Gait::new(self.forward_m, self.turn_deg)
-            .map_err(|error| Error::usage(error.to_string(), "see --forward-m and --turn-deg"))
+    pub(super) fn gait(&self) -> Result<AgentGait, CommandError> {
+        AgentGait::new(self.forward_m, self.turn_deg)
+            .map_err(|error| CommandError::usage(error.to_string(), "see --forward-m and --turn-deg"))
     }
 }
 
-fn size(typed: &str) -> Result<[u32; 2], Error> {
+fn parse_size(typed: &str) -> Result<[u32; 2], CommandError> {
     let sides = typed.split_once('x').and_then(|(width, height)| Some([width.parse().ok()?, height.parse().ok()?]));
     sides.filter(|sides| sides.iter().all(|side| SIDE_PX.contains(side))).ok_or_else(|| {
-        Error::usage(format!("--size-px {typed}"), "give width and height in pixels, each from 16 to 4096: 224x224")
+        CommandError::usage(
+            format!("--size-px {typed}"),
+            "give width and height in pixels, each from 16 to 4096: 224x224",
+        )
     })
 }
 
@@ -91,10 +95,10 @@ fn size(typed: &str) -> Result<[u32; 2], Error> {
 mod tests {
     use super::*;
 
-    fn of(change: impl FnOnce(&mut AskedSteps)) -> Result<Steps, Error> {
+    fn of(change: impl FnOnce(&mut AskedSteps)) -> Result<StepExportSettings, CommandError> {
         let mut asked = AskedSteps::default();
         change(&mut asked);
-        Steps::of(&asked, String::new())
+        StepExportSettings::from_flags(&asked, String::new())
     }
 
     #[test]

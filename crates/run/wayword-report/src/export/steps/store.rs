@@ -2,78 +2,80 @@
 //! written first and the walk's line in `trajectories.jsonl` last, so every walk with a line is complete.
 
 use super::{
-    settings::Steps,
-    walks::{Walk, trajectory},
+    settings::StepExportSettings,
+    walks::{ExportedWalk, trajectory_from_walk},
 };
-use crate::walking::Scenes;
+use crate::walking::WalkingScenes;
 use serde_json::Value;
 use std::{
     collections::{BTreeMap, BTreeSet},
     fs,
     path::{Path, PathBuf},
 };
-use wayword_core::Failure;
-use wayword_formats::trajectories::{Digest, Place, Shard, Trajectory, line, picture_name};
+use wayword_core::FailureKind;
+use wayword_formats::trajectories::{
+    ActionTrajectory, PictureDigest, PictureLocation, ShardWriter, picture_name, trajectory_line,
+};
 use wayword_run::{
-    error::Error,
+    error::CommandError,
     interrupt,
-    pictures::jpeg,
+    pictures::encode_jpeg,
     run_folder::{FailedItem, Journal, file},
 };
 
 /// The file of trajectories.
-pub(super) const TRAJECTORIES: &str = "trajectories.jsonl";
+pub(super) const TRAJECTORIES_FILE: &str = "trajectories.jsonl";
 /// The folders of the pictures: one below `images` for each walk, or the tar files in `shards`.
-const IMAGES: &str = "images";
-const SHARDS: &str = "shards";
+const IMAGES_FOLDER: &str = "images";
+const SHARDS_FOLDER: &str = "shards";
 
 /// The folder of an export, with its journals of finished and failed walks.
-pub(super) struct Store {
+pub(super) struct TrajectoryStore {
     folder: PathBuf,
     trajectories: Journal,
     errors: Journal,
 }
 
 /// The result of one unit: walks that are finished, and walks that failed.
-pub(super) struct Made {
-    taken: Vec<Trajectory>,
+pub(super) struct TrajectoryBatch {
+    taken: Vec<ActionTrajectory>,
     failed: Vec<FailedItem>,
 }
 
-impl Store {
+impl TrajectoryStore {
     /// Opens a folder and continues with its finished walks. Failed walks are tried again.
-    pub(super) fn open(folder: &Path) -> Result<Self, Error> {
+    pub(super) fn open(folder: &Path) -> Result<Self, CommandError> {
         Ok(Self {
             folder: folder.to_owned(),
-            trajectories: Journal::open(&folder.join(TRAJECTORIES), key_of)?,
-            errors: Journal::begin(&folder.join(file::ERRORS), FailedItem::key_of)?,
+            trajectories: Journal::open(&folder.join(TRAJECTORIES_FILE), key_of)?,
+            errors: Journal::begin_empty(&folder.join(file::ERRORS), FailedItem::key_of)?,
         })
     }
 
     /// The ids of the finished walks.
-    pub(super) fn done(&self) -> BTreeSet<String> {
+    pub(super) fn finished_ids(&self) -> BTreeSet<String> {
         self.trajectories.keys().map(str::to_owned).collect()
     }
 
-    pub(super) fn keep(&mut self, made: &Made) -> Result<(), Error> {
-        made.taken.iter().try_for_each(|taken| self.trajectories.append(&line(taken)))?;
+    pub(super) fn keep_batch(&mut self, made: &TrajectoryBatch) -> Result<(), CommandError> {
+        made.taken.iter().try_for_each(|taken| self.trajectories.append(&trajectory_line(taken)))?;
         made.failed.iter().try_for_each(|failed| self.errors.append(failed))
     }
 
     /// Puts the lines into the order of the walks.
-    pub(super) fn finish(&mut self, walks: &[Walk<'_>]) -> Result<(), Error> {
+    pub(super) fn sort_and_sync(&mut self, walks: &[ExportedWalk<'_>]) -> Result<(), CommandError> {
         let places: BTreeMap<&str, usize> =
             walks.iter().enumerate().map(|(place, walk)| (walk.path.id.as_str(), place)).collect();
-        self.trajectories.arrange(|id| places.get(id).copied())?;
+        self.trajectories.arrange_by(|id| places.get(id).copied())?;
         self.trajectories.sync()
     }
 
-    pub(super) fn file(&self) -> PathBuf {
-        self.folder.join(TRAJECTORIES)
+    pub(super) fn trajectories_file(&self) -> PathBuf {
+        self.folder.join(TRAJECTORIES_FILE)
     }
 
     /// How many walks cannot be taken.
-    pub(super) fn failed(&self) -> usize {
+    pub(super) fn failed_count(&self) -> usize {
         self.errors.len()
     }
 }
@@ -83,26 +85,30 @@ fn key_of(line: &Value) -> Option<String> {
 }
 
 /// Takes walks and makes their pictures.
-pub(super) struct Maker<'a> {
+pub(super) struct TrajectoryMaker<'a> {
     pub(super) folder: &'a Path,
-    pub(super) scenes: &'a Scenes,
-    pub(super) steps: &'a Steps,
+    pub(super) scenes: &'a WalkingScenes,
+    pub(super) steps: &'a StepExportSettings,
     /// Walks that an earlier command has taken.
     pub(super) done: BTreeSet<String>,
 }
 
-impl Maker<'_> {
+impl TrajectoryMaker<'_> {
     /// Makes one unit, a shard or a single walk, unless all of its walks are finished.
-    pub(super) fn make(&self, walks: &[Walk<'_>], unit: &[usize]) -> Result<Made, Error> {
+    pub(super) fn make_unit(
+        &self,
+        walks: &[ExportedWalk<'_>],
+        unit: &[usize],
+    ) -> Result<TrajectoryBatch, CommandError> {
         let is_done = |number: &usize| walks.get(*number).is_some_and(|walk| self.done.contains(&walk.path.id));
-        let mut made = Made { taken: Vec::new(), failed: Vec::new() };
+        let mut made = TrajectoryBatch { taken: Vec::new(), failed: Vec::new() };
         if unit.iter().all(is_done) {
             return Ok(made);
         }
         let mut begun = Vec::new();
         for number in unit {
             let Some(walk) = walks.get(*number) else { continue };
-            match trajectory(walk, self.scenes, self.steps, self.place(*number, walk))? {
+            match trajectory_from_walk(walk, self.scenes, self.steps, self.picture_place(*number, walk))? {
                 Ok(trajectory) => begun.push((*number, trajectory)),
                 Err(reason) => made.failed.push(reason),
             }
@@ -113,10 +119,10 @@ impl Maker<'_> {
         }
         let mut ready = Vec::with_capacity(begun.len());
         for (number, trajectory) in begun {
-            interrupt::check()?;
-            match self.pictures(&trajectory) {
+            interrupt::check_interrupt()?;
+            match self.take_pictures(&trajectory) {
                 Ok(pictures) => ready.push((number, trajectory, pictures)),
-                Err(error) => made.failed.push(failed(&trajectory, error)?),
+                Err(error) => made.failed.push(failed_item(&trajectory, error)?),
             }
         }
         made.taken = match self.steps.shard {
@@ -128,59 +134,69 @@ impl Maker<'_> {
         Ok(made)
     }
 
-    fn place(&self, number: usize, walk: &Walk<'_>) -> Place {
+    fn picture_place(&self, number: usize, walk: &ExportedWalk<'_>) -> PictureLocation {
         match self.steps.shard {
-            None => Place::Folder(format!("{IMAGES}/{}", walk.path.id)),
-            Some(of) => Place::Sample { shard: shard_of(number, of), key: format!("{number:06}") },
+            None => PictureLocation::Folder(format!("{IMAGES_FOLDER}/{}", walk.path.id)),
+            Some(of) => PictureLocation::Sample { shard: shard_of(number, of), key: format!("{number:06}") },
         }
     }
 
     /// Takes the pictures that the agent sees before its actions.
-    fn pictures(&self, trajectory: &Trajectory) -> Result<Vec<Vec<u8>>, Error> {
-        (0..trajectory.actions.len()).map(|number| picture(self.scenes, self.steps, trajectory, number)).collect()
+    fn take_pictures(&self, trajectory: &ActionTrajectory) -> Result<Vec<Vec<u8>>, CommandError> {
+        (0..trajectory.actions.len()).map(|number| take_picture(self.scenes, self.steps, trajectory, number)).collect()
     }
 
-    fn write_folder(&self, mut trajectory: Trajectory, pictures: &[Vec<u8>]) -> Result<Trajectory, Error> {
-        let Place::Folder(images) = &trajectory.pictures else { return Ok(trajectory) };
+    fn write_folder(
+        &self,
+        mut trajectory: ActionTrajectory,
+        pictures: &[Vec<u8>],
+    ) -> Result<ActionTrajectory, CommandError> {
+        let PictureLocation::Folder(images) = &trajectory.pictures else { return Ok(trajectory) };
         let whole = self.folder.join(images);
-        let begun = self.folder.join(IMAGES).join(format!(".{}.part", trajectory.id));
+        let begun = self.folder.join(IMAGES_FOLDER).join(format!(".{}.part", trajectory.id));
         for old in [&begun, &whole] {
             if old.exists() {
-                fs::remove_dir_all(old).map_err(Error::io(old, "remove what an earlier command left in"))?;
+                fs::remove_dir_all(old).map_err(CommandError::io(old, "remove what an earlier command left in"))?;
             }
         }
-        fs::create_dir_all(&begun).map_err(Error::io(&begun, "make the folder"))?;
+        fs::create_dir_all(&begun).map_err(CommandError::io(&begun, "make the folder"))?;
         for (number, picture) in pictures.iter().enumerate() {
             let file = begun.join(picture_name(number));
-            fs::write(&file, picture).map_err(Error::io(&file, "write"))?;
+            fs::write(&file, picture).map_err(CommandError::io(&file, "write"))?;
         }
-        fs::rename(&begun, &whole).map_err(Error::io(&whole, "name"))?;
-        trajectory.sha256 = Digest::of(pictures);
+        fs::rename(&begun, &whole).map_err(CommandError::io(&whole, "name"))?;
+        trajectory.sha256 = PictureDigest::from_pictures(pictures);
         Ok(trajectory)
     }
 
-    fn write_shard(&self, walks: Vec<(usize, Trajectory, Vec<Vec<u8>>)>, of: usize) -> Result<Vec<Trajectory>, Error> {
+    fn write_shard(
+        &self,
+        walks: Vec<(usize, ActionTrajectory, Vec<Vec<u8>>)>,
+        of: usize,
+    ) -> Result<Vec<ActionTrajectory>, CommandError> {
         let Some((first, ..)) = walks.first() else { return Ok(Vec::new()) };
         let file = self.folder.join(shard_of(*first, of));
-        let folder = self.folder.join(SHARDS);
-        fs::create_dir_all(&folder).map_err(Error::io(&folder, "make the folder"))?;
-        let mut shard = Shard::begin(&file).map_err(Error::io(&file, "write"))?;
+        let folder = self.folder.join(SHARDS_FOLDER);
+        fs::create_dir_all(&folder).map_err(CommandError::io(&folder, "make the folder"))?;
+        let mut shard = ShardWriter::begin(&file).map_err(CommandError::io(&file, "write"))?;
         let mut taken = Vec::with_capacity(walks.len());
         for (number, mut trajectory, pictures) in walks {
-            trajectory.sha256 = Digest::of(&pictures);
-            shard.add(&format!("{number:06}"), &trajectory, &pictures).map_err(Error::io(&file, "write"))?;
+            trajectory.sha256 = PictureDigest::from_pictures(&pictures);
+            shard
+                .add_walk(&format!("{number:06}"), &trajectory, &pictures)
+                .map_err(CommandError::io(&file, "write"))?;
             taken.push(trajectory);
         }
-        shard.finish().map_err(Error::io(&file, "write"))?;
+        shard.finish().map_err(CommandError::io(&file, "write"))?;
         Ok(taken)
     }
 }
 
 /// The walk as a failed item. Errors that do not concern this walk alone are passed on.
-fn failed(trajectory: &Trajectory, error: Error) -> Result<FailedItem, Error> {
+fn failed_item(trajectory: &ActionTrajectory, error: CommandError) -> Result<FailedItem, CommandError> {
     match error {
-        Error::Platform(error) if error.failure() != Failure::Lost => {
-            let (item, failure) = (trajectory.id.clone(), error.failure());
+        CommandError::Platform(error) if error.failure_kind() != FailureKind::Lost => {
+            let (item, failure) = (trajectory.id.clone(), error.failure_kind());
             Ok(FailedItem { item, failure, reason: error.to_string() })
         }
         other => Err(other),
@@ -188,18 +204,19 @@ fn failed(trajectory: &Trajectory, error: Error) -> Result<FailedItem, Error> {
 }
 
 /// Takes the picture that the agent sees before an action, as JPEG.
-pub(super) fn picture(
-    scenes: &Scenes,
-    steps: &Steps,
-    trajectory: &Trajectory,
+pub(super) fn take_picture(
+    scenes: &WalkingScenes,
+    steps: &StepExportSettings,
+    trajectory: &ActionTrajectory,
     number: usize,
-) -> Result<Vec<u8>, Error> {
+) -> Result<Vec<u8>, CommandError> {
     let stance = (trajectory.positions[number], trajectory.headings[number]);
-    let image = scenes.picture(&trajectory.scene, stance, steps.eye_m, steps.fov_deg.to_radians())?;
-    jpeg(&image, steps.jpeg_quality)
-        .map_err(|error| Error::usage(format!("a picture cannot be written as JPEG: {error}"), "report this as a bug"))
+    let image = scenes.take_picture(&trajectory.scene, stance, steps.eye_m, steps.fov_deg.to_radians())?;
+    encode_jpeg(&image, steps.jpeg_quality).map_err(|error| {
+        CommandError::usage(format!("a picture cannot be written as JPEG: {error}"), "report this as a bug")
+    })
 }
 
 fn shard_of(number: usize, of: usize) -> String {
-    format!("{SHARDS}/{:06}.tar", number / of)
+    format!("{SHARDS_FOLDER}/{:06}.tar", number / of)
 }

@@ -1,32 +1,32 @@
 //! Collects the walks of a run's records, and divides each into single actions on the ground of its scene.
 
-use super::{super::items, parts::parts, settings::Steps};
-use crate::walking::{Scenes, feet};
+use super::{super::items, parts::split_instruction, settings::StepExportSettings};
+use crate::walking::{WalkingScenes, floor_positions};
 use std::collections::BTreeMap;
-use wayword_core::{Failure, Heading, Path};
+use wayword_core::{FailureKind, Heading, Path};
 use wayword_formats::{
-    jsonl::Record,
-    trajectories::{Place, Told, Trajectory, as_written},
+    jsonl::InstructionRecord,
+    trajectories::{ActionTrajectory, PictureLocation, TrajectoryInstruction, as_written},
 };
-use wayword_habitat::walk::follow;
-use wayword_run::{error::Error, run_folder::FailedItem};
+use wayword_habitat::walk::follow_places;
+use wayword_run::{error::CommandError, run_folder::FailedItem};
 
 /// A walk, and the texts about it.
-pub(super) struct Walk<'a> {
+pub(super) struct ExportedWalk<'a> {
     pub(super) path: &'a Path,
     pub(super) split: &'a str,
     /// The records about the walk, each with the name of its episode.
-    pub(super) texts: Vec<(String, &'a Record)>,
+    pub(super) texts: Vec<(String, &'a InstructionRecord)>,
 }
 
 /// The walks of records, scene by scene. A walk occurs once, with all of its texts and their split.
-pub(super) fn walks<'a>(records: &'a [Record], splits: &'a [String]) -> Vec<Walk<'a>> {
-    let mut walks: Vec<Walk<'a>> = Vec::new();
+pub(super) fn walks_from_records<'a>(records: &'a [InstructionRecord], splits: &'a [String]) -> Vec<ExportedWalk<'a>> {
+    let mut walks: Vec<ExportedWalk<'a>> = Vec::new();
     let mut places: BTreeMap<&str, usize> = BTreeMap::new();
     for ((record, split), name) in records.iter().zip(splits).zip(items::episode_names(records)) {
         let path = &record.path;
         let at = *places.entry(path.id.as_str()).or_insert_with(|| {
-            walks.push(Walk { path, split, texts: Vec::new() });
+            walks.push(ExportedWalk { path, split, texts: Vec::new() });
             walks.len() - 1
         });
         walks[at].texts.push((name, record));
@@ -38,33 +38,33 @@ pub(super) fn walks<'a>(records: &'a [Record], splits: &'a [String]) -> Vec<Walk
 
 /// Divides a walk into single actions that follow its path from frame to frame. The result has no pictures yet. If the actions
 /// cannot follow the path, the inner result is a failed item.
-pub(super) fn trajectory(
-    walk: &Walk<'_>,
-    scenes: &Scenes,
-    steps: &Steps,
-    pictures: Place,
-) -> Result<Result<Trajectory, FailedItem>, Error> {
+pub(super) fn trajectory_from_walk(
+    walk: &ExportedWalk<'_>,
+    scenes: &WalkingScenes,
+    steps: &StepExportSettings,
+    pictures: PictureLocation,
+) -> Result<Result<ActionTrajectory, FailedItem>, CommandError> {
     let (path, gait) = (walk.path, steps.gait()?);
     let failed = |failure, reason: String| FailedItem { item: path.id.clone(), failure, reason };
     let ground = match scenes.ground(&path.scene) {
         Ok(ground) => ground,
-        Err(error) if error.failure() == Failure::Lost => return Err(error.into()),
-        Err(error) => return Ok(Err(failed(error.failure(), error.to_string()))),
+        Err(error) if error.failure_kind() == FailureKind::Lost => return Err(error.into()),
+        Err(error) => return Ok(Err(failed(error.failure_kind(), error.to_string()))),
     };
     let heading = path.frames.first().map_or(Heading::NORTH, |frame| frame.pose.heading);
-    let walked = match follow(&ground, &feet(path), heading, gait, steps.tolerance_m) {
+    let walked = match follow_places(&ground, &floor_positions(path), heading, gait, steps.tolerance_m) {
         Ok(walked) => walked,
-        Err(astray) => return Ok(Err(failed(Failure::Broken, astray.to_string()))),
+        Err(astray) => return Ok(Err(failed(FailureKind::Broken, astray.to_string()))),
     };
     let stances = walked.stances.iter().map(|stance| as_written(stance.foothold.place, stance.heading(gait)));
     let (positions, headings) = stances.unzip();
-    let instructions = walk.texts.iter().map(|(episode_id, record)| Told {
+    let instructions = walk.texts.iter().map(|(episode_id, record)| TrajectoryInstruction {
         episode_id: episode_id.clone(),
         style: record.instruction.style.clone(),
         text: record.instruction.text.clone(),
-        sub_instructions: parts(&record.instruction, &walked.reached),
+        sub_instructions: split_instruction(&record.instruction, &walked.reached),
     });
-    Ok(Ok(Trajectory {
+    Ok(Ok(ActionTrajectory {
         id: path.id.clone(),
         platform: scenes.platform().name().to_owned(),
         scene: path.scene.clone(),

@@ -2,81 +2,100 @@
 
 use super::{
     figures::{
-        BESIDE_DIFFERENCES, BESIDE_EFFORTS, BESIDE_SWAPS, BESIDE_TROUBLE, Line, SHOWN, differences, efforts, heading,
-        name, rows, swaps, trouble,
+        BESIDE_DIFFERENCES, BESIDE_EFFORTS, BESIDE_SWAPS, BESIDE_TROUBLE, ComparisonLine, SHORT_TABLE_METRICS,
+        comparison_lines, difference_lines, effort_lines, metric_heading, printable_name, swap_lines, trouble_lines,
     },
     notes,
 };
 use std::fmt::Write;
-use wayword_metrics::Metric;
-use wayword_navigation::comparison::Comparison;
+use wayword_metrics::TrajectoryMetric;
+use wayword_navigation::comparison::AgentComparison;
 
 /// The comparison as Markdown: tables, and notes on how to read them.
 #[must_use]
-pub fn markdown(comparison: &Comparison) -> String {
-    let mut page = format!("# {}\n\n", escaped(&notes::subject(&comparison.about)));
-    for warning in notes::warnings(comparison) {
-        add(&mut page, format_args!("> **{}**\n>\n", escaped(&warning)));
+pub fn markdown_tables(comparison: &AgentComparison) -> String {
+    let mut page = format!("# {}\n\n", escape_markdown(&notes::describe_subject(&comparison.about)));
+    for warning in notes::list_warnings(comparison) {
+        append_text(&mut page, format_args!("> **{}**\n>\n", escape_markdown(&warning)));
     }
-    add(&mut page, format_args!("\n{}\n\n", notes::success(comparison.about.rule)));
-    table(&mut page, "Instructions", &rows(comparison), &SHOWN, &[]);
-    let first = comparison.sets.first().map_or_else(String::new, |set| escaped(&name(&set.name)));
-    let less = differences(comparison);
+    append_text(&mut page, format_args!("\n{}\n\n", notes::describe_success(comparison.about.rule)));
+    append_table(&mut page, "Instructions", &comparison_lines(comparison), &SHORT_TABLE_METRICS, &[]);
+    let first = comparison.sets.first().map_or_else(String::new, |set| escape_markdown(&printable_name(&set.name)));
+    let less = difference_lines(comparison);
     if !less.is_empty() {
-        add(&mut page, format_args!("\n## Minus {first}\n\n"));
-        table(&mut page, "Instructions", &less, &SHOWN, &BESIDE_DIFFERENCES);
+        append_text(&mut page, format_args!("\n## Minus {first}\n\n"));
+        append_table(&mut page, "Instructions", &less, &SHORT_TABLE_METRICS, &BESIDE_DIFFERENCES);
     }
-    let lost = swaps(comparison);
+    let lost = swap_lines(comparison);
     if !lost.is_empty() {
-        add(&mut page, format_args!("\n## Loss by swap of set {first}\n\n"));
-        table(&mut page, "Swap", &lost, &SHOWN, &BESIDE_SWAPS);
+        append_text(&mut page, format_args!("\n## Loss by swap of set {first}\n\n"));
+        append_table(&mut page, "Swap", &lost, &SHORT_TABLE_METRICS, &BESIDE_SWAPS);
     }
-    let efforts = efforts(comparison);
+    let efforts = effort_lines(comparison);
     if !efforts.is_empty() {
         page.push_str("\n## What a walk by a language model took\n\n");
-        table(&mut page, "Instructions", &efforts, &[], &BESIDE_EFFORTS);
+        append_table(&mut page, "Instructions", &efforts, &[], &BESIDE_EFFORTS);
         page.push_str("\n## What went wrong in it\n\n");
-        table(&mut page, "Instructions", &trouble(comparison), &[], &BESIDE_TROUBLE);
+        append_table(&mut page, "Instructions", &trouble_lines(comparison), &[], &BESIDE_TROUBLE);
     }
-    list(&mut page, "Sets", comparison.sets.iter().map(notes::set));
-    list(&mut page, "How to read it", notes::listeners(comparison).into_iter().chain(notes::notes(comparison)));
-    let has = |metric: &Metric| comparison.rows.iter().any(|row| row.figures.contains_key(metric));
-    let others: Vec<Metric> = Metric::ALL.into_iter().filter(|metric| !SHOWN.contains(metric) && has(metric)).collect();
+    append_list(&mut page, "Sets", comparison.sets.iter().map(notes::describe_set));
+    append_list(
+        &mut page,
+        "How to read it",
+        notes::listener_notes(comparison).into_iter().chain(notes::all_notes(comparison)),
+    );
+    let has = |metric: &TrajectoryMetric| comparison.rows.iter().any(|row| row.figures.contains_key(metric));
+    let others: Vec<TrajectoryMetric> = TrajectoryMetric::ALL
+        .into_iter()
+        .filter(|metric| !SHORT_TABLE_METRICS.contains(metric) && has(metric))
+        .collect();
     if !others.is_empty() {
         page.push_str("\n## Other figures\n\n");
-        table(&mut page, "Instructions", &rows(comparison), &others, &[]);
+        append_table(&mut page, "Instructions", &comparison_lines(comparison), &others, &[]);
     }
     page
 }
 
-fn table(page: &mut String, label: &str, lines: &[Line<'_>], metrics: &[Metric], beside: &[&str]) {
+fn append_table(
+    page: &mut String,
+    label: &str,
+    lines: &[ComparisonLine<'_>],
+    metrics: &[TrajectoryMetric],
+    beside: &[&str],
+) {
     let columns = metrics.len() + beside.len();
-    let headings = metrics.iter().map(|metric| heading(*metric)).chain(beside.iter().map(|name| (*name).to_owned()));
+    let headings =
+        metrics.iter().map(|metric| metric_heading(*metric)).chain(beside.iter().map(|name| (*name).to_owned()));
     let headings: Vec<String> = headings.collect();
-    add(page, format_args!("| Agent | {label} | {} |\n|---|---|{}\n", headings.join(" | "), "---:|".repeat(columns)));
+    append_text(
+        page,
+        format_args!("| Agent | {label} | {} |\n|---|---|{}\n", headings.join(" | "), "---:|".repeat(columns)),
+    );
     for line in lines {
-        let figure = |metric: &Metric| line.figure(*metric).map_or_else(|| "–".to_owned(), |figure| figure.to_string());
+        let figure = |metric: &TrajectoryMetric| {
+            line.rounded_figure(*metric).map_or_else(|| "–".to_owned(), |figure| figure.to_string())
+        };
         let cells: Vec<String> =
-            metrics.iter().map(figure).chain(line.beside.iter().map(|text| escaped(text))).collect();
-        let agent = if line.opens { escaped(&line.who()) } else { String::new() };
-        add(page, format_args!("| {agent} | {} | {} |\n", escaped(&line.label), cells.join(" | ")));
+            metrics.iter().map(figure).chain(line.beside.iter().map(|text| escape_markdown(text))).collect();
+        let agent = if line.opens { escape_markdown(&line.agent_with_kind()) } else { String::new() };
+        append_text(page, format_args!("| {agent} | {} | {} |\n", escape_markdown(&line.label), cells.join(" | ")));
     }
 }
 
-fn list(page: &mut String, title: &str, lines: impl Iterator<Item = String>) {
-    add(page, format_args!("\n## {title}\n\n"));
+fn append_list(page: &mut String, title: &str, lines: impl Iterator<Item = String>) {
+    append_text(page, format_args!("\n## {title}\n\n"));
     for line in lines {
-        add(page, format_args!("- {}\n", escaped(&line)));
+        append_text(page, format_args!("- {}\n", escape_markdown(&line)));
     }
 }
 
-fn add(page: &mut String, text: std::fmt::Arguments<'_>) {
+fn append_text(page: &mut String, text: std::fmt::Arguments<'_>) {
     // Writing to a text cannot fail.
     let _ = page.write_fmt(text);
 }
 
 /// Escapes a text for Markdown.
-fn escaped(text: &str) -> String {
+fn escape_markdown(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for c in text.chars() {
         match c {

@@ -1,75 +1,87 @@
 //! The sentences around the figures of a comparison: subject, warnings, and notes on how to read it. Every format shows the same and
 //! escapes the text itself.
 
-use super::figures::{DEAF, Figure, deaf, name, other_path};
-use wayword_metrics::{Metric, Rule};
-use wayword_navigation::comparison::{About, AgentKind, Comparison, FEWEST_PATHS, Listening, Set, Swapped};
-use wayword_run::count::count;
+use super::figures::{DEAF_MARK, RoundedFigure, deaf_agents, other_path, printable_name};
+use wayword_metrics::{TrajectoryMetric, TrajectorySuccessRule};
+use wayword_navigation::comparison::{
+    AgentComparison, AgentKind, ComparisonInfo, FEWEST_PATHS, InstructionSet, ListeningVerdict, SwapEffect,
+};
+use wayword_run::count::count_phrase;
 
 /// The agents that read.
-const READER: &str = "reader";
+const READER_AGENT: &str = "reader";
 const READER_MAP: &str = "reader-map";
 /// The agent by a language model.
-const TOOLS: &str = "tools";
+const TOOLS_AGENT: &str = "tools";
 
 /// The platform and episodes of the comparison, with the number of items and paths.
-pub(super) fn subject(about: &About) -> String {
+pub(super) fn describe_subject(about: &ComparisonInfo) -> String {
     format!(
         "{}, {}: {} on {}",
-        name(&about.platform),
-        name(&about.episodes),
-        count(about.items, "item"),
-        count(about.paths, "path")
+        printable_name(&about.platform),
+        printable_name(&about.episodes),
+        count_phrase(about.items, "item"),
+        count_phrase(about.paths, "path")
     )
 }
 
 /// The rule of success.
-pub(super) fn success(rule: Rule) -> String {
+pub(super) fn describe_success(rule: TrajectorySuccessRule) -> String {
     let rule = match rule {
-        Rule::Distance => "the agent stops less than 3 m from the goal (R2R's rule; REVERIE's own is stricter)",
-        Rule::Visible => "the target is visible where the agent stops (REVERIE's rule)",
+        TrajectorySuccessRule::Distance => {
+            "the agent stops less than 3 m from the goal (R2R's rule; REVERIE's own is stricter)"
+        }
+        TrajectorySuccessRule::Visible => "the target is visible where the agent stops (REVERIE's rule)",
     };
     format!("Success: {rule}.")
 }
 
 /// A set, its source and its size.
-pub(super) fn set(set: &Set) -> String {
+pub(super) fn describe_set(set: &InstructionSet) -> String {
     let from = if set.source.is_empty() || set.source == set.name {
         String::new()
     } else {
-        format!(" ({})", name(&set.source))
+        format!(" ({})", printable_name(&set.source))
     };
     let left_out = match set.left_out {
         0 => String::new(),
-        left_out => format!("; {} left out, because another set lacks them", count(left_out, "item")),
+        left_out => format!("; {} left out, because another set lacks them", count_phrase(left_out, "item")),
     };
-    format!("{}{from}: {} of {:.1} words{left_out}", name(&set.name), count(set.texts, "text"), set.words)
+    format!(
+        "{}{from}: {} of {:.1} words{left_out}",
+        printable_name(&set.name),
+        count_phrase(set.texts, "text"),
+        set.words
+    )
 }
 
 /// Warnings, shown first: agents with rows that give no evidence about the instructions, because another path's instruction does not
 /// make them worse, or this was not tested enough.
-pub(super) fn warnings(comparison: &Comparison) -> Vec<String> {
-    let lost = |swapped: &Swapped| {
-        let lost = swapped.lost.figures.get(&Metric::SuccessRate);
+pub(super) fn list_warnings(comparison: &AgentComparison) -> Vec<String> {
+    let lost = |swapped: &SwapEffect| {
+        let lost = swapped.lost.figures.get(&TrajectoryMetric::SuccessRate);
         lost.map_or_else(String::new, |lost| {
-            let paths = count(lost.clusters, "path");
-            format!(" (it costs {} points of SR on {paths})", Figure::of(Metric::SuccessRate, lost))
+            let paths = count_phrase(lost.clusters, "path");
+            format!(
+                " (it costs {} points of SR on {paths})",
+                RoundedFigure::from_estimate(TrajectoryMetric::SuccessRate, lost)
+            )
         })
     };
-    let note = |swapped: &Swapped| {
+    let note = |swapped: &SwapEffect| {
         format!(
-            "{DEAF} {} is not shown to do worse with another path's instruction{}, so its rows say nothing about the instructions.",
-            name(&swapped.agent),
+            "{DEAF_MARK} {} is not shown to do worse with another path's instruction{}, so its rows say nothing about the instructions.",
+            printable_name(&swapped.agent),
             lost(swapped)
         )
     };
-    let mut warnings: Vec<String> = deaf(comparison).map(note).collect();
+    let mut warnings: Vec<String> = deaf_agents(comparison).map(note).collect();
     let is_tested = |agent: &str| {
-        other_path(comparison).any(|swapped| swapped.agent == agent && swapped.listening != Listening::TooFew)
+        other_path(comparison).any(|swapped| swapped.agent == agent && swapped.listening != ListeningVerdict::TooFew)
     };
     let mut untested: Vec<String> = Vec::new();
     for row in comparison.rows.iter().filter(|row| row.kind == AgentKind::Agent && !is_tested(&row.agent)) {
-        let agent = name(&row.agent);
+        let agent = printable_name(&row.agent);
         if !untested.contains(&agent) {
             untested.push(agent);
         }
@@ -84,12 +96,16 @@ pub(super) fn warnings(comparison: &Comparison) -> Vec<String> {
 }
 
 /// The agents that are shown to follow their instructions, and by how much.
-pub(super) fn listeners(comparison: &Comparison) -> Vec<String> {
-    let note = |swapped: &Swapped| {
-        let lost = swapped.lost.figures.get(&Metric::SuccessRate).filter(|_| swapped.listening == Listening::Shown)?;
-        let lost = Figure::of(Metric::SuccessRate, lost);
-        let paths = count(swapped.lost.figures.get(&Metric::SuccessRate)?.clusters, "path");
-        let agent = name(&swapped.agent);
+pub(super) fn listener_notes(comparison: &AgentComparison) -> Vec<String> {
+    let note = |swapped: &SwapEffect| {
+        let lost = swapped
+            .lost
+            .figures
+            .get(&TrajectoryMetric::SuccessRate)
+            .filter(|_| swapped.listening == ListeningVerdict::Shown)?;
+        let lost = RoundedFigure::from_estimate(TrajectoryMetric::SuccessRate, lost);
+        let paths = count_phrase(swapped.lost.figures.get(&TrajectoryMetric::SuccessRate)?.clusters, "path");
+        let agent = printable_name(&swapped.agent);
         Some(format!(
             "{agent} follows its instructions: another path's instruction costs it {lost} points of SR on {paths}."
         ))
@@ -98,7 +114,7 @@ pub(super) fn listeners(comparison: &Comparison) -> Vec<String> {
 }
 
 /// How all figures were made, and how to read them.
-pub(super) fn notes(comparison: &Comparison) -> Vec<String> {
+pub(super) fn all_notes(comparison: &AgentComparison) -> Vec<String> {
     let mut notes = of_table(comparison);
     notes.extend(of_differences(comparison));
     notes.push(made_by(&comparison.about));
@@ -106,37 +122,37 @@ pub(super) fn notes(comparison: &Comparison) -> Vec<String> {
 }
 
 /// The notes for a table without differences and swaps.
-pub(super) fn notes_of_table(comparison: &Comparison) -> Vec<String> {
+pub(super) fn notes_of_table(comparison: &AgentComparison) -> Vec<String> {
     let mut notes = of_table(comparison);
     notes.push(made_by(&comparison.about));
     notes
 }
 
-fn made_by(about: &About) -> String {
-    format!("Made by Wayword {}.", name(&about.wayword))
+fn made_by(about: &ComparisonInfo) -> String {
+    format!("Made by Wayword {}.", printable_name(&about.wayword))
 }
 
-fn of_table(comparison: &Comparison) -> Vec<String> {
+fn of_table(comparison: &AgentComparison) -> Vec<String> {
     let about = &comparison.about;
     let mut notes = vec![
         format!(
             "A row is the mean over the {}, and an item the mean over its texts. Rates and shares are in per cent.",
-            count(about.items, "item")
+            count_phrase(about.items, "item")
         ),
         format!(
             "Intervals [low, high] cover {}: percentile bootstrap, {} resamples, seed {}, clustered by path ({} on {}), because items on one path are not independent.",
-            level(about.level),
+            level_text(about.level),
             about.resamples,
             about.seed,
-            count(about.items, "item"),
-            count(about.paths, "path")
+            count_phrase(about.items, "item"),
+            count_phrase(about.paths, "path")
         ),
     ];
-    notes.extend(grounding(comparison));
-    if about.parameters.keys().any(|agent| ![READER, TOOLS].contains(&agent.as_str())) {
-        notes.push(format!("Instructions are split into phrases by {}.", name(&about.splitter)));
+    notes.extend(grounding_notes(comparison));
+    if about.parameters.keys().any(|agent| ![READER_AGENT, TOOLS_AGENT].contains(&agent.as_str())) {
+        notes.push(format!("Instructions are split into phrases by {}.", printable_name(&about.splitter)));
     }
-    notes.extend(readers(comparison));
+    notes.extend(reader_notes(comparison));
     if comparison.rows.iter().any(|row| row.kind != AgentKind::Agent) {
         notes.push(
             "A lower bound reads no instruction. An agent that knows the map also knows the label of every room, and reads which room is meant. The upper bound knows the goal."
@@ -147,22 +163,24 @@ fn of_table(comparison: &Comparison) -> Vec<String> {
 }
 
 /// The information that the reading agents get besides the instruction. Ground truth is named, so that it is not mistaken for perception.
-fn readers(comparison: &Comparison) -> Vec<String> {
+fn reader_notes(comparison: &AgentComparison) -> Vec<String> {
     let about = &comparison.about;
     let has = |agent: &str| comparison.rows.iter().any(|row| row.agent == agent);
     let mut notes = Vec::new();
-    if has(READER) {
+    if has(READER_AGENT) {
         let things = match about.grounder.starts_with("labels") {
             true => "and by which way each labelled object lies".to_owned(),
-            false => format!("and which things its text names score high enough by {}", name(&about.grounder)),
+            false => {
+                format!("and which things its text names score high enough by {}", printable_name(&about.grounder))
+            }
         };
         notes.push(format!(
-            "{READER} is told at each viewpoint the ways out, the name of the room {things}. Rooms and labels are ground truth, not perception."
+            "{READER_AGENT} is told at each viewpoint the ways out, the name of the room {things}. Rooms and labels are ground truth, not perception."
         ));
     }
     if let Some(prior) = about.prior.as_deref().filter(|_| has(READER_MAP)) {
         let walks = match prior.strip_prefix("shortest:") {
-            Some(hops) => format!("the shortest path to each viewpoint {} hops away", name(hops)),
+            Some(hops) => format!("the shortest path to each viewpoint {} hops away", printable_name(hops)),
             None => "walks of two shortest pieces".to_owned(),
         };
         notes.push(format!(
@@ -170,7 +188,7 @@ fn readers(comparison: &Comparison) -> Vec<String> {
         ));
     }
     let has_weights = !notes.is_empty();
-    notes.extend(about.tools.as_ref().filter(|_| has(TOOLS)).map(|(llm, see)| by_tools(llm, see)));
+    notes.extend(about.tools.as_ref().filter(|_| has(TOOLS_AGENT)).map(|(llm, see)| by_tools(llm, see)));
     if has_weights {
         notes
             .push("The weights of the agents that read were fitted to the train splits of R2R and REVERIE.".to_owned());
@@ -186,16 +204,16 @@ fn by_tools(llm: &str, see: &str) -> String {
                 .to_owned()
         }
         "pictures" => "It is shown four pictures of what is around it".to_owned(),
-        see => format!("It is told what {} says of four pictures around it", name(see)),
+        see => format!("It is told what {} says of four pictures around it", printable_name(see)),
     };
     format!(
-        "{TOOLS} is {}, which calls tools to look around, to step and to stop. {sees}. Replies of no use are counted over all walks; \"ended by a limit\" counts walks that ended at the most hops, calls or money, in circles, or after replies of no use. All walks are scored as they stand.",
-        name(llm)
+        "{TOOLS_AGENT} is {}, which calls tools to look around, to step and to stop. {sees}. Replies of no use are counted over all walks; \"ended by a limit\" counts walks that ended at the most hops, calls or money, in circles, or after replies of no use. All walks are scored as they stand.",
+        printable_name(llm)
     )
 }
 
 /// How to read differences and swaps, if there are any.
-fn of_differences(comparison: &Comparison) -> Vec<String> {
+fn of_differences(comparison: &AgentComparison) -> Vec<String> {
     let mut notes = Vec::new();
     if comparison.rows.iter().any(|row| row.against_first.is_some()) || !comparison.swaps.is_empty() {
         notes.push(
@@ -219,21 +237,24 @@ fn of_differences(comparison: &Comparison) -> Vec<String> {
 }
 
 /// How the views are scored. Ground-truth labels are named, so that they are not mistaken for perception.
-fn grounding(comparison: &Comparison) -> Vec<String> {
+fn grounding_notes(comparison: &AgentComparison) -> Vec<String> {
     let about = &comparison.about;
     let nature =
         |grounder: &str| if grounder.starts_with("labels") { ": ground-truth labels, not perception" } else { "" };
     let detects = |agent: &str| agent.starts_with("glip");
-    let encoder =
-        about.encoder.as_deref().map_or_else(String::new, |encoder| format!(", encoded by {}", name(encoder)));
-    let mut notes = vec![format!("Views are scored by {}{encoder}{}.", name(&about.grounder), nature(&about.grounder))];
-    if about.grounder.starts_with("labels") && about.rule == Rule::Visible {
+    let encoder = about
+        .encoder
+        .as_deref()
+        .map_or_else(String::new, |encoder| format!(", encoded by {}", printable_name(encoder)));
+    let mut notes =
+        vec![format!("Views are scored by {}{encoder}{}.", printable_name(&about.grounder), nature(&about.grounder))];
+    if about.grounder.starts_with("labels") && about.rule == TrajectorySuccessRule::Visible {
         notes.push(
             "The same labels score the views and decide whether the target is visible, so an agent recognises success more easily than one that has to see."
                 .to_owned(),
         );
     }
-    if about.parameters.keys().any(|agent| agent != TOOLS) {
+    if about.parameters.keys().any(|agent| agent != TOOLS_AGENT) {
         notes.push(match about.swept {
             true => "The thresholds of the agents were chosen on REVERIE's train split.".to_owned(),
             false => {
@@ -244,11 +265,11 @@ fn grounding(comparison: &Comparison) -> Vec<String> {
     if about.failed > 0 {
         notes.push(format!(
             "{} could not be walked, because a model failed on one of their texts.",
-            count(about.failed, "item")
+            count_phrase(about.failed, "item")
         ));
     }
     if comparison.rows.iter().any(|row| detects(&row.agent)) {
-        let (detector, nature) = (name(&about.detector), nature(&about.detector));
+        let (detector, nature) = (printable_name(&about.detector), nature(&about.detector));
         notes.push(if about.detector.starts_with("labels") {
             format!("GLIP-Nav uses a label detector ({detector}{nature}): --detector names a network.")
         } else {
@@ -266,6 +287,6 @@ fn grounding(comparison: &Comparison) -> Vec<String> {
 }
 
 /// A level in words: 0.95 is `95 %`.
-fn level(level: f64) -> String {
+fn level_text(level: f64) -> String {
     format!("{} %", (1000.0 * level).round() / 10.0)
 }

@@ -2,19 +2,20 @@
 
 use super::{
     figures::{
-        BESIDE_DIFFERENCES, BESIDE_EFFORTS, BESIDE_SWAPS, BESIDE_TROUBLE, Figure, Line, READS_NOTHING, SHOWN,
-        differences, efforts, heading, name, rows, swaps, trouble,
+        BESIDE_DIFFERENCES, BESIDE_EFFORTS, BESIDE_SWAPS, BESIDE_TROUBLE, ComparisonLine, READS_NOTHING, RoundedFigure,
+        SHORT_TABLE_METRICS, comparison_lines, difference_lines, effort_lines, metric_heading, printable_name,
+        swap_lines, trouble_lines,
     },
-    forest::{Forest, Plot},
+    forest::{ForestContent, ForestView},
     notes,
 };
 use serde::Serialize;
-use wayword_metrics::Metric;
-use wayword_navigation::comparison::{AgentKind, Comparison};
+use wayword_metrics::TrajectoryMetric;
+use wayword_navigation::comparison::{AgentComparison, AgentKind};
 
 /// The comparison as its template takes it.
 #[derive(Debug, Serialize)]
-pub(in super::super) struct PageView {
+pub(in super::super) struct ComparisonPageView {
     subject: String,
     success: String,
     warnings: Vec<String>,
@@ -24,7 +25,7 @@ pub(in super::super) struct PageView {
     table: TableView,
     /// Effort of and problems in walks by a language model; empty without an agent of this kind.
     efforts: Vec<TableView>,
-    forests: Vec<Forest>,
+    forests: Vec<ForestView>,
     /// Titles of the folded tables, with the tables.
     folded: Vec<(String, TableView)>,
     parameters: Vec<(String, Vec<(String, String)>)>,
@@ -49,48 +50,56 @@ struct LineView {
     beside: Vec<String>,
 }
 
-impl PageView {
-    pub(in super::super) fn new(comparison: &Comparison) -> Self {
-        let (table, less, lost) = (rows(comparison), differences(comparison), swaps(comparison));
-        let first = comparison.sets.first().map_or_else(String::new, |set| name(&set.name));
+impl ComparisonPageView {
+    pub(in super::super) fn new(comparison: &AgentComparison) -> Self {
+        let (table, less, lost) = (comparison_lines(comparison), difference_lines(comparison), swap_lines(comparison));
+        let first = comparison.sets.first().map_or_else(String::new, |set| printable_name(&set.name));
         let mut folded =
-            vec![("All figures".to_owned(), TableView::new("Instructions", &table, &present(&table), vec![]))];
+            vec![("All figures".to_owned(), TableView::new("Instructions", &table, &present_metrics(&table), vec![]))];
         if !less.is_empty() {
-            let view = TableView::new("Instructions", &less, &present(&less), BESIDE_DIFFERENCES.to_vec());
+            let view = TableView::new("Instructions", &less, &present_metrics(&less), BESIDE_DIFFERENCES.to_vec());
             folded.push((format!("All differences to {first}, and McNemar's test"), view));
         }
         if !lost.is_empty() {
-            let view = TableView::new("Swap", &lost, &present(&lost), BESIDE_SWAPS.to_vec());
+            let view = TableView::new("Swap", &lost, &present_metrics(&lost), BESIDE_SWAPS.to_vec());
             folded.push((format!("All losses by swaps of {first}"), view));
         }
         Self {
-            subject: notes::subject(&comparison.about),
-            success: notes::success(comparison.about.rule),
-            warnings: notes::warnings(comparison),
-            listeners: notes::listeners(comparison),
-            sets: comparison.sets.iter().map(notes::set).collect(),
-            notes: notes::notes(comparison),
-            table: TableView::new("Instructions", &table, &SHOWN, vec![]),
-            efforts: [(efforts(comparison), BESIDE_EFFORTS.to_vec()), (trouble(comparison), BESIDE_TROUBLE.to_vec())]
-                .into_iter()
-                .filter(|(lines, _)| !lines.is_empty())
-                .map(|(lines, beside)| TableView::new("Instructions", &lines, &[], beside))
-                .collect(),
-            forests: forests(&first, &table, &less, &lost),
+            subject: notes::describe_subject(&comparison.about),
+            success: notes::describe_success(comparison.about.rule),
+            warnings: notes::list_warnings(comparison),
+            listeners: notes::listener_notes(comparison),
+            sets: comparison.sets.iter().map(notes::describe_set).collect(),
+            notes: notes::all_notes(comparison),
+            table: TableView::new("Instructions", &table, &SHORT_TABLE_METRICS, vec![]),
+            efforts: [
+                (effort_lines(comparison), BESIDE_EFFORTS.to_vec()),
+                (trouble_lines(comparison), BESIDE_TROUBLE.to_vec()),
+            ]
+            .into_iter()
+            .filter(|(lines, _)| !lines.is_empty())
+            .map(|(lines, beside)| TableView::new("Instructions", &lines, &[], beside))
+            .collect(),
+            forests: draw_forests(&first, &table, &less, &lost),
             folded,
-            parameters: parameters(comparison),
+            parameters: parameter_lists(comparison),
         }
     }
 }
 
 impl TableView {
-    fn new(label: &'static str, lines: &[Line<'_>], metrics: &[Metric], beside: Vec<&'static str>) -> Self {
-        let cells = |line: &Line<'_>| {
-            let cell = |figure: Figure| (number(&figure.mean), number(&figure.interval()));
-            metrics.iter().map(|metric| line.figure(*metric).map(cell)).collect()
+    fn new(
+        label: &'static str,
+        lines: &[ComparisonLine<'_>],
+        metrics: &[TrajectoryMetric],
+        beside: Vec<&'static str>,
+    ) -> Self {
+        let cells = |line: &ComparisonLine<'_>| {
+            let cell = |figure: RoundedFigure| (number_with_minus(&figure.mean), number_with_minus(&figure.interval()));
+            metrics.iter().map(|metric| line.rounded_figure(*metric).map(cell)).collect()
         };
-        let line = |line: &Line<'_>| LineView {
-            agent: line.who(),
+        let line = |line: &ComparisonLine<'_>| LineView {
+            agent: line.agent_with_kind(),
             opens: line.opens,
             kind: line.kind,
             is_deaf: line.is_deaf,
@@ -100,7 +109,7 @@ impl TableView {
         };
         Self {
             label,
-            headings: metrics.iter().map(|metric| heading(*metric)).collect(),
+            headings: metrics.iter().map(|metric| metric_heading(*metric)).collect(),
             beside,
             lines: lines.iter().map(line).collect(),
         }
@@ -108,29 +117,37 @@ impl TableView {
 }
 
 /// The metrics that at least one line has.
-fn present(lines: &[Line<'_>]) -> Vec<Metric> {
-    Metric::ALL.into_iter().filter(|metric| lines.iter().any(|line| line.estimate(*metric).is_some())).collect()
+fn present_metrics(lines: &[ComparisonLine<'_>]) -> Vec<TrajectoryMetric> {
+    TrajectoryMetric::ALL
+        .into_iter()
+        .filter(|metric| lines.iter().any(|line| line.estimate(*metric).is_some()))
+        .collect()
 }
 
 /// Numbers with a minus instead of a hyphen.
-fn number(text: &str) -> String {
+fn number_with_minus(text: &str) -> String {
     text.replace('-', "−")
 }
 
-fn forests(first: &str, table: &[Line<'_>], less: &[Line<'_>], lost: &[Line<'_>]) -> Vec<Forest> {
-    let read: Vec<Line<'_>> = table.iter().filter(|line| line.kind == AgentKind::Agent).cloned().collect();
-    let mark = |line: &Line<'_>| {
+fn draw_forests(
+    first: &str,
+    table: &[ComparisonLine<'_>],
+    less: &[ComparisonLine<'_>],
+    lost: &[ComparisonLine<'_>],
+) -> Vec<ForestView> {
+    let read: Vec<ComparisonLine<'_>> = table.iter().filter(|line| line.kind == AgentKind::Agent).cloned().collect();
+    let mark = |line: &ComparisonLine<'_>| {
         let class = match line.kind {
             AgentKind::LowerBound => "lower-bound",
             AgentKind::Agent => return None,
             AgentKind::Informed | AgentKind::UpperBound => "upper-bound",
         };
-        let figure = line.figure(Metric::SuccessRate)?;
+        let figure = line.rounded_figure(TrajectoryMetric::SuccessRate)?;
         let by = if line.label == READS_NOTHING { String::new() } else { format!(" by {}", line.label) };
-        Some((class, format!("{}{by} {}", line.agent, figure.mean), line.estimate(Metric::SuccessRate)?.mean))
+        Some((class, format!("{}{by} {}", line.agent, figure.mean), line.estimate(TrajectoryMetric::SuccessRate)?.mean))
     };
     let plots = [
-        Plot {
+        ForestContent {
             title: "Success rate, %".to_owned(),
             label: "Instructions",
             lines: &read,
@@ -138,7 +155,7 @@ fn forests(first: &str, table: &[Line<'_>], less: &[Line<'_>], lost: &[Line<'_>]
             has_zero: false,
             caption: "Dot: mean over items. Bar: its interval.",
         },
-        Plot {
+        ForestContent {
             title: format!("Success rate minus that of {first}, points"),
             label: "Instructions",
             lines: less,
@@ -146,7 +163,7 @@ fn forests(first: &str, table: &[Line<'_>], less: &[Line<'_>], lost: &[Line<'_>]
             has_zero: true,
             caption: "Right of the line: better than the first set. Hollow: the interval includes 0, so no difference is shown.",
         },
-        Plot {
+        ForestContent {
             title: format!("Success rate lost when {first} is swapped, points"),
             label: "Swap",
             lines: lost,
@@ -155,12 +172,15 @@ fn forests(first: &str, table: &[Line<'_>], less: &[Line<'_>], lost: &[Line<'_>]
             caption: "Right of the line: the agent does worse by swapped texts, so it follows what was swapped. Hollow: the interval includes 0, so that is not shown.",
         },
     ];
-    plots.into_iter().filter_map(Plot::draw).collect()
+    plots.into_iter().filter_map(ForestContent::draw_forest).collect()
 }
 
-fn parameters(comparison: &Comparison) -> Vec<(String, Vec<(String, String)>)> {
+fn parameter_lists(comparison: &AgentComparison) -> Vec<(String, Vec<(String, String)>)> {
     let of_agent = |(agent, values): (&String, &std::collections::BTreeMap<String, String>)| {
-        (name(agent), values.iter().map(|(key, value)| (name(key), name(value))).collect())
+        (
+            printable_name(agent),
+            values.iter().map(|(key, value)| (printable_name(key), printable_name(value))).collect(),
+        )
     };
     comparison.about.parameters.iter().map(of_agent).collect()
 }

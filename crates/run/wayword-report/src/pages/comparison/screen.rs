@@ -2,37 +2,43 @@
 
 use super::{
     figures::{
-        BESIDE_DIFFERENCES, BESIDE_EFFORTS, BESIDE_SWAPS, BESIDE_TROUBLE, Line, SHOWN, differences, efforts, heading,
-        name, rows, swaps, trouble,
+        BESIDE_DIFFERENCES, BESIDE_EFFORTS, BESIDE_SWAPS, BESIDE_TROUBLE, ComparisonLine, SHORT_TABLE_METRICS,
+        comparison_lines, difference_lines, effort_lines, metric_heading, printable_name, swap_lines, trouble_lines,
     },
     notes,
 };
 use std::fmt::Write;
-use wayword_metrics::Metric;
-use wayword_navigation::comparison::Comparison;
+use wayword_metrics::TrajectoryMetric;
+use wayword_navigation::comparison::AgentComparison;
 
 /// The comparison as plain text.
 #[must_use]
-pub fn screen(comparison: &Comparison) -> String {
-    let mut text = format!("{}\n{}\n\n", notes::subject(&comparison.about), notes::success(comparison.about.rule));
-    table(&mut text, "instructions", &rows(comparison), &SHOWN, &[]);
-    let first = comparison.sets.first().map_or_else(String::new, |set| name(&set.name));
-    let less = differences(comparison);
+pub fn screen_text(comparison: &AgentComparison) -> String {
+    let mut text = format!(
+        "{}\n{}\n\n",
+        notes::describe_subject(&comparison.about),
+        notes::describe_success(comparison.about.rule)
+    );
+    append_table(&mut text, "instructions", &comparison_lines(comparison), &SHORT_TABLE_METRICS, &[]);
+    let first = comparison.sets.first().map_or_else(String::new, |set| printable_name(&set.name));
+    let less = difference_lines(comparison);
     if !less.is_empty() {
-        table(&mut text, &format!("minus {first}"), &less, &SHOWN, &BESIDE_DIFFERENCES);
+        append_table(&mut text, &format!("minus {first}"), &less, &SHORT_TABLE_METRICS, &BESIDE_DIFFERENCES);
     }
-    let lost = swaps(comparison);
+    let lost = swap_lines(comparison);
     if !lost.is_empty() {
-        table(&mut text, &format!("loss by swap of set {first}"), &lost, &SHOWN, &BESIDE_SWAPS);
+        append_table(&mut text, &format!("loss by swap of set {first}"), &lost, &SHORT_TABLE_METRICS, &BESIDE_SWAPS);
     }
-    let efforts = efforts(comparison);
+    let efforts = effort_lines(comparison);
     if !efforts.is_empty() {
-        table(&mut text, "what a walk took", &efforts, &[], &BESIDE_EFFORTS);
-        table(&mut text, "what went wrong", &trouble(comparison), &[], &BESIDE_TROUBLE);
+        append_table(&mut text, "what a walk took", &efforts, &[], &BESIDE_EFFORTS);
+        append_table(&mut text, "what went wrong", &trouble_lines(comparison), &[], &BESIDE_TROUBLE);
     }
-    let sets = comparison.sets.iter().map(notes::set);
-    let after =
-        notes::notes(comparison).into_iter().chain(notes::listeners(comparison)).chain(notes::warnings(comparison));
+    let sets = comparison.sets.iter().map(notes::describe_set);
+    let after = notes::all_notes(comparison)
+        .into_iter()
+        .chain(notes::listener_notes(comparison))
+        .chain(notes::list_warnings(comparison));
     for line in sets.chain(after) {
         text.push_str(&line);
         text.push('\n');
@@ -41,14 +47,23 @@ pub fn screen(comparison: &Comparison) -> String {
 }
 
 /// Columns as wide as their cells; words are aligned to the left, figures to the right.
-fn table(text: &mut String, label: &str, lines: &[Line<'_>], metrics: &[Metric], beside: &[&str]) {
+fn append_table(
+    text: &mut String,
+    label: &str,
+    lines: &[ComparisonLine<'_>],
+    metrics: &[TrajectoryMetric],
+    beside: &[&str],
+) {
     let mut grid: Vec<Vec<String>> = Vec::with_capacity(lines.len() + 1);
     let words = ["agent".to_owned(), label.to_owned()].into_iter();
-    let headings = metrics.iter().map(|metric| heading(*metric)).chain(beside.iter().map(|name| (*name).to_owned()));
+    let headings =
+        metrics.iter().map(|metric| metric_heading(*metric)).chain(beside.iter().map(|name| (*name).to_owned()));
     grid.push(words.chain(headings).collect());
     for line in lines {
-        let figure = |metric: &Metric| line.figure(*metric).map_or_else(|| "-".to_owned(), |figure| figure.to_string());
-        let words = [if line.opens { line.who() } else { String::new() }, line.label.clone()].into_iter();
+        let figure = |metric: &TrajectoryMetric| {
+            line.rounded_figure(*metric).map_or_else(|| "-".to_owned(), |figure| figure.to_string())
+        };
+        let words = [if line.opens { line.agent_with_kind() } else { String::new() }, line.label.clone()].into_iter();
         grid.push(words.chain(metrics.iter().map(figure)).chain(line.beside.iter().cloned()).collect());
     }
     let width = |column: usize| grid.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count()).max();

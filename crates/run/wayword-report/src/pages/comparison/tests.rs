@@ -3,39 +3,42 @@
 use super::*;
 use crate::pages::replay::tests::{Town, replay};
 use std::collections::{BTreeMap, BTreeSet};
-use wayword_metrics::{Estimate, McNemar, Metric, Rule};
+use wayword_metrics::{McNemar, MeanEstimate, TrajectoryMetric, TrajectorySuccessRule};
 use wayword_navigation::{
-    comparison::{About, AgentKind, Difference, Efforts, Listening, Row, Set, Swapped},
-    swap::Swap,
-    walk::{End, Useless},
+    comparison::{
+        AgentKind, ComparisonInfo, ComparisonRow, EffortSummary, InstructionSet, ListeningVerdict, RowDifference,
+        SwapEffect,
+    },
+    swap::InstructionSwap,
+    walk::{UselessReplies, WalkEnd},
 };
 
 const SCRIPT: &str = "<script>alert('x')</script>";
 /// Characters with a meaning in one of the formats.
 const SPECIALS: &str = "a_b|c*d`e$f&g#h%i{j}k~l^m\\n\"o[p](q)\u{1b}[31m";
 
-fn estimate(mean: f64, half: f64) -> Estimate {
-    Estimate { mean, low: mean - half, high: mean + half, values: 501, clusters: 126 }
+fn estimate(mean: f64, half: f64) -> MeanEstimate {
+    MeanEstimate { mean, low: mean - half, high: mean + half, values: 501, clusters: 126 }
 }
 
-fn figures(sr: f64, half: f64) -> BTreeMap<Metric, Estimate> {
+fn figures(sr: f64, half: f64) -> BTreeMap<TrajectoryMetric, MeanEstimate> {
     let of = [
-        (Metric::SuccessRate, sr),
-        (Metric::OracleSuccessRate, (2.0 * sr).min(1.0)),
-        (Metric::Spl, 0.8 * sr),
-        (Metric::NavigationErrorM, 9.0 * (1.0 - sr)),
-        (Metric::Ndtw, 0.3 + 0.7 * sr),
+        (TrajectoryMetric::SuccessRate, sr),
+        (TrajectoryMetric::OracleSuccessRate, (2.0 * sr).min(1.0)),
+        (TrajectoryMetric::Spl, 0.8 * sr),
+        (TrajectoryMetric::NavigationErrorM, 9.0 * (1.0 - sr)),
+        (TrajectoryMetric::Ndtw, 0.3 + 0.7 * sr),
     ];
     of.into_iter().map(|(metric, mean)| (metric, estimate(mean, half))).collect()
 }
 
-fn difference(sr: f64, half: f64) -> Difference {
-    Difference { figures: figures(sr, half), mcnemar: McNemar { only_first: 12, only_second: 30, p: 0.0079 } }
+fn difference(sr: f64, half: f64) -> RowDifference {
+    RowDifference { figures: figures(sr, half), mcnemar: McNemar { only_first: 12, only_second: 30, p: 0.0079 } }
 }
 
-fn row(agent: &str, kind: AgentKind, set: Option<&str>, sr: f64, less: Option<f64>) -> Row {
+fn row(agent: &str, kind: AgentKind, set: Option<&str>, sr: f64, less: Option<f64>) -> ComparisonRow {
     let against_first = less.map(|less| difference(less, 0.02));
-    Row {
+    ComparisonRow {
         agent: agent.into(),
         kind,
         set: set.map(str::to_owned),
@@ -45,8 +48,8 @@ fn row(agent: &str, kind: AgentKind, set: Option<&str>, sr: f64, less: Option<f6
     }
 }
 
-fn swapped(agent: &str, swap: Swap, lost: f64, listening: Listening) -> Swapped {
-    Swapped {
+fn swapped(agent: &str, swap: InstructionSwap, lost: f64, listening: ListeningVerdict) -> SwapEffect {
+    SwapEffect {
         agent: agent.into(),
         swap,
         changed: 1_320,
@@ -57,15 +60,15 @@ fn swapped(agent: &str, swap: Swap, lost: f64, listening: Listening) -> Swapped 
     }
 }
 
-fn set(name: &str, source: &str, left_out: usize) -> Set {
-    Set { name: name.into(), source: source.into(), texts: 1_504, left_out, words: 18.25 }
+fn set(name: &str, source: &str, left_out: usize) -> InstructionSet {
+    InstructionSet { name: name.into(), source: source.into(), texts: 1_504, left_out, words: 18.25 }
 }
 
-fn comparison() -> Comparison {
+fn comparison() -> AgentComparison {
     let agent = AgentKind::Agent;
     let parameters = BTreeMap::from([("stop_threshold".to_owned(), "0.7".to_owned())]);
-    Comparison {
-        about: About {
+    AgentComparison {
+        about: ComparisonInfo {
             platform: "matterport".into(),
             episodes: "episodes_val.json".into(),
             grounder: "labels".into(),
@@ -74,7 +77,7 @@ fn comparison() -> Comparison {
             encoder: Some("some-encoder".into()),
             splitter: "rules".into(),
             tools: None,
-            rule: Rule::Visible,
+            rule: TrajectorySuccessRule::Visible,
             level: 0.95,
             resamples: 10_000,
             seed: 0,
@@ -97,19 +100,19 @@ fn comparison() -> Comparison {
             row("oracle", AgentKind::UpperBound, None, 0.97, None),
         ],
         swaps: vec![
-            swapped("clip-nav", Swap::Directions, 0.0, Listening::NotShown),
-            swapped("clip-nav", Swap::OtherPath, 0.004, Listening::NotShown),
-            swapped("glip-nav", Swap::Directions, -0.003, Listening::TooFew),
-            swapped("glip-nav", Swap::OtherPath, 0.1, Listening::Shown),
+            swapped("clip-nav", InstructionSwap::Directions, 0.0, ListeningVerdict::NotShown),
+            swapped("clip-nav", InstructionSwap::OtherPath, 0.004, ListeningVerdict::NotShown),
+            swapped("glip-nav", InstructionSwap::Directions, -0.003, ListeningVerdict::TooFew),
+            swapped("glip-nav", InstructionSwap::OtherPath, 0.1, ListeningVerdict::Shown),
         ],
     }
 }
 
 /// The comparison with an agent by a language model of this name.
-fn with_tools(name: &str) -> Comparison {
+fn with_tools(name: &str) -> AgentComparison {
     let mut comparison = comparison();
     comparison.about.tools = Some((name.into(), "labels".into()));
-    let took = |calls: f64| Efforts {
+    let took = |calls: f64| EffortSummary {
         walks: 1_504,
         calls: estimate(calls, 0.4),
         hops: estimate(5.2, 0.1),
@@ -119,19 +122,19 @@ fn with_tools(name: &str) -> Comparison {
         seconds: estimate(9.5, 0.5),
         most_tokens_in: 1_234,
         undescribed: 2,
-        useless: Useless { no_call: 7, no_way: 5, idle: 3, failed: 1 },
+        useless: UselessReplies { no_call: 7, no_way: 5, idle: 3, failed: 1 },
         at_once: 12,
-        ended: BTreeMap::from([(End::Stopped, 1_400), (End::Cap, 90), (End::Circles, 14)]),
+        ended: BTreeMap::from([(WalkEnd::Stopped, 1_400), (WalkEnd::Cap, 90), (WalkEnd::Circles, 14)]),
     };
     for (set, sr, calls) in [("original", 0.4, 8.0), ("central", 0.5, 7.5)] {
         let row = row("tools", AgentKind::Agent, Some(set), sr, None);
-        comparison.rows.push(Row { effort: Some(took(calls)), ..row });
+        comparison.rows.push(ComparisonRow { effort: Some(took(calls)), ..row });
     }
     comparison
 }
 
 /// The comparison with `name` in every field that comes from files.
-fn named(name: &str) -> Comparison {
+fn named(name: &str) -> AgentComparison {
     let mut comparison = comparison();
     let about = &mut comparison.about;
     for text in
@@ -180,15 +183,20 @@ fn values<'a>(page: &'a str, attribute: &str) -> Vec<&'a str> {
 
 #[test]
 fn the_text_is_as_before() {
-    insta::assert_snapshot!("markdown", markdown(&comparison()));
-    insta::assert_snapshot!("latex", latex(&comparison()));
-    insta::assert_snapshot!("screen", screen(&comparison()));
+    insta::assert_snapshot!("markdown", markdown_tables(&comparison()));
+    insta::assert_snapshot!("latex", latex_table(&comparison()));
+    insta::assert_snapshot!("screen", screen_text(&comparison()));
 }
 
 #[test]
 fn every_form_has_the_notes() {
     let comparison = comparison();
-    for text in [markdown(&comparison), latex(&comparison), screen(&comparison), html(&comparison).unwrap()] {
+    for text in [
+        markdown_tables(&comparison),
+        latex_table(&comparison),
+        screen_text(&comparison),
+        comparison_html(&comparison).unwrap(),
+    ] {
         for told in [
             "the target is visible where the agent stops",
             "501 items on 126 paths",
@@ -204,7 +212,7 @@ fn every_form_has_the_notes() {
             assert!(text.contains(told), "{told} is not in {text}");
         }
     }
-    for text in [markdown(&comparison), screen(&comparison), html(&comparison).unwrap()] {
+    for text in [markdown_tables(&comparison), screen_text(&comparison), comparison_html(&comparison).unwrap()] {
         assert!(text.contains("1504 texts") && text.contains("descriptive"), "{text}");
     }
 }
@@ -212,14 +220,14 @@ fn every_form_has_the_notes() {
 #[test]
 fn an_agent_that_follows_has_no_warning_and_one_that_was_not_tested_has_its_own() {
     let mut comparison = comparison();
-    let warnings = notes::warnings(&comparison);
+    let warnings = notes::list_warnings(&comparison);
     assert!(warnings.len() == 1 && warnings[0].starts_with("† clip-nav is not shown to do worse"), "{warnings:?}");
-    assert!(notes::listeners(&comparison)[0].starts_with("glip-nav follows its instructions"));
-    comparison.swaps[1].listening = Listening::TooFew;
-    let warnings = notes::warnings(&comparison);
+    assert!(notes::listener_notes(&comparison)[0].starts_with("glip-nav follows its instructions"));
+    comparison.swaps[1].listening = ListeningVerdict::TooFew;
+    let warnings = notes::list_warnings(&comparison);
     assert!(warnings.len() == 1 && warnings[0].starts_with("clip-nav: the swap test"), "{warnings:?}");
     comparison.swaps.clear();
-    let warnings = notes::warnings(&comparison);
+    let warnings = notes::list_warnings(&comparison);
     assert!(warnings.len() == 1 && warnings[0].starts_with("clip-nav, glip-nav: the swap test"), "{warnings:?}");
 }
 
@@ -235,8 +243,13 @@ fn notes_name_the_ground_truth_that_readers_get() {
         row("reader-map", AgentKind::Informed, Some("original~empty"), 0.1, None),
         row("reader-map", AgentKind::Informed, Some("original~other-path"), 0.12, None),
     ];
-    comparison.swaps = vec![swapped("reader-map", Swap::Directions, 0.2, Listening::Shown)];
-    for text in [markdown(&comparison), latex(&comparison), screen(&comparison), html(&comparison).unwrap()] {
+    comparison.swaps = vec![swapped("reader-map", InstructionSwap::Directions, 0.2, ListeningVerdict::Shown)];
+    for text in [
+        markdown_tables(&comparison),
+        latex_table(&comparison),
+        screen_text(&comparison),
+        comparison_html(&comparison).unwrap(),
+    ] {
         for told in
             ["reader is told at each viewpoint", "ground truth, not perception", "1-8 hops away", "an empty text"]
         {
@@ -247,7 +260,7 @@ fn notes_name_the_ground_truth_that_readers_get() {
     }
     comparison.about.prior = Some("none".into());
     comparison.about.grounder = "hf/some/clip".into();
-    let text = screen(&comparison);
+    let text = screen_text(&comparison);
     assert!(
         text.contains("walks of two shortest pieces") && text.contains("score high enough by hf/some/clip"),
         "{text}"
@@ -257,28 +270,30 @@ fn notes_name_the_ground_truth_that_readers_get() {
 #[test]
 fn another_rule_is_named() {
     let mut comparison = comparison();
-    comparison.about.rule = Rule::Distance;
-    assert!(screen(&comparison).contains("less than 3 m from the goal"));
-    assert!(!screen(&comparison).contains("target is visible"));
+    comparison.about.rule = TrajectorySuccessRule::Distance;
+    assert!(screen_text(&comparison).contains("less than 3 m from the goal"));
+    assert!(!screen_text(&comparison).contains("target is visible"));
 }
 
 #[test]
 fn names_stay_text_in_markdown_and_latex_and_on_the_screen() {
     let [script, special] = [named(SCRIPT), named(SPECIALS)];
-    assert!(!markdown(&script).contains("<script") && markdown(&script).contains("&lt;script"));
-    assert!(markdown(&special).contains("a\\_b\\|c\\*d\\`e\\$f&amp;g"));
+    assert!(!markdown_tables(&script).contains("<script") && markdown_tables(&script).contains("&lt;script"));
+    assert!(markdown_tables(&special).contains("a\\_b\\|c\\*d\\`e\\$f&amp;g"));
     let expected =
         "a\\_b\\textbar{}c*d`e\\$f\\&g\\#h\\%i\\{j\\}k\\textasciitilde{}l\\textasciicircum{}m\\textbackslash{}n";
-    assert!(latex(&special).contains(expected), "{}", latex(&special));
-    assert!(!latex(&special).contains("a_b") && !latex(&special).contains("\n["));
-    for text in [screen(&special), markdown(&special), latex(&special), html(&special).unwrap()] {
+    assert!(latex_table(&special).contains(expected), "{}", latex_table(&special));
+    assert!(!latex_table(&special).contains("a_b") && !latex_table(&special).contains("\n["));
+    for text in
+        [screen_text(&special), markdown_tables(&special), latex_table(&special), comparison_html(&special).unwrap()]
+    {
         assert!(!text.contains('\u{1b}'));
     }
 }
 
 #[test]
 fn names_stay_text_on_the_page() {
-    let page = html(&named(&format!("{SCRIPT}\" onload=\"alert(1)"))).unwrap();
+    let page = comparison_html(&named(&format!("{SCRIPT}\" onload=\"alert(1)"))).unwrap();
     assert!(!page.contains("<script") && !page.contains("\" onload") && page.contains("default-src 'none'"));
     assert!(page.matches("&lt;script&gt;").count() > 20);
     assert_well_formed(&page);
@@ -292,7 +307,7 @@ fn page_is_well_formed_and_loads_no_files() {
     let replays: Vec<_> = walks.iter().map(|walk| replay(&town, walk, &score)).collect();
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("report.html");
-    let written = write(&out, &comparison(), &replays, 5).unwrap();
+    let written = write_comparison(&out, &comparison(), &replays, 5).unwrap();
     assert_eq!((written.replays, written.left_out), (2, 5));
     let page = std::fs::read_to_string(&out).unwrap();
     assert_well_formed(&page);
@@ -308,7 +323,7 @@ fn page_is_well_formed_and_loads_no_files() {
 
 #[test]
 fn plots_show_agents_lines_and_what_lies_beyond() {
-    let page = html(&comparison()).unwrap();
+    let page = comparison_html(&comparison()).unwrap();
     assert_eq!(page.matches("<section class=\"panel forest\">").count(), 3);
     assert!(page.contains("class=\"line lower-bound\"") && page.contains("Beyond the axis: <bdi>oracle 97.0</bdi>"));
     // The interval of one difference and of one swap excludes zero.
@@ -322,7 +337,12 @@ fn every_format_accepts_a_comparison_without_walks() {
     comparison.rows.clear();
     comparison.swaps.clear();
     comparison.sets.clear();
-    for text in [markdown(&comparison), latex(&comparison), screen(&comparison), html(&comparison).unwrap()] {
+    for text in [
+        markdown_tables(&comparison),
+        latex_table(&comparison),
+        screen_text(&comparison),
+        comparison_html(&comparison).unwrap(),
+    ] {
         assert!(text.contains("501 items"));
     }
 }
@@ -335,21 +355,21 @@ fn wild_numbers_stay_on_the_page() {
             (estimate.low, estimate.high) = (f64::MIN, f64::MAX);
         }
     }
-    assert_well_formed(&html(&comparison).unwrap());
-    assert!(screen(&comparison).lines().all(|line| line.len() < 400));
+    assert_well_formed(&comparison_html(&comparison).unwrap());
+    assert!(screen_text(&comparison).lines().all(|line| line.len() < 400));
 }
 
 #[test]
 fn every_format_shows_effort_and_problems_of_walks_by_a_language_model() {
     let comparison = with_tools("some/model");
-    let shown = screen(&comparison);
+    let shown = screen_text(&comparison);
     let (_, took) = shown.split_once("what a walk took").unwrap();
     insta::assert_snapshot!("took", took.split("original (").next().unwrap());
-    let page = html(&comparison).unwrap();
+    let page = comparison_html(&comparison).unwrap();
     assert_well_formed(&page);
-    for told in [&page, &markdown(&comparison)] {
+    for told in [&page, &markdown_tables(&comparison)] {
         assert!(told.contains("What a walk by a language model took") && told.contains("6400.0"), "{told}");
         assert!(told.contains("ended by a limit") && told.contains("104"), "{told}");
     }
-    assert!(!markdown(&super::tests::comparison()).contains("language model"));
+    assert!(!markdown_tables(&super::tests::comparison()).contains("language model"));
 }

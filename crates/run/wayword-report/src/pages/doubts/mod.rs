@@ -3,28 +3,28 @@
 #[cfg(test)]
 mod tests;
 
-use super::{broken, replace, templates};
+use super::{load_templates, replace_page, template_error};
 use minijinja::{Value, context};
 use serde::Serialize;
 use std::{collections::BTreeMap, path::Path};
 use wayword_core::{
-    Cause, Doubt, Grade,
-    doubt::{overlap, parts},
+    DoubtCause, DoubtGrade, TextDoubt,
+    doubt::{spans_overlap, split_at_doubts},
 };
-use wayword_language::text::pieces;
+use wayword_language::text::split_blanks;
 use wayword_run::{
     check::{CheckReport, DoubtedText},
-    error::Error,
+    error::CommandError,
 };
 
 /// The version of the file.
-const VERSION: u32 = 1;
+const FORMAT_VERSION: u32 = 1;
 /// Most texts on the page. The file has all.
 const MOST_SHOWN: usize = 1000;
 
 /// Texts with their doubts, as the file has them.
 #[derive(Debug, Serialize)]
-pub struct Highlights {
+pub struct DoubtHighlights {
     format: &'static str,
     version: u32,
     /// The evidence that the texts were checked against.
@@ -32,14 +32,14 @@ pub struct Highlights {
     /// Number of texts by world, open or closed.
     worlds: BTreeMap<&'static str, usize>,
     /// How much is doubted.
-    pub summary: Summary,
+    pub summary: DoubtSummary,
     /// The texts, in the order of their file.
     pub texts: Vec<DoubtedText>,
 }
 
 /// How much is doubted.
 #[derive(Debug, Default, Serialize)]
-pub struct Summary {
+pub struct DoubtSummary {
     /// Texts.
     pub texts: usize,
     /// Texts with a doubt.
@@ -49,14 +49,14 @@ pub struct Summary {
     /// Words of all texts.
     pub words: usize,
     /// By grade.
-    pub grades: BTreeMap<&'static str, Tally>,
+    pub grades: BTreeMap<&'static str, DoubtTally>,
     /// By cause.
-    pub causes: BTreeMap<&'static str, Tally>,
+    pub causes: BTreeMap<&'static str, DoubtTally>,
 }
 
 /// Doubts of one kind.
 #[derive(Debug, Default, Clone, Copy, PartialEq, Eq, Serialize)]
-pub struct Tally {
+pub struct DoubtTally {
     /// Texts that have one.
     pub texts: usize,
     /// Doubts.
@@ -65,12 +65,12 @@ pub struct Tally {
     pub words: usize,
 }
 
-impl Summary {
+impl DoubtSummary {
     fn of_texts(texts: &[DoubtedText]) -> Self {
-        let tally = |is: &dyn Fn(&Doubt) -> bool| {
-            let mut tally = Tally::default();
+        let tally = |is: &dyn Fn(&TextDoubt) -> bool| {
+            let mut tally = DoubtTally::default();
             for text in texts {
-                let doubts: Vec<&Doubt> = text.doubts.iter().filter(|doubt| is(doubt)).collect();
+                let doubts: Vec<&TextDoubt> = text.doubts.iter().filter(|doubt| is(doubt)).collect();
                 tally.texts += usize::from(!doubts.is_empty());
                 tally.doubts += doubts.len();
                 let spans = doubts.iter().map(|doubt| words_in(&text.text, doubt.span));
@@ -78,13 +78,13 @@ impl Summary {
             }
             tally
         };
-        let grades = Grade::ALL.map(|grade| (grade.name(), tally(&|doubt| doubt.grade == grade)));
-        let causes = Cause::ALL.map(|cause| (cause.name(), tally(&|doubt| doubt.cause == cause)));
+        let grades = DoubtGrade::ALL.map(|grade| (grade.name(), tally(&|doubt| doubt.grade == grade)));
+        let causes = DoubtCause::ALL.map(|cause| (cause.name(), tally(&|doubt| doubt.cause == cause)));
         Self {
             texts: texts.len(),
             doubted: texts.iter().filter(|text| !text.doubts.is_empty()).count(),
             unfollowed: texts.iter().filter(|text| text.unfollowed.is_some()).count(),
-            words: texts.iter().map(|text| pieces(&text.text).count()).sum(),
+            words: texts.iter().map(|text| split_blanks(&text.text).count()).sum(),
             grades: grades.into(),
             causes: causes.into(),
         }
@@ -92,28 +92,28 @@ impl Summary {
 
     /// Number of words with a doubt of this grade.
     #[must_use]
-    pub fn of(&self, grade: Grade) -> usize {
+    pub fn words_of_grade(&self, grade: DoubtGrade) -> usize {
         self.grades.get(grade.name()).map_or(0, |tally| tally.words)
     }
 }
 
 /// How many words of a text lie in a byte range, whole or in part.
 fn words_in(text: &str, span: [usize; 2]) -> usize {
-    pieces(text).filter(|place| overlap(*place, span)).count()
+    split_blanks(text).filter(|place| spans_overlap(*place, span)).count()
 }
 
-impl Highlights {
+impl DoubtHighlights {
     /// Collects the doubts of a check's report; only those of texts of one style, if it is named.
     #[must_use]
-    pub fn of(report: CheckReport, style: Option<&str>) -> Self {
+    pub fn from_report(report: CheckReport, style: Option<&str>) -> Self {
         let CheckReport { checked_against, mut doubted, .. } = report;
         doubted.retain(|text| style.is_none_or(|style| text.style.as_deref() == Some(style)));
         let mut worlds = BTreeMap::new();
         for text in &doubted {
             *worlds.entry(text.world).or_default() += 1;
         }
-        let summary = Summary::of_texts(&doubted);
-        Self { format: "wayword-doubts", version: VERSION, checked_against, worlds, summary, texts: doubted }
+        let summary = DoubtSummary::of_texts(&doubted);
+        Self { format: "wayword-doubts", version: FORMAT_VERSION, checked_against, worlds, summary, texts: doubted }
     }
 }
 
@@ -121,11 +121,11 @@ impl Highlights {
 ///
 /// # Errors
 /// When it cannot be written.
-pub fn write_json(out: &Path, highlights: &Highlights) -> Result<(), Error> {
+pub fn write_json(out: &Path, highlights: &DoubtHighlights) -> Result<(), CommandError> {
     let text = serde_json::to_string_pretty(highlights);
     let text =
-        text.map_err(|error| Error::usage(format!("the file cannot be made: {error}"), "report this as a bug"))?;
-    replace(out, |take| {
+        text.map_err(|error| CommandError::usage(format!("the file cannot be made: {error}"), "report this as a bug"))?;
+    replace_page(out, |take| {
         take(&text)?;
         take("\n")
     })
@@ -135,54 +135,54 @@ pub fn write_json(out: &Path, highlights: &Highlights) -> Result<(), Error> {
 ///
 /// # Errors
 /// When it cannot be written.
-pub fn write_page(out: &Path, highlights: &Highlights) -> Result<(), Error> {
-    let page = html(highlights)?;
-    replace(out, |take| take(&page))
+pub fn write_page(out: &Path, highlights: &DoubtHighlights) -> Result<(), CommandError> {
+    let page = highlights_html(highlights)?;
+    replace_page(out, |take| take(&page))
 }
 
 /// The page as HTML.
 ///
 /// # Errors
 /// When it cannot be drawn, which is a bug.
-fn html(highlights: &Highlights) -> Result<String, Error> {
-    let Highlights { checked_against, summary, texts, .. } = highlights;
-    let told = |grade: Grade| (grade.name(), grade.told());
-    let tallies = |names: &[(&str, &str)], of: &BTreeMap<&str, Tally>| -> Vec<Value> {
+fn highlights_html(highlights: &DoubtHighlights) -> Result<String, CommandError> {
+    let DoubtHighlights { checked_against, summary, texts, .. } = highlights;
+    let told = |grade: DoubtGrade| (grade.name(), grade.reader_label());
+    let tallies = |names: &[(&str, &str)], of: &BTreeMap<&str, DoubtTally>| -> Vec<Value> {
         let row = |(name, told): &(&str, &str)| {
             let tally = of.get(name).copied().unwrap_or_default();
-            context! { name, told, share => share(tally.words, summary.words), ..Value::from_serialize(tally) }
+            context! { name, told, share => share_text(tally.words, summary.words), ..Value::from_serialize(tally) }
         };
         names.iter().map(row).collect()
     };
-    let causes = Cause::ALL.map(|cause| (cause.name(), told_of(cause)));
+    let causes = DoubtCause::ALL.map(|cause| (cause.name(), describe_cause(cause)));
     let view = context! {
         checked_against,
         summary => Value::from_serialize(summary),
-        grades => tallies(&Grade::ALL.map(told), &summary.grades),
+        grades => tallies(&DoubtGrade::ALL.map(told), &summary.grades),
         causes => tallies(&causes, &summary.causes),
         texts => texts.iter().take(MOST_SHOWN).map(text_view).collect::<Vec<_>>(),
         left_out => texts.len().saturating_sub(MOST_SHOWN),
     };
-    let templates = templates().map_err(broken)?;
-    templates.get_template("doubts.html").and_then(|page| page.render(view)).map_err(broken)
+    let templates = load_templates().map_err(template_error)?;
+    templates.get_template("doubts.html").and_then(|page| page.render(view)).map_err(template_error)
 }
 
 /// A cause of doubts, explained to readers.
-fn told_of(cause: Cause) -> &'static str {
+fn describe_cause(cause: DoubtCause) -> &'static str {
     match cause {
-        Cause::Wrong => "a check found them wrong",
-        Cause::Change => "other words would fit the path better",
-        Cause::Ambiguous => "they may mean several places or objects",
-        Cause::Unverified => "no evidence decides about them",
+        DoubtCause::Wrong => "a check found them wrong",
+        DoubtCause::Change => "other words would fit the path better",
+        DoubtCause::Ambiguous => "they may mean several places or objects",
+        DoubtCause::Unverified => "no evidence decides about them",
     }
 }
 
-fn share(part: usize, all: usize) -> String {
+fn share_text(part: usize, all: usize) -> String {
     format!("{:.1} %", 100.0 * part as f64 / all.max(1) as f64)
 }
 
 fn text_view(text: &DoubtedText) -> Value {
-    let runs = parts(&text.text, &text.doubts, |doubt| doubt.span);
+    let runs = split_at_doubts(&text.text, &text.doubts, |doubt| doubt.span);
     let mut number = 0;
     let parts: Vec<Value> = runs
         .into_iter()
@@ -191,7 +191,7 @@ fn text_view(text: &DoubtedText) -> Value {
             let view = doubt.map(|doubt| {
                 let alternatives: Vec<Option<&str>> =
                     doubt.alternatives.iter().map(|one| one.words.as_deref()).collect();
-                let (grade, told) = (doubt.grade.name(), doubt.grade.told());
+                let (grade, told) = (doubt.grade.name(), doubt.grade.reader_label());
                 context! { number, grade, told, reason => doubt.reason, alternatives }
             });
             context! { words, doubt => view }

@@ -1,15 +1,21 @@
 //! Tests of the page and the counts of doubts.
 
 use super::*;
-use wayword_core::{Alternative, Verdict};
+use wayword_core::{DoubtAlternative, Verdict};
 
-fn doubt(span: [usize; 2], grade: Grade, alternatives: &[Option<&str>]) -> Doubt {
-    let alternative = |words: &Option<&str>| Alternative { words: words.map(str::to_owned), gain: None };
+fn doubt(span: [usize; 2], grade: DoubtGrade, alternatives: &[Option<&str>]) -> TextDoubt {
+    let alternative = |words: &Option<&str>| DoubtAlternative { words: words.map(str::to_owned), gain: None };
     let alternatives = alternatives.iter().map(alternative).collect();
-    Doubt { span, grade, cause: Cause::Change, reason: "the path may <b>not</b> turn here".into(), alternatives }
+    TextDoubt {
+        span,
+        grade,
+        cause: DoubtCause::Change,
+        reason: "the path may <b>not</b> turn here".into(),
+        alternatives,
+    }
 }
 
-fn highlights(text: &str, doubts: Vec<Doubt>) -> Highlights {
+fn highlights(text: &str, doubts: Vec<TextDoubt>) -> DoubtHighlights {
     let text = DoubtedText {
         path: "7_<img src=x>".into(),
         style: Some("r2r".into()),
@@ -19,7 +25,7 @@ fn highlights(text: &str, doubts: Vec<Doubt>) -> Highlights {
         unfollowed: None,
         doubts,
     };
-    Highlights::of(CheckReport { doubted: vec![text], ..CheckReport::default() }, None)
+    DoubtHighlights::from_report(CheckReport { doubted: vec![text], ..CheckReport::default() }, None)
 }
 
 const TEXT: &str = "Turn left & walk past the \u{201c}Türe\u{201d}.";
@@ -27,10 +33,10 @@ const TEXT: &str = "Turn left & walk past the \u{201c}Türe\u{201d}.";
 #[test]
 fn words_are_marked_with_their_alternatives_below() {
     let doubts = vec![
-        doubt([0, 9], Grade::Likely, &[Some("Turn right"), None]),
-        doubt([12, 16], Grade::Uncertain, &[Some("<script>alert(1)</script>")]),
+        doubt([0, 9], DoubtGrade::Likely, &[Some("Turn right"), None]),
+        doubt([12, 16], DoubtGrade::Uncertain, &[Some("<script>alert(1)</script>")]),
     ];
-    let page = html(&highlights(TEXT, doubts)).unwrap();
+    let page = highlights_html(&highlights(TEXT, doubts)).unwrap();
     assert!(page.contains("<mark class=\"likely\" id=\"w1-1\">Turn left</mark>"), "{page}");
     assert!(page.contains("aria-label=\"doubt 1, likely wrong\""), "{page}");
     assert!(page.contains("<q><bdi>Turn right</bdi></q>") && page.contains("leave it out"), "{page}");
@@ -38,8 +44,8 @@ fn words_are_marked_with_their_alternatives_below() {
 
 #[test]
 fn html_escapes_texts_from_files() {
-    let doubts = vec![doubt([12, 16], Grade::Uncertain, &[Some("<script>alert(1)</script>")])];
-    let page = html(&highlights(TEXT, doubts)).unwrap();
+    let doubts = vec![doubt([12, 16], DoubtGrade::Uncertain, &[Some("<script>alert(1)</script>")])];
+    let page = highlights_html(&highlights(TEXT, doubts)).unwrap();
     for raw in ["<script", "<img", "may <b>", "left & "] {
         assert!(!page.contains(raw), "{raw}");
     }
@@ -48,18 +54,18 @@ fn html_escapes_texts_from_files() {
 
 #[test]
 fn texts_words_and_doubts_are_counted() {
-    let doubts = vec![doubt([0, 9], Grade::Likely, &[]), doubt([24, 32], Grade::Uncertain, &[])];
-    let Highlights { summary, .. } = highlights(TEXT, doubts);
+    let doubts = vec![doubt([0, 9], DoubtGrade::Likely, &[]), doubt([24, 32], DoubtGrade::Uncertain, &[])];
+    let DoubtHighlights { summary, .. } = highlights(TEXT, doubts);
     assert_eq!((summary.texts, summary.doubted, summary.unfollowed, summary.words), (1, 1, 0, 7));
-    assert_eq!((summary.of(Grade::Likely), summary.of(Grade::Uncertain)), (2, 2));
-    assert_eq!(summary.causes["change"], Tally { texts: 1, doubts: 2, words: 4 });
+    assert_eq!((summary.words_of_grade(DoubtGrade::Likely), summary.words_of_grade(DoubtGrade::Uncertain)), (2, 2));
+    assert_eq!(summary.causes["change"], DoubtTally { texts: 1, doubts: 2, words: 4 });
 }
 
 #[test]
 fn only_texts_of_the_style_are_taken() {
     let report = |style: &str| {
-        let Highlights { texts, .. } = highlights(TEXT, Vec::new());
-        Highlights::of(CheckReport { doubted: texts, ..CheckReport::default() }, Some(style))
+        let DoubtHighlights { texts, .. } = highlights(TEXT, Vec::new());
+        DoubtHighlights::from_report(CheckReport { doubted: texts, ..CheckReport::default() }, Some(style))
     };
     assert_eq!((report("r2r").texts.len(), report("reverie").texts.len()), (1, 0));
 }

@@ -1,46 +1,47 @@
 //! Chooses the walks that are shown: in turn from each agent and set, a success and a failure, so that rare ones are shown too.
 
 use std::collections::BTreeMap;
-use wayword_navigation::walk::Walk;
+use wayword_navigation::walk::AgentWalkRecord;
 
 /// Most groups (agent, set, success or failure) from which walks are shown.
 const MOST_GROUPS: usize = 1_000;
 
 /// A sample of walks, taken while they are read. It keeps the positions of walks, not the walks.
 #[derive(Debug, Clone)]
-pub struct Sample<T> {
+pub struct WalkSample<T> {
     most: usize,
-    groups: BTreeMap<Group, Kept<T>>,
+    groups: BTreeMap<WalkGroupKey, WalkGroup<T>>,
     /// Number of walks that were offered.
     offered: usize,
 }
 
 /// One walk of each item of a group, because a walk of another item shows more than a second one of the same item.
 #[derive(Debug, Clone)]
-struct Kept<T> {
+struct WalkGroup<T> {
     last_item: String,
     places: Vec<T>,
 }
 
 /// Walks that are alike: by swapped texts, agent, set, success.
-type Group = (bool, String, String, bool);
+type WalkGroupKey = (bool, String, String, bool);
 
-impl<T: Ord> Sample<T> {
+impl<T: Ord> WalkSample<T> {
     /// A sample of at most `most` walks.
     #[must_use]
-    pub fn of(most: usize) -> Self {
+    pub fn with_limit(most: usize) -> Self {
         Self { most, groups: BTreeMap::new(), offered: 0 }
     }
 
     /// Offers a walk to the sample.
-    pub fn offer(&mut self, walk: &Walk, is_success: bool, place: T) {
+    pub fn offer_walk(&mut self, walk: &AgentWalkRecord, is_success: bool, place: T) {
         self.offered += 1;
         // The sets of walks by swapped texts are named SET~SWAP.
         let group = (walk.set.contains('~'), walk.agent.clone(), walk.set.clone(), is_success);
         if self.groups.len() >= MOST_GROUPS && !self.groups.contains_key(&group) {
             return;
         }
-        let kept = self.groups.entry(group).or_insert_with(|| Kept { last_item: String::new(), places: Vec::new() });
+        let kept =
+            self.groups.entry(group).or_insert_with(|| WalkGroup { last_item: String::new(), places: Vec::new() });
         if kept.places.len() < self.most && kept.last_item != walk.item {
             kept.places.push(place);
             kept.last_item.clone_from(&walk.item);
@@ -49,7 +50,7 @@ impl<T: Ord> Sample<T> {
 
     /// The positions of the chosen walks in their order, and the number of walks that are left out.
     #[must_use]
-    pub fn chosen(self) -> (Vec<T>, usize) {
+    pub fn into_chosen(self) -> (Vec<T>, usize) {
         let mut groups: Vec<_> = self.groups.into_values().map(|kept| kept.places.into_iter()).collect();
         let mut chosen = Vec::new();
         loop {
@@ -70,10 +71,10 @@ impl<T: Ord> Sample<T> {
 mod tests {
     use super::*;
     use wayword_core::SceneId;
-    use wayword_navigation::walk::End;
+    use wayword_navigation::walk::WalkEnd;
 
-    fn walk(agent: &str, set: &str, item: usize) -> Walk {
-        Walk {
+    fn walk(agent: &str, set: &str, item: usize) -> AgentWalkRecord {
+        AgentWalkRecord {
             agent: agent.into(),
             set: set.into(),
             item: item.to_string(),
@@ -82,7 +83,7 @@ mod tests {
             scene: SceneId::new("s").unwrap(),
             directions: None,
             steps: vec![],
-            end: End::Stopped,
+            end: WalkEnd::Stopped,
             object: None,
             effort: None,
         }
@@ -90,30 +91,30 @@ mod tests {
 
     #[test]
     fn sample_includes_rare_outcomes() {
-        let mut sample = Sample::of(4);
+        let mut sample = WalkSample::with_limit(4);
         for at in 0..50 {
-            sample.offer(&walk("a", "original", at), at == 40, at);
-            sample.offer(&walk("b", "original", at), false, 100 + at);
+            sample.offer_walk(&walk("a", "original", at), at == 40, at);
+            sample.offer_walk(&walk("b", "original", at), false, 100 + at);
         }
-        assert_eq!(sample.chosen(), (vec![0, 1, 40, 100], 96));
+        assert_eq!(sample.into_chosen(), (vec![0, 1, 40, 100], 96));
     }
 
     #[test]
     fn an_item_is_shown_once_for_each_agent_and_outcome() {
-        let mut sample = Sample::of(9);
+        let mut sample = WalkSample::with_limit(9);
         for at in 0..6 {
-            sample.offer(&walk("a", "original", at / 3), at == 2, at);
+            sample.offer_walk(&walk("a", "original", at / 3), at == 2, at);
         }
-        assert_eq!(sample.chosen(), (vec![0, 2, 3], 3));
+        assert_eq!(sample.into_chosen(), (vec![0, 2, 3], 3));
     }
 
     #[test]
     fn sample_puts_swapped_texts_last_and_can_be_empty() {
-        let mut sample = Sample::of(1);
-        sample.offer(&walk("a", "original~directions", 1), true, 1);
-        sample.offer(&walk("b", "original", 1), true, 2);
-        assert_eq!(sample.clone().chosen(), (vec![2], 1));
+        let mut sample = WalkSample::with_limit(1);
+        sample.offer_walk(&walk("a", "original~directions", 1), true, 1);
+        sample.offer_walk(&walk("b", "original", 1), true, 2);
+        assert_eq!(sample.clone().into_chosen(), (vec![2], 1));
         sample.most = 0;
-        assert_eq!(sample.chosen(), (vec![], 2));
+        assert_eq!(sample.into_chosen(), (vec![], 2));
     }
 }

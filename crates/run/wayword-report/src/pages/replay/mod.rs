@@ -3,21 +3,21 @@
 mod choose;
 mod steps;
 
-pub use choose::Sample;
+pub use choose::WalkSample;
 
 use super::{
-    map::{MapView, RADIUS, Trail},
+    map::{BADGE_RADIUS, MapTrail, MapView},
     places::frame_anchor,
 };
 use serde::Serialize;
-use steps::{StepView, steps};
+use steps::{StepView, step_views};
 use wayword_core::{DVec3, ViewpointGraph, ViewpointId};
-use wayword_metrics::{Outcome, Rule, Score};
+use wayword_metrics::{SuccessOutcome, TrajectoryScore, TrajectorySuccessRule};
 use wayword_navigation::{
-    comparison::UNREAD,
-    walk::{Choice, Effort, End, Walk},
+    comparison::UNREAD_SET_NAME,
+    walk::{AgentWalkRecord, StepChoice, WalkEffort, WalkEnd},
 };
-use wayword_run::{count::count, run_folder::Map};
+use wayword_run::{count::count_phrase, run_folder::PathMap};
 
 /// Most steps of a walk that are shown.
 const MOST_STEPS: usize = 100;
@@ -28,22 +28,22 @@ const MOST_TEXT_CHARS: usize = 2_000;
 
 /// A walk, with the path that it is compared with.
 #[derive(Debug, Clone, Copy)]
-pub struct Replay<'a> {
+pub struct WalkReplay<'a> {
     /// The walk.
-    pub walk: &'a Walk,
+    pub walk: &'a AgentWalkRecord,
     /// The scene's graph.
     pub graph: &'a ViewpointGraph,
     /// The annotated path, from start to goal.
     pub reference: &'a [ViewpointId],
     /// How well the walk did.
-    pub score: &'a Score,
+    pub score: &'a TrajectoryScore,
     /// The rule of success.
-    pub rule: Rule,
+    pub rule: TrajectorySuccessRule,
 }
 
 /// A line of the list of walks.
 #[derive(Debug, Serialize)]
-pub(super) struct Entry {
+pub(super) struct ReplayEntry {
     anchor: String,
     title: String,
     /// The outcome: class and words of its mark.
@@ -51,14 +51,14 @@ pub(super) struct Entry {
     sign: &'static str,
 }
 
-impl Entry {
+impl ReplayEntry {
     /// The line for a walk; `number` from 1.
-    pub(super) fn new(number: usize, replay: &Replay<'_>) -> Self {
+    pub(super) fn new(number: usize, replay: &WalkReplay<'_>) -> Self {
         let walk = replay.walk;
-        let (class, sign) = mark(replay.outcome());
-        let set = Some(&walk.set).filter(|set| *set != UNREAD);
+        let (class, sign) = outcome_mark(replay.outcome());
+        let set = Some(&walk.set).filter(|set| *set != UNREAD_SET_NAME);
         let names: Vec<String> =
-            [Some(&walk.agent), set, Some(&walk.item)].into_iter().flatten().map(|name| short(name)).collect();
+            [Some(&walk.agent), set, Some(&walk.item)].into_iter().flatten().map(|name| cut_name(name)).collect();
         let names = names.join(", ");
         // Anchors are numbers, because names come from files.
         Self { anchor: format!("r{number}"), title: format!("{names} (text {})", walk.text_index + 1), class, sign }
@@ -71,7 +71,7 @@ pub(super) struct ReplayView {
     /// From 1.
     number: usize,
     #[serde(flatten)]
-    entry: Entry,
+    entry: ReplayEntry,
     meta: Vec<String>,
     text: String,
     reads_nothing: bool,
@@ -91,23 +91,23 @@ pub(super) struct ReplayView {
 
 impl ReplayView {
     /// A walk; `number` from 1.
-    pub(super) fn new(number: usize, replay: &Replay<'_>) -> Self {
+    pub(super) fn new(number: usize, replay: &WalkReplay<'_>) -> Self {
         let walk = replay.walk;
-        let entry = Entry::new(number, replay);
+        let entry = ReplayEntry::new(number, replay);
         let shown = walk.steps.len().min(MOST_STEPS);
         let phrases = walk.directions.as_ref().map_or(&[][..], |directions| &directions.phrases);
-        let (steps, score_range) = steps(walk, shown, |step| frame_anchor(&entry.anchor, step + 1));
+        let (steps, score_range) = step_views(walk, shown, |step| frame_anchor(&entry.anchor, step + 1));
         Self {
             number,
             entry,
-            meta: replay.meta(),
-            text: bounded(&walk.text),
-            reads_nothing: walk.set == UNREAD,
-            phrases: phrases.iter().take(MOST_PHRASES).map(|phrase| bounded(phrase)).collect(),
+            meta: replay.outcome_words(),
+            text: cut_text(&walk.text),
+            reads_nothing: walk.set == UNREAD_SET_NAME,
+            phrases: phrases.iter().take(MOST_PHRASES).map(|phrase| cut_text(phrase)).collect(),
             phrases_left_out: phrases.len().saturating_sub(MOST_PHRASES),
-            activity: walk.directions.as_ref().map(|directions| bounded(&directions.activity)),
-            map: replay.map(shown),
-            map_radius: RADIUS,
+            activity: walk.directions.as_ref().map(|directions| cut_text(&directions.activity)),
+            map: replay.draw_map(shown),
+            map_radius: BADGE_RADIUS,
             map_stop: "Step",
             map_words: format!("Map of the walk from step 1 to step {shown}, north up, with the annotated path"),
             steps,
@@ -117,25 +117,25 @@ impl ReplayView {
     }
 }
 
-impl Replay<'_> {
-    fn outcome(&self) -> Option<Outcome> {
+impl WalkReplay<'_> {
+    fn outcome(&self) -> Option<SuccessOutcome> {
         match self.rule {
-            Rule::Distance => Some(self.score.distance),
-            Rule::Visible => self.score.visible,
+            TrajectorySuccessRule::Distance => Some(self.score.distance),
+            TrajectorySuccessRule::Visible => self.score.visible,
         }
     }
 
     /// Scene, length, end and outcome of the walk, in words.
-    fn meta(&self) -> Vec<String> {
+    fn outcome_words(&self) -> Vec<String> {
         let (walk, score) = (self.walk, self.score);
         let end = match walk.end {
-            End::Stopped => "the agent stopped",
-            End::Cap => "it reached the limit of its steps",
-            End::DeadEnd => "it reached a dead end",
-            End::Calls => "it made the most calls that it may",
-            End::Money => "its model cost what a walk may cost",
-            End::Circles => "it walked in circles",
-            End::NoUse => "its model gave no reply of use",
+            WalkEnd::Stopped => "the agent stopped",
+            WalkEnd::Cap => "it reached the limit of its steps",
+            WalkEnd::DeadEnd => "it reached a dead end",
+            WalkEnd::Calls => "it made the most calls that it may",
+            WalkEnd::Money => "its model cost what a walk may cost",
+            WalkEnd::Circles => "it walked in circles",
+            WalkEnd::NoUse => "its model gave no reply of use",
         };
         let off = score.navigation_error_m.map_or_else(
             || "its end has no connection to the goal".to_owned(),
@@ -143,7 +143,7 @@ impl Replay<'_> {
         );
         let mut meta = vec![
             format!("Scene {}", walk.scene),
-            count(walk.steps.len(), "step"),
+            count_phrase(walk.steps.len(), "step"),
             format!("{:.1} m", score.length_m),
             off,
             end.to_owned(),
@@ -163,23 +163,23 @@ impl Replay<'_> {
             };
             meta.push(format!("names object {object} as the target{judged}"));
         }
-        meta.extend(walk.effort.as_ref().map(took));
+        meta.extend(walk.effort.as_ref().map(effort_words));
         meta
     }
 
-    fn map(&self, shown: usize) -> Option<MapView> {
+    fn draw_map(&self, shown: usize) -> Option<MapView> {
         let places = |ids: &mut dyn Iterator<Item = &ViewpointId>| -> Option<Vec<DVec3>> {
-            ids.map(|id| self.graph.position(id)).collect()
+            ids.map(|id| self.graph.position_of(id)).collect()
         };
         let steps = &self.walk.steps[..shown];
         let stops = places(&mut steps.iter().map(|step| &step.viewpoint))?;
         let annotated = places(&mut self.reference.iter().take(MOST_STEPS))?;
-        let backs: Vec<bool> = steps.iter().map(|step| step.choice == Choice::Back).collect();
+        let backs: Vec<bool> = steps.iter().map(|step| step.choice == StepChoice::Back).collect();
         let around: Vec<DVec3> = stops.iter().chain(&annotated).copied().collect();
         let start = steps.first()?.heading_rad;
-        MapView::draw(
-            &Map::near(&around, self.graph),
-            &Trail {
+        MapView::draw_trail(
+            &PathMap::near_stops(&around, self.graph),
+            &MapTrail {
                 stops: &stops,
                 start,
                 backs: &backs,
@@ -192,13 +192,13 @@ impl Replay<'_> {
 }
 
 /// The effort of a language model in a walk, in words.
-fn took(effort: &Effort) -> String {
-    let Effort { calls, tokens_in, tokens_out, usd, seconds, .. } = effort;
+fn effort_words(effort: &WalkEffort) -> String {
+    let WalkEffort { calls, tokens_in, tokens_out, usd, seconds, .. } = effort;
     let usd = usd.filter(|usd| *usd > 0.0).map_or_else(String::new, |usd| format!(", ${usd:.4}"));
-    format!("{}, {tokens_in} tokens in, {tokens_out} out{usd}, {seconds:.1} s", count(*calls, "call"))
+    format!("{}, {tokens_in} tokens in, {tokens_out} out{usd}, {seconds:.1} s", count_phrase(*calls, "call"))
 }
 
-fn mark(outcome: Option<Outcome>) -> (&'static str, &'static str) {
+fn outcome_mark(outcome: Option<SuccessOutcome>) -> (&'static str, &'static str) {
     match outcome {
         Some(outcome) if outcome.success => ("good", "✓ success"),
         Some(_) => ("bad", "✗ no success"),
@@ -207,12 +207,12 @@ fn mark(outcome: Option<Outcome>) -> (&'static str, &'static str) {
 }
 
 /// A text, cut so that the page stays small enough for a phone.
-fn bounded(text: &str) -> String {
+fn cut_text(text: &str) -> String {
     text.chars().take(MOST_TEXT_CHARS).collect()
 }
 
 /// A name, cut for headings.
-fn short(name: &str) -> String {
+fn cut_name(name: &str) -> String {
     name.chars().take(80).collect()
 }
 

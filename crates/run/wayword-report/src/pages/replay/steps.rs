@@ -1,10 +1,10 @@
 //! The steps of a replayed walk: the agent's place, the scores of its views, and its choice.
 
-use crate::pages::palette::{Colour, colour};
+use crate::pages::palette::{FrameColour, frame_colour};
 use serde::Serialize;
-use wayword_core::Compass;
-use wayword_navigation::walk::{Choice, Scored, Step, Told, Walk};
-use wayword_run::count::count;
+use wayword_core::CompassPoint;
+use wayword_navigation::walk::{AgentStep, AgentWalkRecord, StepChoice, StepViewScores, SurroundingsSummary};
+use wayword_run::count::count_phrase;
 
 /// Longest phrase in a cell, characters.
 const MOST_PHRASE_CHARS: usize = 120;
@@ -20,14 +20,14 @@ pub(super) struct StepView {
     anchor: String,
     /// The first step (from 1) at this viewpoint, if this one returns to it. The map shows its number.
     again: Option<usize>,
-    colour: Colour,
+    colour: FrameColour,
     heading: String,
     /// The current phrase; `None` if the agent does not look by phrases.
     phrase: Option<String>,
     /// The room and things that a reading agent was informed of; `None` for other agents.
     told: Option<String>,
     /// Empty if the agent does not look.
-    views: Vec<ViewView>,
+    views: Vec<ScoredViewView>,
     class: &'static str,
     then: String,
     /// The reason for the choice, in a model's own words.
@@ -36,17 +36,17 @@ pub(super) struct StepView {
 
 /// A view with its scores.
 #[derive(Debug, Serialize)]
-struct ViewView {
+struct ScoredViewView {
     direction: &'static str,
     is_chosen: bool,
     ways: usize,
-    phrase: Bar,
-    activity: Bar,
+    phrase: ScoreBar,
+    activity: ScoreBar,
 }
 
 /// A score with its bar.
 #[derive(Debug, Serialize)]
-struct Bar {
+struct ScoreBar {
     score: String,
     /// Length of the bar, per cent.
     long: u32,
@@ -54,51 +54,63 @@ struct Bar {
 
 /// The lowest and the highest score of a walk, between which bars are drawn.
 #[derive(Debug, Clone, Copy)]
-struct Range {
+struct ScoreRange {
     low: f32,
     high: f32,
 }
 
 /// The first `shown` steps of a walk, and the range of the bars.
-pub(super) fn steps(
-    walk: &Walk,
+pub(super) fn step_views(
+    walk: &AgentWalkRecord,
     shown: usize,
     anchor: impl Fn(usize) -> String,
 ) -> (Vec<StepView>, Option<(String, String)>) {
-    let range = Range::of(walk);
-    let step = |(at, step): (usize, &Step)| StepView {
+    let range = ScoreRange::from_walk(walk);
+    let step = |(at, step): (usize, &AgentStep)| StepView {
         number: at + 1,
         anchor: anchor(at),
         again: walk.steps[..at].iter().position(|other| other.viewpoint == step.viewpoint).map(|first| first + 1),
-        colour: colour(at, shown),
+        colour: frame_colour(at, shown),
         heading: format!("{:.0}°", step.heading_rad.deg()),
-        phrase: (!step.views.is_empty()).then(|| phrase(walk, step)),
-        told: step.told.as_ref().map(told),
-        views: step.views.iter().zip(Compass::ALL).enumerate().map(|(at, view)| look(step, at, view, range)).collect(),
+        phrase: (!step.views.is_empty()).then(|| phrase_words(walk, step)),
+        told: step.told.as_ref().map(report_words),
+        views: step
+            .views
+            .iter()
+            .zip(CompassPoint::ALL)
+            .enumerate()
+            .map(|(at, view)| look_view(step, at, view, range))
+            .collect(),
         class: match step.choice {
-            Choice::Onward(_) | Choice::Unseeing => "onward",
-            Choice::Back => "backward",
-            Choice::Stop => "stopped",
+            StepChoice::Onward(_) | StepChoice::Unseeing => "onward",
+            StepChoice::Back => "backward",
+            StepChoice::Stop => "stopped",
         },
-        then: then(step.choice),
+        then: choice_words(step.choice),
         reason: step.reason.as_ref().map(|reason| reason.chars().take(MOST_REASON_CHARS).collect()),
     };
     let views = walk.steps.iter().take(shown).enumerate().map(step).collect();
-    (views, range.map(|range| (number(range.low), number(range.high))))
+    (views, range.map(|range| (score_text(range.low), score_text(range.high))))
 }
 
-fn look(step: &Step, at: usize, (view, direction): (&Scored, Compass), range: Option<Range>) -> ViewView {
-    let bar = |score: f32| Bar { score: number(score), long: range.map_or(0, |range| range.long(score)) };
-    ViewView {
+fn look_view(
+    step: &AgentStep,
+    at: usize,
+    (view, direction): (&StepViewScores, CompassPoint),
+    range: Option<ScoreRange>,
+) -> ScoredViewView {
+    let bar =
+        |score: f32| ScoreBar { score: score_text(score), long: range.map_or(0, |range| range.bar_length(score)) };
+    ScoredViewView {
         direction: direction.word(),
-        is_chosen: step.choice == Choice::Onward(at),
+        is_chosen: step.choice == StepChoice::Onward(at),
         ways: view.ways,
         phrase: bar(view.phrase),
         activity: bar(view.activity),
     }
 }
 
-fn phrase(walk: &Walk, step: &Step) -> String {
+fn phrase_words(walk: &AgentWalkRecord, step: &AgentStep) -> String {
     let phrases = walk.directions.as_ref().map_or(&[][..], |directions| &directions.phrases);
     phrases.get(step.phrase).map_or_else(
         || "the activity alone".to_owned(),
@@ -106,27 +118,27 @@ fn phrase(walk: &Walk, step: &Step) -> String {
     )
 }
 
-fn told(told: &Told) -> String {
+fn report_words(told: &SurroundingsSummary) -> String {
     let room = match &told.room {
         Some(room) => format!("in room {}", room.chars().take(MOST_PHRASE_CHARS).collect::<String>()),
         None => "in a room without a name".to_owned(),
     };
-    format!("{room}, {} on, {}", count(told.ways, "way"), count(told.things, "thing"))
+    format!("{room}, {} on, {}", count_phrase(told.ways, "way"), count_phrase(told.things, "thing"))
 }
 
-fn then(choice: Choice) -> String {
+fn choice_words(choice: StepChoice) -> String {
     match choice {
-        Choice::Onward(view) => {
-            format!("goes on {}", Compass::ALL.get(view).map_or("through no view", |direction| direction.word()))
+        StepChoice::Onward(view) => {
+            format!("goes on {}", CompassPoint::ALL.get(view).map_or("through no view", |direction| direction.word()))
         }
-        Choice::Unseeing => "goes on".to_owned(),
-        Choice::Back => "goes back".to_owned(),
-        Choice::Stop => "stays here".to_owned(),
+        StepChoice::Unseeing => "goes on".to_owned(),
+        StepChoice::Back => "goes back".to_owned(),
+        StepChoice::Stop => "stays here".to_owned(),
     }
 }
 
-impl Range {
-    fn of(walk: &Walk) -> Option<Self> {
+impl ScoreRange {
+    fn from_walk(walk: &AgentWalkRecord) -> Option<Self> {
         let scores = walk.steps.iter().flat_map(|step| &step.views).flat_map(|view| [view.phrase, view.activity]);
         let with = |range: Option<Self>, score: f32| {
             let Self { low, high } = range.unwrap_or(Self { low: score, high: score });
@@ -135,7 +147,7 @@ impl Range {
         scores.filter(|score| score.is_finite()).fold(None, with)
     }
 
-    fn long(self, score: f32) -> u32 {
+    fn bar_length(self, score: f32) -> u32 {
         let (low, high) = (f64::from(self.low), f64::from(self.high));
         // If all scores are equal, a bar is either full or empty.
         let share = if high > low { (f64::from(score) - low) / (high - low) } else { f64::from(score) };
@@ -143,6 +155,6 @@ impl Range {
     }
 }
 
-fn number(score: f32) -> String {
+fn score_text(score: f32) -> String {
     if score.abs() < 1e4 { format!("{score:.2}") } else { format!("{score:.1e}") }
 }

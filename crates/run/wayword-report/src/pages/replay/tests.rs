@@ -1,12 +1,12 @@
 //! Tests of replays, with walks through a small invented town.
 
 use super::*;
-use crate::pages::templates;
+use crate::pages::load_templates;
 use wayword_core::{Heading, SceneId};
-use wayword_metrics::Grounding;
+use wayword_metrics::TargetGrounding;
 use wayword_navigation::{
-    directions::Directions,
-    walk::{Scored, Step, Told},
+    directions::SplitInstruction,
+    walk::{AgentStep, StepViewScores, SurroundingsSummary},
 };
 
 const SCRIPT: &str = "<script>alert('x')</script>";
@@ -21,17 +21,17 @@ fn id(name: &str) -> ViewpointId {
     ViewpointId::new(name).unwrap()
 }
 
-fn step(viewpoint: &str, deg: f64, best: Option<usize>, choice: Choice) -> Step {
-    let view = |at| Scored {
+fn step(viewpoint: &str, deg: f64, best: Option<usize>, choice: StepChoice) -> AgentStep {
+    let view = |at| StepViewScores {
         phrase: if best == Some(at) { 0.9 } else { 0.2 },
         activity: 0.1 * at as f32,
         ways: usize::from(at < 2),
     };
-    Step {
+    AgentStep {
         viewpoint: id(viewpoint),
         heading_rad: Heading::new(deg.to_radians()).unwrap(),
         views: if best.is_some() { (0..4).map(view).collect() } else { vec![] },
-        phrase: usize::from(choice == Choice::Stop),
+        phrase: usize::from(choice == StepChoice::Stop),
         told: None,
         choice,
         reason: None,
@@ -44,58 +44,65 @@ impl Town {
         let names = ["a", "b", "c", "d", "e", "f"];
         for (at, name) in names.into_iter().enumerate() {
             let place = DVec3::new(2.5 * (at % 3) as f64, 3.0 * (at / 3) as f64, 1.5);
-            graph.add(id(name), place, Some(1)).unwrap();
+            graph.add_viewpoint(id(name), place, Some(1)).unwrap();
         }
         for (one, other) in [("a", "b"), ("b", "c"), ("a", "d"), ("d", "e"), ("e", "f"), ("b", "e")] {
-            graph.join(&id(one), &id(other)).unwrap();
+            graph.join_viewpoints(&id(one), &id(other)).unwrap();
         }
         Self { graph, reference: ["a", "b", "e", "f"].map(id).into() }
     }
 
     /// A walk that enters a dead end, goes back, and continues.
-    pub(in crate::pages) fn walk(&self, agent: &str) -> Walk {
-        Walk {
+    pub(in crate::pages) fn walk(&self, agent: &str) -> AgentWalkRecord {
+        AgentWalkRecord {
             agent: agent.into(),
             set: "original".into(),
             item: "7_1".into(),
             text_index: 2,
             text: "Go past the sofa to the kitchen and wipe the sink.".into(),
             scene: SceneId::new("town").unwrap(),
-            directions: Some(Directions { phrases: vec!["go past the sofa".into()], activity: "wipe the sink".into() }),
+            directions: Some(SplitInstruction {
+                phrases: vec!["go past the sofa".into()],
+                activity: "wipe the sink".into(),
+            }),
             steps: vec![
-                step("a", 0.0, Some(1), Choice::Onward(1)),
-                step("b", 90.0, Some(1), Choice::Onward(1)),
-                step("c", 90.0, Some(3), Choice::Back),
-                step("b", 270.0, None, Choice::Onward(0)),
-                step("e", 0.0, Some(2), Choice::Stop),
+                step("a", 0.0, Some(1), StepChoice::Onward(1)),
+                step("b", 90.0, Some(1), StepChoice::Onward(1)),
+                step("c", 90.0, Some(3), StepChoice::Back),
+                step("b", 270.0, None, StepChoice::Onward(0)),
+                step("e", 0.0, Some(2), StepChoice::Stop),
             ],
-            end: End::Stopped,
+            end: WalkEnd::Stopped,
             object: None,
             effort: None,
         }
     }
 
-    pub(in crate::pages) fn score(&self) -> Score {
-        let outcome = Outcome { success: false, oracle_success: true, spl: 0.0, sdtw: 0.0 };
-        Score {
+    pub(in crate::pages) fn score(&self) -> TrajectoryScore {
+        let outcome = SuccessOutcome { success: false, oracle_success: true, spl: 0.0, sdtw: 0.0 };
+        TrajectoryScore {
             length_m: 10.5,
             navigation_error_m: Some(2.5),
             oracle_error_m: Some(2.5),
-            distance: Outcome { success: true, spl: 0.5, ..outcome },
+            distance: SuccessOutcome { success: true, spl: 0.5, ..outcome },
             visible: Some(outcome),
-            grounding: Some(Grounding { rgs: false, rgspl: 0.0 }),
+            grounding: Some(TargetGrounding { rgs: false, rgspl: 0.0 }),
             ndtw: 0.6,
             cls: 0.5,
         }
     }
 }
 
-pub(in crate::pages) fn replay<'a>(town: &'a Town, walk: &'a Walk, score: &'a Score) -> Replay<'a> {
-    Replay { walk, graph: &town.graph, reference: &town.reference, score, rule: Rule::Visible }
+pub(in crate::pages) fn replay<'a>(
+    town: &'a Town,
+    walk: &'a AgentWalkRecord,
+    score: &'a TrajectoryScore,
+) -> WalkReplay<'a> {
+    WalkReplay { walk, graph: &town.graph, reference: &town.reference, score, rule: TrajectorySuccessRule::Visible }
 }
 
-fn card(replay: &Replay<'_>) -> String {
-    let templates = templates().unwrap();
+fn card(replay: &WalkReplay<'_>) -> String {
+    let templates = load_templates().unwrap();
     let view = minijinja::Value::from_serialize(ReplayView::new(1, replay));
     templates.get_template("replay.html").unwrap().render(view).unwrap()
 }
@@ -123,10 +130,10 @@ fn success_goes_by_the_rule() {
     let town = Town::new();
     let (walk, score) = (town.walk("a"), town.score());
     let by_sight = replay(&town, &walk, &score);
-    let by_distance = Replay { rule: Rule::Distance, ..by_sight };
+    let by_distance = WalkReplay { rule: TrajectorySuccessRule::Distance, ..by_sight };
     assert!(card(&by_sight).contains("✗ no success") && card(&by_distance).contains("✓ success"));
-    let unknown = Score { visible: None, ..score };
-    assert!(card(&Replay { score: &unknown, ..by_sight }).contains("? not judged"));
+    let unknown = TrajectoryScore { visible: None, ..score };
+    assert!(card(&WalkReplay { score: &unknown, ..by_sight }).contains("? not judged"));
 }
 
 #[test]
@@ -136,7 +143,7 @@ fn card_escapes_texts_from_files() {
     for text in [&mut walk.set, &mut walk.item, &mut walk.text] {
         *text = format!("{SCRIPT}\" onload=\"alert(1)");
     }
-    walk.directions = Some(Directions { phrases: vec![SCRIPT.into()], activity: SCRIPT.into() });
+    walk.directions = Some(SplitInstruction { phrases: vec![SCRIPT.into()], activity: SCRIPT.into() });
     let score = town.score();
     let card = card(&replay(&town, &walk, &score));
     assert!(!card.contains("<script") && !card.contains("\" onload"));
@@ -148,7 +155,7 @@ fn hostile_walks_do_no_harm() {
     let town = Town::new();
     let score = town.score();
     let mut walk = town.walk("a");
-    walk.steps[0].choice = Choice::Onward(usize::MAX);
+    walk.steps[0].choice = StepChoice::Onward(usize::MAX);
     walk.steps[0].phrase = usize::MAX;
     walk.steps[1].views[0].phrase = f32::INFINITY;
     walk.steps[1].views[1].phrase = f32::NAN;
@@ -156,7 +163,7 @@ fn hostile_walks_do_no_harm() {
     walk.steps[2].views = vec![extra; 90];
     walk.steps[3].viewpoint = id("nowhere");
     walk.steps.extend(vec![walk.steps[4].clone(); 500]);
-    let card_of = |walk: &Walk| card(&replay(&town, walk, &score));
+    let card_of = |walk: &AgentWalkRecord| card(&replay(&town, walk, &score));
     let card = card_of(&walk);
     assert!(card.contains("make no map") && card.contains("405 more steps left out"));
     walk.steps.clear();
@@ -167,11 +174,11 @@ fn hostile_walks_do_no_harm() {
 fn card_shows_a_walk_of_an_agent_that_does_not_read() {
     let town = Town::new();
     let score = town.score();
-    let walk = Walk {
+    let walk = AgentWalkRecord {
         text: String::new(),
-        set: UNREAD.into(),
+        set: UNREAD_SET_NAME.into(),
         directions: None,
-        steps: vec![step("a", 0.0, None, Choice::Unseeing), step("b", 90.0, None, Choice::Stop)],
+        steps: vec![step("a", 0.0, None, StepChoice::Unseeing), step("b", 90.0, None, StepChoice::Stop)],
         ..town.walk("random/5")
     };
     let card = card(&replay(&town, &walk, &score));
@@ -182,13 +189,13 @@ fn card_shows_a_walk_of_an_agent_that_does_not_read() {
 fn card_shows_the_information_that_a_reader_got() {
     let town = Town::new();
     let score = town.score();
-    let told = Told { room: Some(SCRIPT.into()), ways: 2, things: 1 };
-    let mut walk = Walk { directions: None, ..town.walk("reader") };
+    let told = SurroundingsSummary { room: Some(SCRIPT.into()), ways: 2, things: 1 };
+    let mut walk = AgentWalkRecord { directions: None, ..town.walk("reader") };
     for step in &mut walk.steps {
         step.views.clear();
         step.told = Some(told.clone());
     }
-    walk.steps[4].told = Some(Told { room: None, ..told });
+    walk.steps[4].told = Some(SurroundingsSummary { room: None, ..told });
     let shown = card(&replay(&town, &walk, &score));
     assert_eq!((shown.matches("is told: ").count(), shown.matches("↩ goes back").count()), (5, 1));
     assert!(shown.contains("2 ways on, 1 thing") && shown.contains("in a room without a name"));
@@ -201,11 +208,12 @@ fn card_shows_the_information_that_a_reader_got() {
 fn a_models_reasons_are_shown_and_escaped() {
     let town = Town::new();
     let score = town.score();
-    let effort = Effort { calls: 3, tokens_in: 2_100, tokens_out: 90, usd: Some(0.0021), ..Effort::default() };
-    let mut walk = Walk { directions: None, effort: Some(effort), end: End::Circles, ..town.walk("tools") };
+    let effort = WalkEffort { calls: 3, tokens_in: 2_100, tokens_out: 90, usd: Some(0.0021), ..WalkEffort::default() };
+    let mut walk =
+        AgentWalkRecord { directions: None, effort: Some(effort), end: WalkEnd::Circles, ..town.walk("tools") };
     for step in &mut walk.steps {
         step.views.clear();
-        step.told = Some(Told { room: None, ways: 2, things: 0 });
+        step.told = Some(SurroundingsSummary { room: None, ways: 2, things: 0 });
         step.reason = Some(format!("it says left{SCRIPT}{}", "x".repeat(10_000)));
     }
     let card = card(&replay(&town, &walk, &score));

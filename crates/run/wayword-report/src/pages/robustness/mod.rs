@@ -5,73 +5,73 @@ mod curve;
 pub mod results;
 mod words;
 
-use super::{broken, replace, templates};
-use curve::Drawing;
+use super::{load_templates, replace_page, template_error};
+use curve::CurveDrawing;
 use minijinja::context;
-use results::{Example, Expectation, Figure, OfChange, OfStyle, Results};
+use results::{ChangeResults, ExpectationResult, RobustnessFigure, RobustnessResults, StyleResults, TextPairExample};
 use serde::Serialize;
 use std::path::Path;
-use wayword_metrics::Estimate;
-use wayword_run::{count::count, error::Error};
-use words::{Words, beside};
+use wayword_metrics::MeanEstimate;
+use wayword_run::{count::count_phrase, error::CommandError};
+use words::{ComparedWords, compare_words};
 
 /// The kinds of statements, in the order of the table.
-const KINDS: [&str; 5] = ["landmarks", "turns", "rooms", "floors", "mean"];
+const STATEMENT_KINDS: [&str; 5] = ["landmarks", "turns", "rooms", "floors", "mean"];
 
 /// Writes the page of a robustness run's results.
 ///
 /// # Errors
 /// When it cannot be written.
-pub fn write(out: &Path, results: &Results) -> Result<(), Error> {
-    let page = html(results)?;
-    replace(out, |take| take(&page))
+pub fn write_robustness(out: &Path, results: &RobustnessResults) -> Result<(), CommandError> {
+    let page = robustness_html(results)?;
+    replace_page(out, |take| take(&page))
 }
 
 /// The page as HTML.
 ///
 /// # Errors
 /// When it cannot be drawn, which is a bug.
-pub(crate) fn html(results: &Results) -> Result<String, Error> {
-    let templates = templates().map_err(broken)?;
-    let styles: Vec<StyleView> = results.styles.iter().map(StyleView::of).collect();
+pub(crate) fn robustness_html(results: &RobustnessResults) -> Result<String, CommandError> {
+    let templates = load_templates().map_err(template_error)?;
+    let styles: Vec<StyleResultsView> = results.styles.iter().map(StyleResultsView::from_results).collect();
     let view = context! {
         platform => results.platform,
         agent => results.agent,
-        kinds => KINDS,
-        about => about(results),
-        warnings => warnings(results),
+        kinds => STATEMENT_KINDS,
+        about => describe_run(results),
+        warnings => list_warnings(results),
         refused => results.refused,
-        notes => notes(),
+        notes => reading_notes(),
         styles,
     };
-    templates.get_template("robustness.html").and_then(|page| page.render(view)).map_err(broken)
+    templates.get_template("robustness.html").and_then(|page| page.render(view)).map_err(template_error)
 }
 
 /// The scope of the results: paths, scenes, roles, and level of the intervals.
-fn about(results: &Results) -> String {
-    let Results { roles, paths, scenes, level, .. } = results;
+fn describe_run(results: &RobustnessResults) -> String {
+    let RobustnessResults { roles, paths, scenes, level, .. } = results;
     format!(
         "{} in {}. {roles}. Intervals cover {:.0} % and draw whole scenes.",
-        count(*paths, "path"),
-        count(*scenes, "scene"),
+        count_phrase(*paths, "path"),
+        count_phrase(*scenes, "scene"),
         level * 100.0
     )
 }
 
-fn warnings(results: &Results) -> Vec<String> {
+fn list_warnings(results: &RobustnessResults) -> Vec<String> {
     let again = results.again;
     let differs = again.of - again.equal;
     let text = || {
         format!(
             "{} of the run's {} could not be written again as they are: another version of the program wrote them, or another eye sees. All figures compare texts of this version.",
             differs,
-            count(again.of, "text")
+            count_phrase(again.of, "text")
         )
     };
     (differs > 0).then(text).into_iter().collect()
 }
 
-fn notes() -> [&'static str; 5] {
+fn reading_notes() -> [&'static str; 5] {
     [
         "R = (S changed - S other) / (S again - S other). S is the agreement of two texts for one path: F1 of landmarks at the same frames, edit similarity of turns and of rooms, equality of what is said of floors.",
         "\"Again\" is the same world with another writing seed, or another sample of each model. \"Other\" is a text of another path of the same building with as many hops.",
@@ -82,26 +82,26 @@ fn notes() -> [&'static str; 5] {
 }
 
 #[derive(Serialize)]
-struct StyleView {
+struct StyleResultsView {
     style: String,
-    rows: Vec<Row>,
+    rows: Vec<RobustnessRow>,
     reasons: Vec<String>,
     expectations: Vec<ExpectationView>,
-    curves: Vec<Drawing>,
-    examples: Vec<Group>,
+    curves: Vec<CurveDrawing>,
+    examples: Vec<ExampleGroup>,
 }
 
 #[derive(Serialize)]
-struct Row {
+struct RobustnessRow {
     change: String,
     is_anchor: bool,
-    cells: Vec<Cell>,
-    success: Cell,
+    cells: Vec<RobustnessCell>,
+    success: RobustnessCell,
     paths: String,
 }
 
 #[derive(Default, Serialize)]
-struct Cell {
+struct RobustnessCell {
     figure: String,
     interval: String,
     reason: String,
@@ -117,7 +117,7 @@ struct ExpectationView {
 }
 
 #[derive(Serialize)]
-struct Group {
+struct ExampleGroup {
     change: String,
     examples: Vec<ExampleView>,
 }
@@ -126,27 +126,27 @@ struct Group {
 struct ExampleView {
     path: String,
     note: String,
-    before: Vec<Words>,
-    after: Vec<Words>,
+    before: Vec<ComparedWords>,
+    after: Vec<ComparedWords>,
 }
 
-impl StyleView {
-    fn of(style: &OfStyle) -> Self {
-        let mut rows: Vec<Row> = anchors(style);
-        rows.extend(style.changes.iter().map(row));
+impl StyleResultsView {
+    fn from_results(style: &StyleResults) -> Self {
+        let mut rows: Vec<RobustnessRow> = anchor_rows(style);
+        rows.extend(style.changes.iter().map(change_row));
         let of_changes = style.changes.iter().map(|one| (&one.change, &one.examples));
         let of_expectations = style.expectations.iter().map(|one| (&one.change, &one.examples));
         let groups = of_changes.chain(of_expectations).filter(|(_, examples)| !examples.is_empty());
         Self {
             style: style.style.clone(),
-            reasons: reasons(style),
+            reasons: missing_reasons(style),
             rows: if style.changes.is_empty() { Vec::new() } else { rows },
-            expectations: style.expectations.iter().map(expectation).collect(),
-            curves: style.curves.iter().map(Drawing::of).collect(),
+            expectations: style.expectations.iter().map(expectation_view).collect(),
+            curves: style.curves.iter().map(CurveDrawing::from_curve).collect(),
             examples: groups
-                .map(|(change, examples)| Group {
+                .map(|(change, examples)| ExampleGroup {
                     change: change.clone(),
-                    examples: examples.iter().map(example).collect(),
+                    examples: examples.iter().map(example_view).collect(),
                 })
                 .collect(),
         }
@@ -155,32 +155,39 @@ impl StyleView {
 
 /// The agreements of a text with one written again, and with another path's: of the first change, because all have nearly
 /// the same.
-fn anchors(style: &OfStyle) -> Vec<Row> {
+fn anchor_rows(style: &StyleResults) -> Vec<RobustnessRow> {
     let Some(first) = style.changes.first() else { return Vec::new() };
-    let row = |change: &str, of: fn(&Figure) -> Option<f64>| {
-        let cell = |figure: &Figure| Cell { figure: of(figure).map_or_else(dash, two), ..Cell::default() };
-        Row {
+    let row = |change: &str, of: fn(&RobustnessFigure) -> Option<f64>| {
+        let cell = |figure: &RobustnessFigure| RobustnessCell {
+            figure: of(figure).map_or_else(dash_text, two_decimals),
+            ..RobustnessCell::default()
+        };
+        RobustnessRow {
             change: change.to_owned(),
             is_anchor: true,
             cells: first.figures.iter().map(cell).collect(),
-            success: Cell::default(),
+            success: RobustnessCell::default(),
             paths: String::new(),
         }
     };
     vec![row("S again", |figure| figure.repeat), row("S other path", |figure| figure.other)]
 }
 
-fn row(change: &OfChange) -> Row {
-    let cell = |figure: &Figure| match &figure.r {
-        Some(r) => with_interval(r, two),
-        None => Cell { figure: dash(), reason: figure.reason.clone().unwrap_or_default(), ..Cell::default() },
+fn change_row(change: &ChangeResults) -> RobustnessRow {
+    let cell = |figure: &RobustnessFigure| match &figure.r {
+        Some(r) => with_interval(r, two_decimals),
+        None => RobustnessCell {
+            figure: dash_text(),
+            reason: figure.reason.clone().unwrap_or_default(),
+            ..RobustnessCell::default()
+        },
     };
-    Row {
+    RobustnessRow {
         change: change.change.clone(),
         is_anchor: false,
         cells: change.figures.iter().map(cell).collect(),
         success: change.success.as_ref().map_or_else(
-            || Cell { figure: dash(), ..Cell::default() },
+            || RobustnessCell { figure: dash_text(), ..RobustnessCell::default() },
             |success| with_interval(success, |share| format!("{:+.1}", share * 100.0)),
         ),
         paths: match change.lost {
@@ -190,21 +197,25 @@ fn row(change: &OfChange) -> Row {
     }
 }
 
-fn with_interval(estimate: &Estimate, shown: impl Fn(f64) -> String) -> Cell {
-    let Estimate { mean, low, high, .. } = *estimate;
-    Cell { figure: shown(mean), interval: format!("[{}, {}]", shown(low), shown(high)), reason: String::new() }
+fn with_interval(estimate: &MeanEstimate, shown: impl Fn(f64) -> String) -> RobustnessCell {
+    let MeanEstimate { mean, low, high, .. } = *estimate;
+    RobustnessCell {
+        figure: shown(mean),
+        interval: format!("[{}, {}]", shown(low), shown(high)),
+        reason: String::new(),
+    }
 }
 
-fn two(value: f64) -> String {
+fn two_decimals(value: f64) -> String {
     format!("{value:.2}")
 }
 
-fn dash() -> String {
+fn dash_text() -> String {
     "–".to_owned()
 }
 
 /// Why figures are missing, each reason once.
-fn reasons(style: &OfStyle) -> Vec<String> {
+fn missing_reasons(style: &StyleResults) -> Vec<String> {
     let mut reasons: Vec<String> = Vec::new();
     for figure in style.changes.iter().flat_map(|change| &change.figures) {
         let Some(reason) = &figure.reason else { continue };
@@ -216,17 +227,17 @@ fn reasons(style: &OfStyle) -> Vec<String> {
     reasons
 }
 
-fn expectation(one: &Expectation) -> ExpectationView {
+fn expectation_view(one: &ExpectationResult) -> ExpectationView {
     ExpectationView {
         change: one.change.clone(),
-        share: one.share().map_or_else(dash, |share| format!("{:.1} %", share * 100.0)),
+        share: one.share_that_holds().map_or_else(dash_text, |share| format!("{:.1} %", share * 100.0)),
         is_whole: one.holds == one.told,
         told: one.told,
         expected: one.expected.clone(),
     }
 }
 
-fn example(example: &Example) -> ExampleView {
-    let (before, after) = beside(&example.before, &example.after);
+fn example_view(example: &TextPairExample) -> ExampleView {
+    let (before, after) = compare_words(&example.before, &example.after);
     ExampleView { path: example.path.clone(), note: example.note.clone(), before, after }
 }

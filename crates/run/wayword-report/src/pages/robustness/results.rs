@@ -1,19 +1,19 @@
 //! The results of a robustness run, as they are stored in `robustness.json`.
 
 use serde::{Deserialize, Serialize};
-use wayword_metrics::Estimate;
-use wayword_robustness::ratio::Robustness;
+use wayword_metrics::MeanEstimate;
+use wayword_robustness::ratio::RobustnessRatio;
 
 /// How many of the texts that were written again in the unchanged world are equal to the run's own.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Again {
+pub struct RepeatedTexts {
     pub equal: usize,
     pub of: usize,
 }
 
 /// All results of a run.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct Results {
+pub struct RobustnessResults {
     /// The platform of the run.
     pub platform: String,
     /// Who answered and who wrote, in words.
@@ -22,39 +22,39 @@ pub struct Results {
     pub paths: usize,
     pub scenes: usize,
     /// How many of the texts of the unchanged world are those of the run.
-    pub again: Again,
+    pub again: RepeatedTexts,
     /// The agent that walks by the texts; its success is compared.
     pub agent: String,
     /// Level of the intervals.
     pub level: f64,
     /// One for each style.
-    pub styles: Vec<OfStyle>,
+    pub styles: Vec<StyleResults>,
     /// Changes that make no sense on this platform, each with the reason.
-    pub refused: Vec<Refused>,
+    pub refused: Vec<RefusedChange>,
 }
 
 /// A change that was not made.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct Refused {
+pub struct RefusedChange {
     pub change: String,
     pub reason: String,
 }
 
 /// The results for the texts of one style.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct OfStyle {
+pub struct StyleResults {
     pub style: String,
     /// Changes that are measured by R, in the order in which they were asked for.
-    pub changes: Vec<OfChange>,
+    pub changes: Vec<ChangeResults>,
     /// Changes with an exact expectation.
-    pub expectations: Vec<Expectation>,
+    pub expectations: Vec<ExpectationResult>,
     /// One for each change with several doses.
-    pub curves: Vec<Curve>,
+    pub curves: Vec<DoseCurve>,
 }
 
 /// The results for one change: how much it matters to the texts.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct OfChange {
+pub struct ChangeResults {
     /// The change with its dose: `camera_height_m=0.3`.
     pub change: String,
     /// Paths with a text in the unchanged and the changed world.
@@ -62,19 +62,19 @@ pub struct OfChange {
     /// Paths with a text that failed only in the changed world.
     pub lost: usize,
     /// Of landmarks, turns, rooms, floors, and their mean.
-    pub figures: Vec<Figure>,
+    pub figures: Vec<RobustnessFigure>,
     /// Change of the agent's success rate: changed less unchanged.
-    pub success: Option<Estimate>,
+    pub success: Option<MeanEstimate>,
     /// Pairs of texts from the unchanged and the changed world.
-    pub examples: Vec<Example>,
+    pub examples: Vec<TextPairExample>,
 }
 
 /// R of one kind of statement, with the agreements that it is made of.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct Figure {
+pub struct RobustnessFigure {
     /// `landmarks`, `turns`, `rooms`, `floors` or `mean`.
     pub kind: String,
-    pub r: Option<Estimate>,
+    pub r: Option<MeanEstimate>,
     /// Why there is none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) reason: Option<String>,
@@ -86,7 +86,7 @@ pub struct Figure {
 
 /// An exact expectation, and how many texts keep it.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct Expectation {
+pub struct ExpectationResult {
     pub change: String,
     /// The property that has to hold, in words.
     pub expected: String,
@@ -95,12 +95,12 @@ pub struct Expectation {
     /// Those of them for which it holds.
     pub holds: usize,
     /// Texts for which it does not hold, with the difference.
-    pub examples: Vec<Example>,
+    pub examples: Vec<TextPairExample>,
 }
 
 /// Two texts of one path.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct Example {
+pub struct TextPairExample {
     pub path: String,
     pub before: String,
     pub after: String,
@@ -110,29 +110,29 @@ pub struct Example {
 
 /// R of the mean over doses.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct Curve {
+pub struct DoseCurve {
     /// The change without its dose.
     pub change: String,
     /// The dose without any effect, where there is one.
     pub unchanged: Option<f64>,
     /// Dose, and R with its interval where there is one.
-    pub points: Vec<(f64, Option<Estimate>)>,
+    pub points: Vec<(f64, Option<MeanEstimate>)>,
     /// Change of R for one more of the dose's unit; `None` of a single point.
     pub slope: Option<f64>,
     /// The doses at which R falls below 0.8, below and above the unchanged one where there is one.
     pub falls_at: Vec<f64>,
 }
 
-impl From<Robustness> for Figure {
-    fn from(found: Robustness) -> Self {
-        let Robustness { kind, r, reason, changed, again, other, .. } = found;
+impl From<RobustnessRatio> for RobustnessFigure {
+    fn from(found: RobustnessRatio) -> Self {
+        let RobustnessRatio { kind, r, reason, changed, again, other, .. } = found;
         Self { kind, r, reason, changed, repeat: again, other }
     }
 }
 
-impl Expectation {
+impl ExpectationResult {
     /// The share of texts for which it holds; `None` if no text mentions the thing.
-    pub fn share(&self) -> Option<f64> {
+    pub fn share_that_holds(&self) -> Option<f64> {
         (self.told > 0).then(|| self.holds as f64 / self.told as f64)
     }
 }

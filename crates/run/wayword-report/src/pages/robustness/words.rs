@@ -4,13 +4,13 @@ use serde::Serialize;
 
 /// Consecutive words that are in both texts, or only in one.
 #[derive(Debug, PartialEq, Eq, Serialize)]
-pub(super) struct Words {
+pub(super) struct ComparedWords {
     words: String,
     differs: bool,
 }
 
 /// The words of both texts, grouped into equal and differing ones, by their longest common subsequence.
-pub(super) fn beside(before: &str, after: &str) -> (Vec<Words>, Vec<Words>) {
+pub(super) fn compare_words(before: &str, after: &str) -> (Vec<ComparedWords>, Vec<ComparedWords>) {
     let (a, b): (Vec<&str>, Vec<&str>) = (before.split_whitespace().collect(), after.split_whitespace().collect());
     let mut longest = vec![vec![0_usize; b.len() + 1]; a.len() + 1];
     for at in (0..a.len()).rev() {
@@ -33,18 +33,18 @@ pub(super) fn beside(before: &str, after: &str) -> (Vec<Words>, Vec<Words>) {
             to += 1;
         }
     }
-    (grouped(&a, &in_a), grouped(&b, &in_b))
+    (group_words(&a, &in_a), group_words(&b, &in_b))
 }
 
-fn grouped(words: &[&str], is_common: &[bool]) -> Vec<Words> {
-    let mut groups: Vec<Words> = Vec::new();
+fn group_words(words: &[&str], is_common: &[bool]) -> Vec<ComparedWords> {
+    let mut groups: Vec<ComparedWords> = Vec::new();
     for (word, is_common) in words.iter().zip(is_common) {
         match groups.last_mut().filter(|group| group.differs != *is_common) {
             Some(group) => {
                 group.words.push(' ');
                 group.words.push_str(word);
             }
-            None => groups.push(Words { words: (*word).to_owned(), differs: !is_common }),
+            None => groups.push(ComparedWords { words: (*word).to_owned(), differs: !is_common }),
         }
     }
     groups
@@ -56,11 +56,11 @@ mod tests {
 
     #[test]
     fn beside_marks_differing_words_in_both_texts() {
-        let (before, after) = beside("Turn left at the sofa and stop.", "Turn right at the sofa and stop.");
-        let words = |words: &str, differs| Words { words: words.to_owned(), differs };
+        let (before, after) = compare_words("Turn left at the sofa and stop.", "Turn right at the sofa and stop.");
+        let words = |words: &str, differs| ComparedWords { words: words.to_owned(), differs };
         assert_eq!(before, [words("Turn", false), words("left", true), words("at the sofa and stop.", false)]);
         assert_eq!(after[1], words("right", true));
-        assert_eq!(beside("a b", "a b").0, [words("a b", false)]);
-        assert_eq!(beside("", "a"), (vec![], vec![words("a", true)]));
+        assert_eq!(compare_words("a b", "a b").0, [words("a b", false)]);
+        assert_eq!(compare_words("", "a"), (vec![], vec![words("a", true)]));
     }
 }

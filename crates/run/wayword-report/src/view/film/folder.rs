@@ -1,33 +1,33 @@
 //! Writes the pictures of a film as numbered PNG files in a folder.
 
 use super::{
-    super::{picture, unfinished::Unfinished},
+    super::{picture, unfinished::UnfinishedFile},
     FilmWriter,
 };
 use std::{fs, path::PathBuf};
 use wayword_core::Image;
-use wayword_run::error::Error;
+use wayword_run::error::CommandError;
 
 /// The folder, and the files that have been written so far.
-pub(super) struct Folder {
+pub(super) struct FolderFilm {
     folder: PathBuf,
     files: Vec<PathBuf>,
 }
 
-impl Folder {
+impl FolderFilm {
     /// A folder for at most `most` pictures; it is made with the first of them.
     ///
     /// # Errors
     /// When it already contains other files, or a picture with a number above `most`: old and new pictures would be mixed.
-    pub(super) fn new(folder: PathBuf, most: usize) -> Result<Self, Error> {
+    pub(super) fn new(folder: PathBuf, most: usize) -> Result<Self, CommandError> {
         if folder.exists() {
-            for entry in fs::read_dir(&folder).map_err(Error::io(&folder, "read"))? {
-                let name = entry.map_err(Error::io(&folder, "read"))?.file_name();
+            for entry in fs::read_dir(&folder).map_err(CommandError::io(&folder, "read"))? {
+                let name = entry.map_err(CommandError::io(&folder, "read"))?.file_name();
                 let number = name.to_str().and_then(number_of);
                 if number.is_none_or(|number| number > most) {
                     let problem =
                         format!("--out {}: the folder already holds {}", folder.display(), name.to_string_lossy());
-                    return Err(Error::usage(problem, "give an empty folder, or the name of a new one"));
+                    return Err(CommandError::usage(problem, "give an empty folder, or the name of a new one"));
                 }
             }
         }
@@ -46,18 +46,18 @@ fn number_of(name: &str) -> Option<usize> {
     (name_of(number) == name).then_some(number)
 }
 
-impl FilmWriter for Folder {
-    fn add(&mut self, picture: &Image) -> Result<(), Error> {
+impl FilmWriter for FolderFilm {
+    fn add_picture(&mut self, picture: &Image) -> Result<(), CommandError> {
         if self.files.is_empty() {
-            fs::create_dir_all(&self.folder).map_err(Error::io(&self.folder, "make the folder"))?;
+            fs::create_dir_all(&self.folder).map_err(CommandError::io(&self.folder, "make the folder"))?;
         }
         let file = self.folder.join(name_of(self.files.len() + 1));
-        Unfinished::whole(&file, &picture::png(picture)?)?;
+        UnfinishedFile::write_whole(&file, &picture::encode_png(picture)?)?;
         self.files.push(file);
         Ok(())
     }
 
-    fn finish(self: Box<Self>) -> Result<Vec<PathBuf>, Error> {
+    fn finish(self: Box<Self>) -> Result<Vec<PathBuf>, CommandError> {
         Ok(self.files)
     }
 }

@@ -1,7 +1,7 @@
 //! Writes the pictures of a film as an animated GIF that loops.
 
 use super::{
-    super::{picture::unfit, unfinished::Unfinished},
+    super::{picture::picture_error, unfinished::UnfinishedFile},
     FilmWriter,
 };
 use image::{
@@ -14,23 +14,23 @@ use std::{
     sync::{Arc, Mutex, PoisonError},
 };
 use wayword_core::Image;
-use wayword_run::error::Error;
+use wayword_run::error::CommandError;
 
 /// How quickly the 256 colours of a picture are chosen, 1 to 30. At 10 they look as good as at 1.
-const SPEED: i32 = 10;
+const GIF_QUANTISER_SPEED: i32 = 10;
 
-pub(super) struct Gif {
-    encoder: GifEncoder<Shared>,
-    file: Shared,
+pub(super) struct GifFilm {
+    encoder: GifEncoder<SharedGifFile>,
+    file: SharedGifFile,
     out: PathBuf,
     delay: Delay,
 }
 
 /// The file, shared because the encoder does not give it back.
 #[derive(Clone)]
-struct Shared(Arc<Mutex<Option<Unfinished>>>);
+struct SharedGifFile(Arc<Mutex<Option<UnfinishedFile>>>);
 
-impl Write for Shared {
+impl Write for SharedGifFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         match &mut *self.0.lock().unwrap_or_else(PoisonError::into_inner) {
             Some(file) => file.write(bytes),
@@ -43,28 +43,28 @@ impl Write for Shared {
     }
 }
 
-impl Gif {
-    pub(super) fn new(out: &Path, fps: f64) -> Result<Self, Error> {
-        let file = Shared(Arc::new(Mutex::new(Some(Unfinished::new(out)?))));
-        let mut encoder = GifEncoder::new_with_speed(file.clone(), SPEED);
-        encoder.set_repeat(Repeat::Infinite).map_err(unfit)?;
+impl GifFilm {
+    pub(super) fn new(out: &Path, fps: f64) -> Result<Self, CommandError> {
+        let file = SharedGifFile(Arc::new(Mutex::new(Some(UnfinishedFile::new(out)?))));
+        let mut encoder = GifEncoder::new_with_speed(file.clone(), GIF_QUANTISER_SPEED);
+        encoder.set_repeat(Repeat::Infinite).map_err(picture_error)?;
         let delay = Delay::from_numer_denom_ms((1000.0 / fps).round() as u32, 1);
         Ok(Self { encoder, file, out: out.to_owned(), delay })
     }
 }
 
-impl FilmWriter for Gif {
-    fn add(&mut self, picture: &Image) -> Result<(), Error> {
-        let pixels = RgbImage::from_raw(picture.width_px(), picture.height_px(), picture.rgb().to_vec());
+impl FilmWriter for GifFilm {
+    fn add_picture(&mut self, picture: &Image) -> Result<(), CommandError> {
+        let pixels = RgbImage::from_raw(picture.width_px(), picture.height_px(), picture.rgb_bytes().to_vec());
         let pixels = DynamicImage::from(pixels.unwrap_or_default()).into_rgba8();
-        self.encoder.encode_frame(Frame::from_parts(pixels, 0, 0, self.delay)).map_err(unfit)
+        self.encoder.encode_frame(Frame::from_parts(pixels, 0, 0, self.delay)).map_err(picture_error)
     }
 
-    fn finish(self: Box<Self>) -> Result<Vec<PathBuf>, Error> {
+    fn finish(self: Box<Self>) -> Result<Vec<PathBuf>, CommandError> {
         // The encoder writes the end of the file when it is dropped.
         drop(self.encoder);
         if let Some(file) = self.file.0.lock().unwrap_or_else(PoisonError::into_inner).take() {
-            file.finish()?;
+            file.move_to_place()?;
         }
         Ok(vec![self.out])
     }

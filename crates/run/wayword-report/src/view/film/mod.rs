@@ -8,7 +8,7 @@ mod mp4;
 use super::file_kind::{FileKind, check_foreign};
 use std::path::{Path, PathBuf};
 use wayword_core::Image;
-use wayword_run::error::Error;
+use wayword_run::error::CommandError;
 
 /// Writes the pictures of a film, which all have the same size.
 pub(super) trait FilmWriter {
@@ -16,13 +16,13 @@ pub(super) trait FilmWriter {
     ///
     /// # Errors
     /// When it cannot be encoded or written.
-    fn add(&mut self, picture: &Image) -> Result<(), Error>;
+    fn add_picture(&mut self, picture: &Image) -> Result<(), CommandError>;
 
     /// Puts everything into its place; returns the files.
     ///
     /// # Errors
     /// When it cannot be written.
-    fn finish(self: Box<Self>) -> Result<Vec<PathBuf>, Error>;
+    fn finish(self: Box<Self>) -> Result<Vec<PathBuf>, CommandError>;
 }
 
 /// The place and the form of a film.
@@ -39,23 +39,25 @@ impl FilmPlace {
     ///
     /// # Errors
     /// When the ending is unknown, this build cannot write the kind, or the existing file must not be overwritten.
-    pub(super) fn of(out: &Path, data: Option<&Path>) -> Result<Self, Error> {
+    pub(super) fn from_out(out: &Path, data: Option<&Path>) -> Result<Self, CommandError> {
         let is_folder = out.is_dir() || out.as_os_str().to_string_lossy().ends_with(['/', std::path::MAIN_SEPARATOR]);
         if is_folder || (out.extension().is_none() && !out.exists()) {
             check_foreign(out, data)?;
             return Ok(Self::Folder(out.to_owned()));
         }
-        let kind = FileKind::of(out).filter(|kind| matches!(kind, FileKind::Gif | FileKind::Mp4)).ok_or_else(|| {
-            let problem = format!("--out {}: its ending does not say what to write", out.display());
-            Error::usage(problem, "end it in .gif or .mp4, or in / for a folder of numbered PNG files")
-        })?;
+        let kind = FileKind::from_ending(out).filter(|kind| matches!(kind, FileKind::Gif | FileKind::Mp4)).ok_or_else(
+            || {
+                let problem = format!("--out {}: its ending does not say what to write", out.display());
+                CommandError::usage(problem, "end it in .gif or .mp4, or in / for a folder of numbered PNG files")
+            },
+        )?;
         kind.check_free(out, data)?;
         match kind {
             FileKind::Gif => Ok(Self::Gif(out.to_owned())),
             #[cfg(feature = "video")]
             _ => Ok(Self::Mp4(out.to_owned())),
             #[cfg(not(feature = "video"))]
-            _ => Err(Error::usage(
+            _ => Err(CommandError::usage(
                 "this build cannot write videos",
                 "build it with `cargo build --release --features full`, or end --out in .gif or /",
             )),
@@ -66,12 +68,12 @@ impl FilmPlace {
     ///
     /// # Errors
     /// When the place cannot be written.
-    pub(super) fn open(self, fps: f64, most: usize) -> Result<Box<dyn FilmWriter>, Error> {
+    pub(super) fn open_writer(self, fps: f64, most: usize) -> Result<Box<dyn FilmWriter>, CommandError> {
         Ok(match self {
-            Self::Folder(folder) => Box::new(folder::Folder::new(folder, most)?),
-            Self::Gif(file) => Box::new(gif::Gif::new(&file, fps)?),
+            Self::Folder(folder) => Box::new(folder::FolderFilm::new(folder, most)?),
+            Self::Gif(file) => Box::new(gif::GifFilm::new(&file, fps)?),
             #[cfg(feature = "video")]
-            Self::Mp4(file) => mp4::open(&file, fps)?,
+            Self::Mp4(file) => mp4::open_video(&file, fps)?,
         })
     }
 }

@@ -1,14 +1,14 @@
 //! Draws the digits and the few letters of a map as strokes, so that a picture needs no font.
 
-use super::sketch::Point;
+use super::sketch::SheetPoint;
 
 /// Width of a glyph and of the gap after it, in heights of a digit.
-const ADVANCE: f64 = 0.78;
+const ADVANCE_PER_HEIGHT: f64 = 0.78;
 /// Height of a digit in font sizes, as in common fonts.
-const DIGIT: f64 = 0.72;
+const DIGIT_HEIGHT_PER_SIZE: f64 = 0.72;
 
 /// The strokes of a character within 0..=4 by 0..=6, from the top left; none for an unknown character.
-fn strokes(character: char) -> &'static [&'static [[u8; 2]]] {
+fn character_strokes(character: char) -> &'static [&'static [[u8; 2]]] {
     match character {
         '0' => &[&[[1, 0], [3, 0], [4, 1], [4, 5], [3, 6], [1, 6], [0, 5], [0, 1], [1, 0]]],
         '1' => &[&[[1, 1], [2, 0], [2, 6]], &[[1, 6], [3, 6]]],
@@ -49,16 +49,16 @@ fn strokes(character: char) -> &'static [&'static [[u8; 2]]] {
 }
 
 /// The strokes of a text around a point, or to the right of it, and how wide they are.
-pub(super) fn text(text: &str, at: Point, size: f64, is_centred: bool) -> (Vec<Vec<Point>>, f64) {
-    let height = DIGIT * size;
+pub(super) fn text_strokes(text: &str, at: SheetPoint, size: f64, is_centred: bool) -> (Vec<Vec<SheetPoint>>, f64) {
+    let height = DIGIT_HEIGHT_PER_SIZE * size;
     let unit = height / 6.0;
-    let width = (text.chars().count() as f64 - 1.0) * ADVANCE * height + 4.0 * unit;
+    let width = (text.chars().count() as f64 - 1.0) * ADVANCE_PER_HEIGHT * height + 4.0 * unit;
     let left = at[0] - if is_centred { width / 2.0 } else { 0.0 };
     let mut lines = Vec::new();
     for (place, character) in text.chars().enumerate() {
-        let corner = [left + place as f64 * ADVANCE * height, at[1] - height / 2.0];
+        let corner = [left + place as f64 * ADVANCE_PER_HEIGHT * height, at[1] - height / 2.0];
         let point = |[x, y]: &[u8; 2]| [corner[0] + f64::from(*x) * unit, corner[1] + f64::from(*y) * unit];
-        lines.extend(strokes(character).iter().map(|stroke| stroke.iter().map(point).collect()));
+        lines.extend(character_strokes(character).iter().map(|stroke| stroke.iter().map(point).collect()));
     }
     (lines, 0.16 * size)
 }
@@ -70,8 +70,8 @@ mod tests {
     #[test]
     fn every_character_of_a_map_has_strokes_within_its_box() {
         for character in "0123456789Nm".chars() {
-            assert!(!strokes(character).is_empty(), "{character}");
-            for [x, y] in strokes(character).concat() {
+            assert!(!character_strokes(character).is_empty(), "{character}");
+            for [x, y] in character_strokes(character).concat() {
                 assert!(x <= 4 && y <= 6, "{character}");
             }
         }
@@ -79,7 +79,7 @@ mod tests {
 
     #[test]
     fn a_number_is_around_its_point() {
-        let points = text("88", [50.0, 20.0], 10.0, true).0.concat();
+        let points = text_strokes("88", [50.0, 20.0], 10.0, true).0.concat();
         let ends = |axis: usize| {
             let along = || points.iter().map(|point| point[axis]);
             along().fold(f64::INFINITY, f64::min) + along().fold(f64::NEG_INFINITY, f64::max)

@@ -1,8 +1,8 @@
 //! The frames of a film along a path: the path's own, and evenly timed ones between them.
 
 use std::f64::consts::FRAC_PI_2;
-use wayword_core::{Frame, Move, Path, Pose};
-use wayword_run::error::Error;
+use wayword_core::{Frame, Path, PathMove, Pose};
+use wayword_run::error::CommandError;
 
 /// How fast the camera turns on the spot, radians for each second.
 const TURNS_RAD: f64 = FRAC_PI_2;
@@ -11,7 +11,7 @@ const WALKS_M: f64 = 1.0;
 
 /// A place from which a picture of the film is taken.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Step {
+pub struct FilmStep {
     pub frame: Frame,
     /// Whether it lies between two of the path's own frames.
     pub is_between: bool,
@@ -22,12 +22,12 @@ pub struct Step {
 ///
 /// # Errors
 /// When places between frames are asked for, but the path has no poses.
-pub fn steps(path: &Path, between: usize) -> Result<Vec<Step>, Error> {
+pub fn film_steps(path: &Path, between: usize) -> Result<Vec<FilmStep>, CommandError> {
     if between > 0 && !path.motion.is_known() {
         let problem = format!("path {}: without poses there are no pictures between its frames", path.id);
-        return Err(Error::usage(problem, "leave --smooth out to see the frames only"));
+        return Err(CommandError::usage(problem, "leave --smooth out to see the frames only"));
     }
-    let own = |frame: &Frame| Step { frame: frame.clone(), is_between: false };
+    let own = |frame: &Frame| FilmStep { frame: frame.clone(), is_between: false };
     let mut steps = Vec::new();
     for pair in path.frames.windows(2) {
         steps.push(own(&pair[0]));
@@ -38,30 +38,30 @@ pub fn steps(path: &Path, between: usize) -> Result<Vec<Step>, Error> {
 }
 
 /// The place at a share of the time that a move takes.
-fn on_the_way(from: &Frame, to: &Frame, share: f64) -> Step {
-    let step = Move::between(&from.pose, &to.pose);
+fn on_the_way(from: &Frame, to: &Frame, share: f64) -> FilmStep {
+    let step = PathMove::between_poses(&from.pose, &to.pose);
     let turning_s = step.turn_rad.abs() / TURNS_RAD;
     let passed_s = share * (turning_s + from.pose.position.distance(to.pose.position) / WALKS_M);
     let frame = if passed_s <= turning_s {
         let turned = if turning_s > 0.0 { step.turn_rad * passed_s / turning_s } else { 0.0 };
-        let heading = from.pose.heading.turned(turned);
+        let heading = from.pose.heading.turned_by(turned);
         Frame { pose: Pose { heading, ..from.pose }, ..from.clone() }
     } else {
         let way = to.pose.position - from.pose.position;
         let position = from.pose.position + way.normalize_or_zero() * ((passed_s - turning_s) * WALKS_M);
         Frame { pose: Pose { position, ..to.pose }, viewpoint: None, level: from.level }
     };
-    Step { frame, is_between: true }
+    FilmStep { frame, is_between: true }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use wayword_core::{DVec3, Heading, Motion, SceneId};
+    use wayword_core::{DVec3, Heading, PathMotion, SceneId};
 
-    fn path(motion: Motion) -> Path {
+    fn path(motion: PathMotion) -> Path {
         let frame = |x: f64, y: f64, degrees: f64| Frame {
-            pose: Pose::level(DVec3::new(x, y, 1.5), Heading::new(degrees.to_radians()).unwrap()),
+            pose: Pose::looking_level(DVec3::new(x, y, 1.5), Heading::new(degrees.to_radians()).unwrap()),
             viewpoint: None,
             level: Some(1),
         };
@@ -71,14 +71,14 @@ mod tests {
 
     #[test]
     fn the_walker_turns_and_then_walks() {
-        let path = path(Motion::Known);
-        let steps = steps(&path, 27).unwrap();
+        let path = path(PathMotion::Known);
+        let steps = film_steps(&path, 27).unwrap();
         assert_eq!(steps.iter().filter(|step| !step.is_between).map(|step| &step.frame).collect::<Vec<_>>(), {
             path.frames.iter().collect::<Vec<_>>()
         });
         assert_eq!(steps.len(), 2 * 28 + 1);
         for pair in steps.windows(2) {
-            let step = Move::between(&pair[0].frame.pose, &pair[1].frame.pose);
+            let step = PathMove::between_poses(&pair[0].frame.pose, &pair[1].frame.pose);
             let seconds = step.turn_rad.abs() / TURNS_RAD + step.distance_m / WALKS_M;
             // 100 degrees and 2 m, then 90 degrees and 2 m, in 28 steps each.
             assert!([(100.0 / 90.0 + 2.0) / 28.0, 3.0 / 28.0].iter().any(|even| (even - seconds).abs() < 1e-9));
@@ -88,7 +88,7 @@ mod tests {
 
     #[test]
     fn steps_refuses_places_between_the_frames_of_a_path_without_poses() {
-        assert_eq!(steps(&path(Motion::Unknown), 0).unwrap().len(), 3);
-        assert!(steps(&path(Motion::Unknown), 1).is_err());
+        assert_eq!(film_steps(&path(PathMotion::Unknown), 0).unwrap().len(), 3);
+        assert!(film_steps(&path(PathMotion::Unknown), 1).is_err());
     }
 }

@@ -2,70 +2,71 @@
 
 pub mod between;
 
-use super::{Written, film, open, walk};
+use super::{WrittenView, film, open_platform, walk};
 use crate::view::args::ViewPath;
-use between::Step;
+use between::FilmStep;
 use image::imageops::{self, FilterType};
 use std::sync::Arc;
-use wayword_core::{Gaze, Image, Platform, PlatformError, SceneId};
-use wayword_run::{count::count, error::Error, output::Output};
+use wayword_core::{Image, Platform, PlatformError, SceneId, ViewGaze};
+use wayword_run::{count::count_phrase, error::CommandError, output::CommandOutput};
 
 /// Most pictures of a path.
 const MOST_STEPS: usize = 20_000;
 /// Pictures for each second: with the path's own frames only, and with pictures between them.
-const FPS: [f64; 2] = [1.0, 12.0];
+const DEFAULT_FPS: [f64; 2] = [1.0, 12.0];
 /// The rates that can be asked for: a GIF counts in hundredths of a second.
 const FPS_RANGE: std::ops::RangeInclusive<f64> = 0.1..=50.0;
 /// Widest pictures, pixels.
 const WIDEST_PX: u32 = 8192;
 
-pub(super) fn write(args: &ViewPath, output: &Output) -> Result<Written, Error> {
-    let fps = args.fps.unwrap_or(FPS[usize::from(args.smooth.is_some_and(|between| between > 0))]);
+pub(super) fn write_path(args: &ViewPath, output: &CommandOutput) -> Result<WrittenView, CommandError> {
+    let fps = args.fps.unwrap_or(DEFAULT_FPS[usize::from(args.smooth.is_some_and(|between| between > 0))]);
     if !FPS_RANGE.contains(&fps) {
-        return Err(Error::usage(format!("--fps {fps} is out of range"), "give a number from 0.1 to 50"));
+        return Err(CommandError::usage(format!("--fps {fps} is out of range"), "give a number from 0.1 to 50"));
     }
     if args.width.is_some_and(|width| !(1..=WIDEST_PX).contains(&width)) {
-        return Err(Error::usage("--width is out of range", format!("give a number from 1 to {WIDEST_PX}")));
+        return Err(CommandError::usage("--width is out of range", format!("give a number from 1 to {WIDEST_PX}")));
     }
-    let place = film::FilmPlace::of(&args.out, args.platform.data.as_deref())?;
-    let platform = open(&args.platform)?;
-    let path = walk::path(&args.walk, &args.platform, &*platform)?;
-    let steps = between::steps(&path, args.smooth.unwrap_or(0))?;
+    let place = film::FilmPlace::from_out(&args.out, args.platform.data.as_deref())?;
+    let platform = open_platform(&args.platform)?;
+    let path = walk::choose_path(&args.walk, &args.platform, &*platform)?;
+    let steps = between::film_steps(&path, args.smooth.unwrap_or(0))?;
     if steps.len() > MOST_STEPS {
         let problem = format!("the path would need {} pictures, but at most {MOST_STEPS} are allowed", steps.len());
-        return Err(Error::usage(problem, "ask for a shorter path, or a smaller --smooth"));
+        return Err(CommandError::usage(problem, "ask for a shorter path, or a smaller --smooth"));
     }
-    let mut film = place.open(fps, steps.len())?;
-    let bar = output.progress(steps.len(), "pictures");
+    let mut film = place.open_writer(fps, steps.len())?;
+    let bar = output.progress_bar(steps.len(), "pictures");
     let (mut size, mut frames) = (None, 0);
     for step in &steps {
-        if let Some(image) = look(&*platform, &path.scene, step)? {
+        if let Some(image) = look_ahead(&*platform, &path.scene, step)? {
             let size = *size.get_or_insert_with(|| size_of(&image, args.width));
-            let picture = fitted(image, size)?;
-            film.add(&picture)?;
+            let picture = fit_size(image, size)?;
+            film.add_picture(&picture)?;
             frames += 1;
         }
         bar.inc(1);
     }
     bar.finish_and_clear();
     let Some((width, height)) = size else {
-        let problem = format!("path {}: there is no picture for any of its {}", path.id, count(steps.len(), "frame"));
+        let problem =
+            format!("path {}: there is no picture for any of its {}", path.id, count_phrase(steps.len(), "frame"));
         let hint = "`wayword platforms` says which platforms have pictures, and what they need";
-        return Err(Error::usage(problem, hint));
+        return Err(CommandError::usage(problem, hint));
     };
     if frames < steps.len() {
         let without = steps.len() - frames;
-        output.say(format_args!("no picture for {without} of {}; left out", count(steps.len(), "frame")));
+        output.say(format_args!("no picture for {without} of {}; left out", count_phrase(steps.len(), "frame")));
     }
-    Ok(Written { scene: path.scene, files: film.finish()?, width, height, frames, islands: Vec::new() })
+    Ok(WrittenView { scene: path.scene, files: film.finish()?, width, height, frames, islands: Vec::new() })
 }
 
 /// The picture of the view ahead. If there is none, that is an error between two frames, and `None` at a frame of the path.
-fn look(platform: &dyn Platform, scene: &SceneId, step: &Step) -> Result<Option<Arc<Image>>, Error> {
-    let view = platform.look(scene, &step.frame, Gaze::quarter(step.frame.pose.heading));
+fn look_ahead(platform: &dyn Platform, scene: &SceneId, step: &FilmStep) -> Result<Option<Arc<Image>>, CommandError> {
+    let view = platform.look_from(scene, &step.frame, ViewGaze::quarter_view(step.frame.pose.heading));
     let nothing_between = || {
         let problem = format!("platform {} has no pictures between the frames of a path", platform.name());
-        Err(Error::usage(problem, "leave --smooth out to see the frames only"))
+        Err(CommandError::usage(problem, "leave --smooth out to see the frames only"))
     };
     match view {
         Err(PlatformError::NotAViewpoint { .. } | PlatformError::UnknownViewpoint { .. }) if step.is_between => {
@@ -87,12 +88,12 @@ fn size_of(first: &Image, width: Option<u32>) -> (u32, u32) {
 }
 
 /// The picture, scaled to a size if it has another.
-fn fitted(image: Arc<Image>, (width, height): (u32, u32)) -> Result<Arc<Image>, Error> {
+fn fit_size(image: Arc<Image>, (width, height): (u32, u32)) -> Result<Arc<Image>, CommandError> {
     if (image.width_px(), image.height_px()) == (width, height) {
         return Ok(image);
     }
-    let broken = || Error::usage("a picture has no pixels", "check the platform's files");
-    let given = image::RgbImage::from_raw(image.width_px(), image.height_px(), image.rgb().to_vec());
+    let broken = || CommandError::usage("a picture has no pixels", "check the platform's files");
+    let given = image::RgbImage::from_raw(image.width_px(), image.height_px(), image.rgb_bytes().to_vec());
     let given = given.filter(|given| given.width() > 0 && given.height() > 0).ok_or_else(broken)?;
     let scaled = imageops::resize(&given, width, height, FilterType::Triangle);
     Image::new(width, height, scaled.into_raw()).map(Arc::new).map_err(|_| broken())

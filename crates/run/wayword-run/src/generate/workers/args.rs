@@ -2,10 +2,10 @@
 
 use clap::Args;
 use std::{num::NonZeroUsize, time::Duration};
-use wayword_queue::Part;
+use wayword_queue::ShardPart;
 
 /// Default number of items in a chunk.
-const CHUNK: usize = 64;
+const DEFAULT_CHUNK_ITEMS: usize = 64;
 
 /// Which part of a run this worker makes.
 #[derive(Debug, Clone, Default, Args)]
@@ -21,7 +21,7 @@ pub struct AskedWorkers {
     /// Make this part of the run: K from 0 to N-1. Needs only a folder that all workers share. Each chunk keeps its own calls,
     /// and --max-usd, --max-calls and the rates are divided by N.
     #[arg(long, value_name = "K/N", conflicts_with = "queue")]
-    pub shard: Option<Part>,
+    pub shard: Option<ShardPart>,
     /// Make whatever chunk is open in this PostgreSQL database (15 or later), until none is left. All workers share one ledger, one
     /// budget and one rate there. A name, or postgresql://USER@HOST/NAME without a password: that comes from PGPASSFILE or
     /// --password-env.
@@ -44,13 +44,15 @@ impl AskedWorkers {
 
     /// Items in a chunk.
     #[must_use]
-    pub fn chunk(&self) -> usize {
-        self.chunk.map_or(CHUNK, NonZeroUsize::get)
+    pub fn chunk_items(&self) -> usize {
+        self.chunk.map_or(DEFAULT_CHUNK_ITEMS, NonZeroUsize::get)
     }
 
     /// How long a sign of life counts.
     #[must_use]
-    pub fn lease(&self) -> Duration {
-        Duration::try_from_secs_f64(self.lease_s).unwrap_or(wayword_queue::FRESH).max(Duration::from_millis(500))
+    pub fn lease_duration(&self) -> Duration {
+        Duration::try_from_secs_f64(self.lease_s)
+            .unwrap_or(wayword_queue::HEARTBEAT_LEASE)
+            .max(Duration::from_millis(500))
     }
 }

@@ -2,51 +2,53 @@
 //! (`--shard`), or in a database (`--queue`).
 
 use crate::{
-    calls::Keeping, error::Error, generate::workers::args::AskedWorkers, output::Output, settings::Service,
-    stores::RunPlace,
+    calls::CallKeeping, error::CommandError, generate::workers::args::AskedWorkers, output::CommandOutput,
+    settings::Service, stores::RunPlace,
 };
 use serde::{Deserialize, Serialize};
 use std::path::Path;
-use wayword_queue::{Beat, Board, Heart, Part, Plan, Shard, WAY, chunk_folder, put_new};
+use wayword_queue::{
+    ChunkBoard, ChunkPlan, HeartbeatThread, ShardBoard, ShardPart, WORKERS_FILE, WorkerHeartbeat, chunk_folder, put_new,
+};
 
 /// How the chunks of a run are handed out. All workers of a run must use the same way; a file in its folder records which.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub enum Way {
+pub enum ChunkHandout {
     /// Each worker has a fixed part.
     Shards,
     /// A database hands out the open chunks. This is its name, without a password.
     Queue(String),
 }
 
-impl Way {
+impl ChunkHandout {
     /// Reads how the chunks of a folder are handed out; `None` before its first worker.
     ///
     /// # Errors
     /// When its file cannot be read.
-    pub fn of(folder: &Path) -> Result<Option<Self>, Error> {
-        let path = folder.join(WAY);
+    pub fn from_folder(folder: &Path) -> Result<Option<Self>, CommandError> {
+        let path = folder.join(WORKERS_FILE);
         if !path.exists() {
             return Ok(None);
         }
-        let text = crate::text_file::read(&path, "read how chunks are handed out")?;
+        let text = crate::text_file::read_text_file(&path, "read how chunks are handed out")?;
         serde_json::from_str(&text).map(Some).map_err(|error| {
-            Error::usage(format!("{}: {error}", path.display()), "it was changed by hand: use another folder")
+            CommandError::usage(format!("{}: {error}", path.display()), "it was changed by hand: use another folder")
         })
     }
 
     /// Records this choice in the folder of the run, or refuses it if other workers use another one.
-    fn keep(&self, place: &RunPlace) -> Result<(), Error> {
-        let (folder, path) = (place.folder(), place.folder().join(WAY));
+    fn keep_in(&self, place: &RunPlace) -> Result<(), CommandError> {
+        let (folder, path) = (place.folder(), place.folder().join(WORKERS_FILE));
         let text = serde_json::to_string(self).unwrap_or_default();
         put_new(&path, text.as_bytes())?;
-        place.publish(WAY)?;
-        match Self::of(folder)? {
+        place.publish_file(WORKERS_FILE)?;
+        match Self::from_folder(folder)? {
             Some(kept) if kept == *self => Ok(()),
-            kept => Err(Error::usage(
+            kept => Err(CommandError::usage(
                 format!(
                     "{}: its workers take chunks by {}, not by {self}",
-                    place.named().display(),
+                    place.shown_path().display(),
                     kept.unwrap_or(Self::Shards)
                 ),
                 "give the same flag (--shard or --queue) and the same database to all workers, or another --out",
@@ -55,7 +57,7 @@ impl Way {
     }
 }
 
-impl std::fmt::Display for Way {
+impl std::fmt::Display for ChunkHandout {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Shards => write!(f, "--shard"),
@@ -65,77 +67,92 @@ impl std::fmt::Display for Way {
 }
 
 /// The board from which this worker takes its chunks.
-pub(super) enum Counter<'a> {
+pub(super) enum WorkerBoard<'a> {
     Shard {
         folder: &'a Path,
-        plan: &'a Plan,
-        part: Part,
-        heart: Heart,
+        plan: &'a ChunkPlan,
+        part: ShardPart,
+        heart: HeartbeatThread,
     },
     #[cfg(feature = "queue")]
     Queue {
-        queue: wayword_queue::Queue,
-        database: wayword_database::Database,
+        queue: wayword_queue::ChunkQueue,
+        database: wayword_database::PostgresDatabase,
         lease: std::time::Duration,
     },
 }
 
-impl<'a> Counter<'a> {
+impl<'a> WorkerBoard<'a> {
     /// Joins the workers of a run.
-    pub(super) fn open(place: &'a RunPlace, plan: &'a Plan, worker: &str, asked: &AskedWorkers) -> Result<Self, Error> {
+    pub(super) fn open(
+        place: &'a RunPlace,
+        plan: &'a ChunkPlan,
+        worker: &str,
+        asked: &AskedWorkers,
+    ) -> Result<Self, CommandError> {
         match (asked.shard, &asked.queue) {
             (Some(part), _) => {
                 let (folder, token) = (place.folder(), worker.to_owned());
-                Way::Shards.keep(place)?;
-                let beat = Beat { worker: token.clone(), token, part: format!("shard {part}") };
-                let heart = Heart::start(folder, &part.name(), beat, asked.lease(), |file| part.overlaps(file))?;
+                ChunkHandout::Shards.keep_in(place)?;
+                let beat = WorkerHeartbeat { worker: token.clone(), token, part: format!("shard {part}") };
+                let heart =
+                    HeartbeatThread::start(folder, &part.heartbeat_name(), beat, asked.lease_duration(), |file| {
+                        part.overlaps_part(file)
+                    })?;
                 Ok(Self::Shard { folder, plan, part, heart })
             }
-            (None, Some(name)) => Self::queue(place, plan, name, worker, asked),
-            (None, None) => Err(Error::usage("this worker has no part", "give --shard or --queue")),
+            (None, Some(name)) => Self::join_queue(place, plan, name, worker, asked),
+            (None, None) => Err(CommandError::usage("this worker has no part", "give --shard or --queue")),
         }
     }
 
     #[cfg(feature = "queue")]
-    fn queue(place: &RunPlace, plan: &Plan, name: &str, worker: &str, asked: &AskedWorkers) -> Result<Self, Error> {
-        let database = wayword_database::Database::named(name, asked.password_env.as_deref())?;
-        Way::Queue(name.to_owned()).keep(place)?;
-        let queue = wayword_queue::Queue::open(database.clone(), place.folder(), plan)?.join(worker, asked.lease())?;
-        Ok(Self::Queue { queue, database, lease: asked.lease() })
+    fn join_queue(
+        place: &RunPlace,
+        plan: &ChunkPlan,
+        name: &str,
+        worker: &str,
+        asked: &AskedWorkers,
+    ) -> Result<Self, CommandError> {
+        let database = wayword_database::PostgresDatabase::from_name(name, asked.password_env.as_deref())?;
+        ChunkHandout::Queue(name.to_owned()).keep_in(place)?;
+        let queue = wayword_queue::ChunkQueue::open(database.clone(), place.folder(), plan)?
+            .join_as(worker, asked.lease_duration())?;
+        Ok(Self::Queue { queue, database, lease: asked.lease_duration() })
     }
 
     #[cfg(not(feature = "queue"))]
-    fn queue(_: &RunPlace, _: &Plan, _: &str, _: &str, _: &AskedWorkers) -> Result<Self, Error> {
-        Err(Error::not_built("--queue cannot be used: this build has no way to a database"))
+    fn join_queue(_: &RunPlace, _: &ChunkPlan, _: &str, _: &str, _: &AskedWorkers) -> Result<Self, CommandError> {
+        Err(CommandError::not_built("--queue cannot be used: this build has no way to a database"))
     }
 
     /// The ledger for this worker's calls.
-    pub(super) fn kept_calls(&self) -> Keeping {
+    pub(super) fn kept_calls(&self) -> CallKeeping {
         match self {
             Self::Shard { folder, plan, part, .. } => {
-                let recordings = part.chunks(plan).map(|chunk| calls_of(&chunk_folder(folder, chunk, 0)));
-                Keeping::Chunks(recordings.filter(|path| path.exists()).collect())
+                let recordings = part.chunk_numbers(plan).map(|chunk| calls_of(&chunk_folder(folder, chunk, 0)));
+                CallKeeping::Chunks(recordings.filter(|path| path.exists()).collect())
             }
             #[cfg(feature = "queue")]
-            Self::Queue { database, lease, .. } => Keeping::Database(database.clone(), *lease),
+            Self::Queue { database, lease, .. } => CallKeeping::Database(database.clone(), *lease),
         }
     }
 
     /// Runs `work` with the board.
-    pub(super) fn with<T>(&self, work: impl FnOnce(&dyn Board) -> T) -> T {
+    pub(super) fn with_board<T>(&self, work: impl FnOnce(&dyn ChunkBoard) -> T) -> T {
         match self {
-            Self::Shard { folder, plan, part, heart } => work(&Shard::new(folder, plan, *part, heart)),
+            Self::Shard { folder, plan, part, heart } => work(&ShardBoard::new(folder, plan, *part, heart)),
             #[cfg(feature = "queue")]
             Self::Queue { queue, .. } => work(queue),
         }
     }
 
     /// Writes the marks that killed workers of a queue did not write.
-    pub(super) fn close(&self) -> Result<(), Error> {
+    pub(super) fn write_missing_marks(&self) -> Result<(), CommandError> {
         match self {
             Self::Shard { .. } => Ok(()),
             #[cfg(feature = "queue")]
-            Self::Queue { queue, .. } => Ok(queue.mark().map(drop)?),
+            Self::Queue { queue, .. } => Ok(queue.write_missing_marks().map(drop)?),
         }
     }
 }
@@ -147,9 +164,13 @@ pub(crate) fn calls_of(chunk: &Path) -> std::path::PathBuf {
 
 /// The limits of one worker: a shard gets its part of the budget and the rates; a worker of a queue gets the whole, because the
 /// database counts for all workers together.
-pub(super) fn part_of(service: &Service, asked: &AskedWorkers, output: &Output) -> Result<Service, Error> {
+pub(super) fn part_of(
+    service: &Service,
+    asked: &AskedWorkers,
+    output: &CommandOutput,
+) -> Result<Service, CommandError> {
     if service.ledger.is_some() {
-        return Err(Error::usage(
+        return Err(CommandError::usage(
             "--ledger cannot be combined with --shard, --queue or --plan: a shard keeps the calls in its chunks, a queue in its database",
             "leave --ledger out",
         ));

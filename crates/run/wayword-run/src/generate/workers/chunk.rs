@@ -1,11 +1,11 @@
 //! Makes one chunk of a run, in a run folder of its own.
 
-use super::{Why, board::calls_of};
+use super::{WorkerStop, board::calls_of};
 use crate::{
-    count::count,
-    error::{Error, Exit},
-    generate::fill::Workshop,
-    output::Output,
+    count::count_phrase,
+    error::{CommandError, Exit},
+    generate::fill::ItemWorkshop,
+    output::CommandOutput,
     run_folder::{FailedItem, RunFolder, WorldData, file, read_lines},
 };
 use std::{
@@ -14,87 +14,91 @@ use std::{
     path::Path,
     time::{Instant, SystemTime, UNIX_EPOCH},
 };
-use wayword_queue::{Claimed, Done, Ended, Plan, chunk_folder, sync_tree};
+use wayword_queue::{ChunkClaim, ChunkOutcome, ChunkPlan, ChunkRecord, chunk_folder, sync_tree};
 
 /// Longest reason of a failure that a mark keeps, characters.
 const MOST_REASON_CHARS: usize = 200;
 
-pub(super) fn make(
+pub(super) fn make_chunk(
     out: &Path,
-    plan: &Plan,
-    shop: &Workshop<'_>,
-    claimed: Claimed,
+    plan: &ChunkPlan,
+    shop: &ItemWorkshop<'_>,
+    claimed: ChunkClaim,
     worker: &str,
-    output: &Output,
-) -> Result<Ended<Why>, Error> {
-    let (since, before) = (Instant::now(), usd(shop));
+    output: &CommandOutput,
+) -> Result<ChunkOutcome<WorkerStop>, CommandError> {
+    let (since, before) = (Instant::now(), usd_so_far(shop));
     let folder = chunk_folder(out, claimed.chunk, claimed.epoch);
-    match fill(&folder, out, plan, shop, claimed, output) {
+    match fill_chunk(&folder, out, plan, shop, claimed, output) {
         Ok(None) => {
-            let spent = Spent { seconds: since.elapsed().as_secs_f64(), usd: usd(shop) - before };
-            let done = Done { worker: worker.to_owned(), ..done(&folder, claimed, spent)? };
+            let spent = ChunkCost { seconds: since.elapsed().as_secs_f64(), usd: usd_so_far(shop) - before };
+            let done = ChunkRecord { worker: worker.to_owned(), ..completion_mark(&folder, claimed, spent)? };
             output.say(format_args!(
                 "chunk {} of {}: {}, {} written, {} rejected{}",
                 claimed.chunk,
-                plan.chunks(),
-                count(plan.range(claimed.chunk).len(), "item"),
+                plan.chunk_count(),
+                count_phrase(plan.chunk_range(claimed.chunk).len(), "item"),
                 done.written,
                 done.rejected,
-                if done.failed.is_empty() { String::new() } else { format!(", {} failed", done.failures()) }
+                if done.failed.is_empty() { String::new() } else { format!(", {} failed", done.failed_items()) }
             ));
-            Ok(Ended::Done(done))
+            Ok(ChunkOutcome::Done(done))
         }
-        Ok(Some(why)) if why.exit == Exit::Lost => Ok(Ended::Failed(why.reason.clone(), why)),
-        Ok(Some(why)) => Ok(Ended::Stopped(why)),
+        Ok(Some(why)) if why.exit == Exit::Lost => Ok(ChunkOutcome::Failed(why.reason.clone(), why)),
+        Ok(Some(why)) => Ok(ChunkOutcome::Stopped(why)),
         // A full disk or a lost database is not the fault of the chunk, so it is handed back.
         Err(error) => {
-            let why = Why { reason: error.to_string(), exit: error.exit_code() };
+            let why = WorkerStop { reason: error.to_string(), exit: error.exit_code() };
             match why.exit {
-                Exit::Lost | Exit::Stopped | Exit::Interrupted => Ok(Ended::Stopped(why)),
-                _ => Ok(Ended::Failed(why.reason.clone(), why)),
+                Exit::Lost | Exit::Stopped | Exit::Interrupted => Ok(ChunkOutcome::Stopped(why)),
+                _ => Ok(ChunkOutcome::Failed(why.reason.clone(), why)),
             }
         }
     }
 }
 
 /// Makes the chunk's items. Returns the reason if it stopped early.
-fn fill(
+fn fill_chunk(
     folder: &Path,
     out: &Path,
-    plan: &Plan,
-    shop: &Workshop<'_>,
-    claimed: Claimed,
-    output: &Output,
-) -> Result<Option<Why>, Error> {
-    let items = shop.plan.items.get(plan.range(claimed.chunk)).unwrap_or_default();
+    plan: &ChunkPlan,
+    shop: &ItemWorkshop<'_>,
+    claimed: ChunkClaim,
+    output: &CommandOutput,
+) -> Result<Option<WorkerStop>, CommandError> {
+    let items = shop.plan.items.get(plan.chunk_range(claimed.chunk)).unwrap_or_default();
     let mut run = RunFolder::of_worker(folder, shop.settings)?;
     if let Some(calls) = shop.calls {
         calls.turn_to(&calls_of(folder))?;
     }
-    let data = WorldData::of(folder)?.expecting(&plan.data, &out.join(wayword_queue::PLAN));
-    let stopped = shop.fill(&mut run, &data, items, output)?;
+    let data = WorldData::from_folder(folder)?.expecting_plan(&plan.data, &out.join(wayword_queue::PLAN));
+    let stopped = shop.fill_folder(&mut run, &data, items, output)?;
     drop(run);
     match stopped {
-        Some(stop) => Ok(Some(Why { reason: stop.reason, exit: stop.exit })),
+        Some(stop) => Ok(Some(WorkerStop { reason: stop.reason, exit: stop.exit })),
         None => Ok(sync_tree(folder).map(|()| None)?),
     }
 }
 
 /// The time and money that a chunk took.
-struct Spent {
+struct ChunkCost {
     seconds: f64,
     usd: f64,
 }
 
 /// US dollars that this worker's calls have cost so far.
-fn usd(shop: &Workshop<'_>) -> f64 {
-    shop.calls.map_or(0.0, |calls| calls.spent().usd)
+fn usd_so_far(shop: &ItemWorkshop<'_>) -> f64 {
+    shop.calls.map_or(0.0, |calls| calls.spent_so_far().usd)
 }
 
-fn done(folder: &Path, claimed: Claimed, Spent { seconds, usd }: Spent) -> Result<Done, Error> {
-    let lines = |name: &str| -> Result<usize, Error> {
+fn completion_mark(
+    folder: &Path,
+    claimed: ChunkClaim,
+    ChunkCost { seconds, usd }: ChunkCost,
+) -> Result<ChunkRecord, CommandError> {
+    let lines = |name: &str| -> Result<usize, CommandError> {
         let path = folder.join(name);
-        let text = fs::read(&path).map_err(Error::io(&path, "count the lines of"))?;
+        let text = fs::read(&path).map_err(CommandError::io(&path, "count the lines of"))?;
         Ok(text.iter().filter(|byte| **byte == b'\n').count())
     };
     let mut failed: BTreeMap<String, usize> = BTreeMap::new();
@@ -102,7 +106,7 @@ fn done(folder: &Path, claimed: Claimed, Spent { seconds, usd }: Spent) -> Resul
         *failed.entry(reason.chars().take(MOST_REASON_CHARS).collect()).or_default() += 1;
     }
     let at_unix_s = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
-    Ok(Done {
+    Ok(ChunkRecord {
         chunk: claimed.chunk,
         epoch: claimed.epoch,
         made: lines(file::WALKS)?,
@@ -112,6 +116,6 @@ fn done(folder: &Path, claimed: Claimed, Spent { seconds, usd }: Spent) -> Resul
         seconds,
         usd,
         at_unix_s,
-        ..Done::default()
+        ..ChunkRecord::default()
     })
 }

@@ -6,115 +6,123 @@ mod chunk;
 mod planned;
 mod told;
 
-use super::{Workshop, refuse_impossible_paths, warn_of_no_effect};
+use super::{ItemWorkshop, refuse_impossible_paths, warn_of_no_effect};
 use crate::{
-    calls::{Calls, Keeping},
-    error::{Error, Exit},
+    calls::{CallKeeping, ModelCalls},
+    error::{CommandError, Exit},
     follow::KnownScenes,
     generate::workers::args::AskedWorkers,
     interrupt,
-    looking_for::Lookout,
-    output::Output,
-    plan::Plan,
+    looking_for::DetectorLookout,
+    output::CommandOutput,
+    plan::RunPlan,
     platforms,
-    settings::{Job, Settings},
+    settings::{RunJob, RunSettings},
     stores::RunPlace,
-    team::Team,
+    team::RoleTeam,
     usable, watch,
 };
-use board::Counter;
-pub use board::Way;
+pub use board::ChunkHandout;
+use board::WorkerBoard;
 use std::path::Path;
-use told::{Planned, Worked};
-use wayword_queue::{Finished, PLAN, work};
+use told::{PlanSummary, WorkerSummary};
+use wayword_queue::{PLAN, WorkSummary, work_chunks};
 
 /// Why a worker stops although chunks are left.
-pub(super) struct Why {
+pub(super) struct WorkerStop {
     reason: String,
     exit: Exit,
 }
 
-pub fn run(out: &Path, job: &Job, asked: &AskedWorkers, worker: &str, output: &Output) -> Result<Exit, Error> {
-    let place = RunPlace::of(out)?;
+pub fn run_worker(
+    out: &Path,
+    job: &RunJob,
+    asked: &AskedWorkers,
+    worker: &str,
+    output: &CommandOutput,
+) -> Result<Exit, CommandError> {
+    let place = RunPlace::open_named(out)?;
     let out = place.folder();
     warn_of_no_effect(&job.settings, output);
     planned::refuse_other_folder(out)?;
-    let kept = wayword_queue::Plan::find(out)?;
+    let kept = wayword_queue::ChunkPlan::find_plan(out)?;
     let before = kept.as_ref().map(|kept| planned::settings_of(out, kept)).transpose()?;
     let service = board::part_of(&job.service, asked, output)?;
     // The list of recordings is filled in once this worker has its part.
-    let mut job = Job { service, keeping: Keeping::Chunks(Vec::new()), ..job.clone() };
+    let mut job = RunJob { service, keeping: CallKeeping::Chunks(Vec::new()), ..job.clone() };
     if let Some(before) = &before {
         job.settings.left_out.clone_from(&before.left_out);
     }
     if !asked.plan {
-        Calls::ready(&job, output)?;
+        ModelCalls::check_ready(&job, output)?;
     }
-    let platform = platforms::open(&job.settings)?;
+    let platform = platforms::open_platform(&job.settings)?;
     if before.is_none() {
-        job.settings = usable::settled(&job.settings, platform.as_ref(), output)?;
+        job.settings = usable::settle_left_out(&job.settings, platform.as_ref(), output)?;
     }
-    let plan = Plan::writing(&job, platform.as_ref())?;
-    let settings = plan.settings()?;
+    let plan = RunPlan::for_writing(&job, platform.as_ref())?;
+    let settings = plan.settings_with_hashes()?;
     if before.is_none() {
         usable::tell_of_episodes(&settings, &plan.items, platform.as_ref(), output)?;
         refuse_impossible_paths(&plan.items, &settings, platform.as_ref())?;
-        place.check()?;
-        planned::put(out, &plan, &settings, asked)?;
-        place.publish(PLAN)?;
+        place.check_store()?;
+        planned::write_plan(out, &plan, &settings, asked)?;
+        place.publish_file(PLAN)?;
     }
     // Another worker may have written the plan meanwhile, and the plan in the folder counts.
-    let kept = kept.map_or_else(|| wayword_queue::Plan::of(out), Ok)?;
-    planned::agree(place.named(), &kept, &plan, &settings, asked)?;
+    let kept = kept.map_or_else(|| wayword_queue::ChunkPlan::for_folder(out), Ok)?;
+    planned::check_agreement(place.shown_path(), &kept, &plan, &settings, asked)?;
     if asked.plan {
-        let told = Planned::of(place.named(), &kept);
-        output.data(&told, &told);
+        let told = PlanSummary::from_plan(place.shown_path(), &kept);
+        output.print_result(&told, &told);
         return Ok(Exit::Done);
     }
     watch::is_of_run(&kept.run);
     let worked = make_chunks(&place, &kept, &plan, &settings, asked, worker, output)?;
-    output.data(&worked, &worked);
+    output.print_result(&worked, &worked);
     Ok(worked.exit)
 }
 
 fn make_chunks(
     place: &RunPlace,
-    kept: &wayword_queue::Plan,
-    plan: &Plan<'_>,
-    settings: &Settings,
+    kept: &wayword_queue::ChunkPlan,
+    plan: &RunPlan<'_>,
+    settings: &RunSettings,
     asked: &AskedWorkers,
     worker: &str,
-    output: &Output,
-) -> Result<Worked, Error> {
+    output: &CommandOutput,
+) -> Result<WorkerSummary, CommandError> {
     let out = place.folder();
     if place.is_stored() && asked.shard.is_some() && !plan.models.is_empty() {
-        return Err(Error::usage(
-            format!("{}: a shard cannot keep the calls of models in an object store", place.named().display()),
+        return Err(CommandError::usage(
+            format!("{}: a shard cannot keep the calls of models in an object store", place.shown_path().display()),
             "give --queue DATABASE, which keeps them; or --out a folder that all workers share",
         ));
     }
     if asked.shard.is_some() {
         place.fetch_marks(kept)?;
     }
-    let counter = Counter::open(place, kept, worker, asked)?;
-    let job = Job { keeping: counter.kept_calls(), ..plan.job.clone() };
-    let calls = Calls::open(&job, &kept.run, output)?;
-    let lookout = Lookout::of(settings, calls.as_ref(), &plan.styles)?;
-    let team = Team::new(settings, calls.as_ref(), plan.platform)?.with(lookout);
-    let shop = Workshop { plan, settings, calls: calls.as_ref(), team: &team, scenes: KnownScenes::new() };
+    let counter = WorkerBoard::open(place, kept, worker, asked)?;
+    let job = RunJob { keeping: counter.kept_calls(), ..plan.job.clone() };
+    let calls = ModelCalls::open(&job, &kept.run, output)?;
+    let lookout = DetectorLookout::from_settings(settings, calls.as_ref(), &plan.styles)?;
+    let team = RoleTeam::new(settings, calls.as_ref(), plan.platform)?.with_lookout(lookout);
+    let shop = ItemWorkshop { plan, settings, calls: calls.as_ref(), team: &team, scenes: KnownScenes::new() };
     let _graceful = interrupt::finish_first(calls.as_ref());
-    let make = |claimed| watch::chunk(claimed, || chunk::make(out, kept, &shop, claimed, worker, output));
-    let finished: Finished<Why> = counter.with(|board| place.sending(board, |board| work(board, make, interrupted)))?;
-    counter.close()?;
+    let make =
+        |claimed| watch::within_chunk_span(claimed, || chunk::make_chunk(out, kept, &shop, claimed, worker, output));
+    let finished: WorkSummary<WorkerStop> =
+        counter.with_board(|board| place.with_sending(board, |board| work_chunks(board, make, interrupt_stop)))?;
+    counter.write_missing_marks()?;
     match asked.shard {
         // Others have finished chunks meanwhile.
         Some(_) => place.fetch_marks(kept)?,
         None => place.send_marks(kept)?,
     }
-    Worked::of(place, kept, finished, calls.as_ref().map(Calls::spent))
+    WorkerSummary::from_finished(place, kept, finished, calls.as_ref().map(ModelCalls::spent_so_far))
 }
 
-fn interrupted() -> Option<Why> {
+fn interrupt_stop() -> Option<WorkerStop> {
     interrupt::is_asked()
-        .then(|| Why { reason: "interrupted: its chunk was handed back".to_owned(), exit: Exit::Interrupted })
+        .then(|| WorkerStop { reason: "interrupted: its chunk was handed back".to_owned(), exit: Exit::Interrupted })
 }

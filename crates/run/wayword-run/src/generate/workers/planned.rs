@@ -1,21 +1,21 @@
 //! Writes the plan of a run (`plan.json`), and compares the plan in a folder with the settings and items of this worker.
 
 use crate::{
-    error::Error,
+    error::CommandError,
     generate::workers::args::AskedWorkers,
-    item::Item,
+    item::RunItem,
     own_format,
-    plan::Plan,
-    run_folder::{config_text, differing, fresh_id, hashes, is_begun},
-    settings::Settings,
+    plan::RunPlan,
+    run_folder::{config_text, differing_keys, fresh_id, is_begun, scene_hashes},
+    settings::RunSettings,
 };
 use std::{collections::BTreeSet, fs, path::Path};
 
 /// Refuses a folder that holds a run of one machine.
-pub(super) fn refuse_other_folder(out: &Path) -> Result<(), Error> {
+pub(super) fn refuse_other_folder(out: &Path) -> Result<(), CommandError> {
     crate::run_folder::refuse_file(out)?;
-    if is_begun(out) && wayword_queue::Plan::find(out)?.is_none() {
-        return Err(Error::usage(
+    if is_begun(out) && wayword_queue::ChunkPlan::find_plan(out)?.is_none() {
+        return Err(CommandError::usage(
             format!("{} holds a run that one machine makes", out.display()),
             "continue it without --plan, --shard and --queue, or give another --out",
         ));
@@ -24,46 +24,51 @@ pub(super) fn refuse_other_folder(out: &Path) -> Result<(), Error> {
 }
 
 /// The settings in a plan.
-pub(crate) fn settings_of(out: &Path, plan: &wayword_queue::Plan) -> Result<Settings, Error> {
-    own_format::read(&plan.config).map_err(|unread| {
-        let hint = unread.hint("it was changed by hand or by another version: use another folder");
-        Error::usage(format!("{}: {unread}", out.join(wayword_queue::PLAN).display()), hint)
+pub(crate) fn settings_of(out: &Path, plan: &wayword_queue::ChunkPlan) -> Result<RunSettings, CommandError> {
+    own_format::parse_document(&plan.config).map_err(|unread| {
+        let hint = unread.hint_or("it was changed by hand or by another version: use another folder");
+        CommandError::usage(format!("{}: {unread}", out.join(wayword_queue::PLAN).display()), hint)
     })
 }
 
 /// Writes the plan, unless another worker has just done so.
-pub(super) fn put(out: &Path, plan: &Plan<'_>, settings: &Settings, asked: &AskedWorkers) -> Result<(), Error> {
-    fs::create_dir_all(out.join("chunks")).map_err(Error::io(out, "make the run folder"))?;
-    let chunk = asked.chunk();
-    let items: Vec<String> = plan.items.iter().map(Item::id).collect();
-    let mut new = wayword_queue::Plan::new(fresh_id("run"), chunk, config_text(settings)?, items);
-    let scenes: BTreeSet<_> = plan.items.iter().map(Item::scene).collect();
-    new.data = hashes(plan.platform, scenes)?;
-    new.estimate = serde_json::to_value(plan.estimate(Some(chunk))?).unwrap_or_default();
-    new.put(out)?;
+pub(super) fn write_plan(
+    out: &Path,
+    plan: &RunPlan<'_>,
+    settings: &RunSettings,
+    asked: &AskedWorkers,
+) -> Result<(), CommandError> {
+    fs::create_dir_all(out.join("chunks")).map_err(CommandError::io(out, "make the run folder"))?;
+    let chunk = asked.chunk_items();
+    let items: Vec<String> = plan.items.iter().map(RunItem::id).collect();
+    let mut new = wayword_queue::ChunkPlan::new(fresh_id("run"), chunk, config_text(settings)?, items);
+    let scenes: BTreeSet<_> = plan.items.iter().map(RunItem::scene).collect();
+    new.data = scene_hashes(plan.platform, scenes)?;
+    new.estimate = serde_json::to_value(plan.estimate_calls(Some(chunk))?).unwrap_or_default();
+    new.write_plan(out)?;
     Ok(())
 }
 
 /// Refuses to work on a plan with other settings, items or chunks than this worker has.
-pub(super) fn agree(
+pub(super) fn check_agreement(
     out: &Path,
-    kept: &wayword_queue::Plan,
-    plan: &Plan<'_>,
-    settings: &Settings,
+    kept: &wayword_queue::ChunkPlan,
+    plan: &RunPlan<'_>,
+    settings: &RunSettings,
     asked: &AskedWorkers,
-) -> Result<(), Error> {
+) -> Result<(), CommandError> {
     let before = settings_of(out, kept)?;
-    let mut differs: Vec<String> = differing(&before, settings).into_iter().collect();
+    let mut differs: Vec<String> = differing_keys(&before, settings).into_iter().collect();
     if asked.chunk.is_some_and(|chunk| chunk.get() != kept.chunk) {
         differs.push(format!("chunk ({} in the plan)", kept.chunk));
     }
-    if differs.is_empty() && !plan.items.iter().map(Item::id).eq(kept.items.iter().cloned()) {
+    if differs.is_empty() && !plan.items.iter().map(RunItem::id).eq(kept.items.iter().cloned()) {
         differs.push("the items that the data gives".to_owned());
     }
     if differs.is_empty() {
         return Ok(());
     }
-    Err(Error::usage(
+    Err(CommandError::usage(
         format!("{} holds the plan of another run; these differ: {}", out.display(), differs.join(", ")),
         format!(
             "give all workers the settings, files and data of the plan ({}), or give another --out",

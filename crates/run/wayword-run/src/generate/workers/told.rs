@@ -1,19 +1,19 @@
 //! The results that a worker prints: a summary of the plan (`--plan`), and a summary of its own work.
 
-use super::Why;
+use super::WorkerStop;
 use crate::{
-    calls::Spent,
-    count::count,
-    error::{Error, Exit},
+    calls::CallSpending,
+    count::count_phrase,
+    error::{CommandError, Exit},
     stores::RunPlace,
 };
 use serde::Serialize;
 use std::{fmt, path::Path};
-use wayword_queue::{Done, Finished, Plan, done_path};
+use wayword_queue::{ChunkPlan, ChunkRecord, WorkSummary, done_path};
 
 /// A plan, for people and machines.
 #[derive(Serialize)]
-pub(super) struct Planned {
+pub(super) struct PlanSummary {
     run: String,
     items: usize,
     chunks: usize,
@@ -21,29 +21,29 @@ pub(super) struct Planned {
     estimate: serde_json::Value,
 }
 
-impl Planned {
-    pub(super) fn of(out: &Path, plan: &Plan) -> Self {
+impl PlanSummary {
+    pub(super) fn from_plan(out: &Path, plan: &ChunkPlan) -> Self {
         Self {
             run: out.display().to_string(),
             items: plan.items.len(),
-            chunks: plan.chunks(),
+            chunks: plan.chunk_count(),
             chunk: plan.chunk,
             estimate: plan.estimate.clone(),
         }
     }
 }
 
-impl fmt::Display for Planned {
+impl fmt::Display for PlanSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { run, items, chunks, chunk, .. } = self;
-        writeln!(f, "{run}: {} in {} of {chunk}", count(*items, "item"), count(*chunks, "chunk"))?;
+        writeln!(f, "{run}: {} in {} of {chunk}", count_phrase(*items, "item"), count_phrase(*chunks, "chunk"))?;
         write!(f, "workers make them with the same command and --shard K/N or --queue DATABASE instead of --plan")
     }
 }
 
 /// The work of one worker.
 #[derive(Serialize)]
-pub(super) struct Worked {
+pub(super) struct WorkerSummary {
     run: String,
     /// Chunks that this worker finished.
     chunks: usize,
@@ -56,28 +56,28 @@ pub(super) struct Worked {
     /// Finished chunks that were dropped, because another worker had taken them over.
     dropped: usize,
     #[serde(skip_serializing_if = "Option::is_none")]
-    spent: Option<Spent>,
+    spent: Option<CallSpending>,
     #[serde(skip_serializing_if = "Option::is_none")]
     stopped: Option<String>,
     #[serde(skip)]
     pub(super) exit: Exit,
 }
 
-impl Worked {
-    pub(super) fn of(
+impl WorkerSummary {
+    pub(super) fn from_finished(
         place: &RunPlace,
-        plan: &Plan,
-        finished: Finished<Why>,
-        spent: Option<Spent>,
-    ) -> Result<Self, Error> {
-        let Finished { done, dropped, stopped } = finished;
-        let sum = |of: fn(&Done) -> usize| done.iter().map(of).sum();
-        let failed = sum(Done::failures);
+        plan: &ChunkPlan,
+        finished: WorkSummary<WorkerStop>,
+        spent: Option<CallSpending>,
+    ) -> Result<Self, CommandError> {
+        let WorkSummary { done, dropped, stopped } = finished;
+        let sum = |of: fn(&ChunkRecord) -> usize| done.iter().map(of).sum();
+        let failed = sum(ChunkRecord::failed_items);
         let made: usize = sum(|done| done.made);
         Ok(Self {
-            run: place.named().display().to_string(),
+            run: place.shown_path().display().to_string(),
             chunks: done.len(),
-            unfinished: (0..plan.chunks()).filter(|chunk| !done_path(place.folder(), *chunk).exists()).count(),
+            unfinished: (0..plan.chunk_count()).filter(|chunk| !done_path(place.folder(), *chunk).exists()).count(),
             items: made + failed,
             written: sum(|done| done.written),
             rejected: sum(|done| done.rejected),
@@ -90,20 +90,20 @@ impl Worked {
     }
 }
 
-impl fmt::Display for Worked {
+impl fmt::Display for WorkerSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
             "{}: this worker made {} ({}): {} written, {} rejected, {} failed",
             self.run,
-            count(self.chunks, "chunk"),
-            count(self.items, "item"),
+            count_phrase(self.chunks, "chunk"),
+            count_phrase(self.items, "item"),
             self.written,
             self.rejected,
             self.failed
         )?;
         if self.dropped > 0 {
-            write!(f, "; {} dropped, because another worker had taken over", count(self.dropped, "chunk"))?;
+            write!(f, "; {} dropped, because another worker had taken over", count_phrase(self.dropped, "chunk"))?;
         }
         if let Some(spent) = &self.spent {
             write!(f, "\n{spent}")?;
@@ -116,7 +116,7 @@ impl fmt::Display for Worked {
                 self.run
             ),
             (None, unfinished) => {
-                let unfinished = count(unfinished, "chunk");
+                let unfinished = count_phrase(unfinished, "chunk");
                 write!(
                     f,
                     "\nnothing is left for this worker; {unfinished} of the run not finished: see `wayword runs status {}`",

@@ -1,6 +1,6 @@
 //! The file of a worker's spans. An error of its disk costs lines, but never stops the worker.
 
-use crate::{error::Error, output::Output};
+use crate::{error::CommandError, output::CommandOutput};
 use serde::Serialize;
 use std::{
     fs::{self, File},
@@ -12,11 +12,11 @@ use std::{
 /// A file of JSON lines that drops a line that it cannot write.
 pub(super) struct LineFile {
     path: PathBuf,
-    output: Output,
-    state: Mutex<State>,
+    output: CommandOutput,
+    state: Mutex<LineFileState>,
 }
 
-struct State {
+struct LineFileState {
     file: File,
     /// Bytes of the whole lines.
     whole: u64,
@@ -29,22 +29,22 @@ impl LineFile {
     ///
     /// # Errors
     /// When it cannot be made for another reason.
-    pub(super) fn begin(path: &Path, output: &Output) -> Result<Option<Self>, Error> {
+    pub(super) fn begin(path: &Path, output: &CommandOutput) -> Result<Option<Self>, CommandError> {
         let folder = path.parent().unwrap_or(Path::new(""));
         let file = match fs::create_dir_all(folder).and_then(|()| File::options().append(true).create(true).open(path))
         {
             Ok(file) => file,
             Err(error) if matches!(error.kind(), ErrorKind::StorageFull | ErrorKind::QuotaExceeded) => {
-                output.say(lost(path, &error));
+                output.say(lost_warning(path, &error));
                 return Ok(None);
             }
-            Err(error) => return Err(Error::io(path, "make the file of spans")(error)),
+            Err(error) => return Err(CommandError::io(path, "make the file of spans")(error)),
         };
-        Ok(Some(Self::of(path, file, output)))
+        Ok(Some(Self::from_file(path, file, output)))
     }
 
-    fn of(path: &Path, file: File, output: &Output) -> Self {
-        let state = Mutex::new(State { file, whole: 0, is_told: false });
+    fn from_file(path: &Path, file: File, output: &CommandOutput) -> Self {
+        let state = Mutex::new(LineFileState { file, whole: 0, is_told: false });
         Self { path: path.to_owned(), output: output.clone(), state }
     }
 
@@ -59,46 +59,46 @@ impl LineFile {
                 // A part of the line may be there. If it cannot be cut off, the file cannot be written at all.
                 let _ = state.file.set_len(state.whole);
                 if !std::mem::replace(&mut state.is_told, true) {
-                    self.output.say(lost(&self.path, &error));
+                    self.output.say(lost_warning(&self.path, &error));
                 }
             }
         }
     }
 }
 
-fn lost(path: &Path, error: &std::io::Error) -> String {
+fn lost_warning(path: &Path, error: &std::io::Error) -> String {
     format!("warning: {}: spans cannot be written ({error}); the run goes on, and they are lost", path.display())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::output::Listener;
+    use crate::output::CommandOutputListener;
     use indicatif::ProgressBar;
     use std::sync::Arc;
 
     #[derive(Default)]
     struct Heard(Mutex<Vec<String>>);
 
-    impl Listener for Heard {
-        fn data(&self, _: String) {}
+    impl CommandOutputListener for Heard {
+        fn take_result(&self, _: String) {}
 
-        fn say(&self, text: String) {
+        fn take_message(&self, text: String) {
             self.0.lock().unwrap().push(text);
         }
 
-        fn bar(&self, _: &ProgressBar) {}
+        fn take_bar(&self, _: &ProgressBar) {}
     }
 
     #[test]
     fn append_warns_once_about_a_file_that_cannot_be_written() {
         let heard = Arc::new(Heard::default());
-        let output = Output::heard_by(Arc::clone(&heard) as Arc<dyn Listener>);
+        let output = CommandOutput::heard_by(Arc::clone(&heard) as Arc<dyn CommandOutputListener>);
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("w.jsonl");
         fs::write(&path, "").unwrap();
         // Opened for reading alone, so every write fails.
-        let file = LineFile::of(&path, File::open(&path).unwrap(), &output);
+        let file = LineFile::from_file(&path, File::open(&path).unwrap(), &output);
         for number in 0..3 {
             file.append(&number);
         }
@@ -110,7 +110,8 @@ mod tests {
     fn begin_refuses_a_folder_that_cannot_be_made() {
         let folder = tempfile::tempdir().unwrap();
         fs::write(folder.path().join("file"), "").unwrap();
-        let refused = LineFile::begin(&folder.path().join("file/spans/w.jsonl"), &Output::new(false, true)).err();
+        let refused =
+            LineFile::begin(&folder.path().join("file/spans/w.jsonl"), &CommandOutput::new(false, true)).err();
         assert!(refused.unwrap().to_string().contains("cannot make the file of spans"));
     }
 }

@@ -1,6 +1,6 @@
 //! The HTTP client for a collector of OpenTelemetry: the same library that calls models, behind OpenTelemetry's trait.
 
-use super::{exporter::Teller, variables};
+use super::{exporter::FailureReporter, variables};
 use async_trait::async_trait;
 use opentelemetry_http::{Bytes, HttpClient, HttpError, Request, Response};
 use std::{fs, sync::Arc};
@@ -14,28 +14,28 @@ const LARGEST_ANSWER: u64 = 1 << 16;
 
 /// A blocking client; the exporter uses it on a thread of its own.
 #[derive(Debug)]
-pub(super) struct Client {
+pub(super) struct CollectorClient {
     agent: Agent,
-    teller: Arc<Teller>,
+    teller: Arc<FailureReporter>,
 }
 
-impl Client {
+impl CollectorClient {
     /// # Errors
     /// When the certificates of the environment cannot be read.
-    pub(super) fn new(teller: Arc<Teller>) -> Result<Self, String> {
+    pub(super) fn new(teller: Arc<FailureReporter>) -> Result<Self, String> {
         let config = Agent::config_builder()
             .http_status_as_error(false)
             // A redirect would send the headers, which may have a key, to another server.
             .max_redirects(0)
-            .timeout_global(Some(variables::timeout()))
+            .timeout_global(Some(variables::request_timeout()))
             .user_agent(concat!("wayword/", env!("CARGO_PKG_VERSION")))
-            .tls_config(TlsConfig::builder().root_certs(roots()?).build());
+            .tls_config(TlsConfig::builder().root_certs(trusted_roots()?).build());
         Ok(Self { agent: config.build().new_agent(), teller })
     }
 }
 
 /// The certificate authorities to trust: those of the environment's file, or else the public ones.
-fn roots() -> Result<RootCerts, String> {
+fn trusted_roots() -> Result<RootCerts, String> {
     let Some(file) = variables::of_spans_or_all("CERTIFICATE") else { return Ok(RootCerts::WebPki) };
     let unread = |why: &str| format!("{file}, which OTEL_EXPORTER_OTLP_CERTIFICATE names, {why}");
     let pem = fs::read(&file).map_err(|error| unread(&format!("cannot be read: {error}")))?;
@@ -49,26 +49,26 @@ fn roots() -> Result<RootCerts, String> {
 }
 
 #[async_trait]
-impl HttpClient for Client {
+impl HttpClient for CollectorClient {
     async fn send_bytes(&self, request: Request<Bytes>) -> Result<Response<Bytes>, HttpError> {
         let (head, body) = request.into_parts();
         let sent = self.agent.run(Request::from_parts(head, &body[..]));
-        let (head, mut body) = sent.map_err(|error| self.noted(error))?.into_parts();
-        let body = body.with_config().limit(LARGEST_ANSWER).read_to_vec().map_err(|error| self.noted(error))?;
+        let (head, mut body) = sent.map_err(|error| self.note_error(error))?.into_parts();
+        let body = body.with_config().limit(LARGEST_ANSWER).read_to_vec().map_err(|error| self.note_error(error))?;
         Ok(Response::from_parts(head, body.into()))
     }
 }
 
-impl Client {
+impl CollectorClient {
     /// Keeps the reason of a failure, which the exporter does not pass on.
-    fn noted(&self, error: Error) -> HttpError {
-        self.teller.note(words(&error));
+    fn note_error(&self, error: Error) -> HttpError {
+        self.teller.note_reason(error_words(&error));
         error.into()
     }
 }
 
 /// Why a request failed, in words of our own: the library's errors may quote the address, which may contain a password.
-fn words(error: &Error) -> String {
+fn error_words(error: &Error) -> String {
     match error {
         Error::Io(error) => error.to_string(),
         Error::Timeout(_) => "it gave no answer in time".to_owned(),

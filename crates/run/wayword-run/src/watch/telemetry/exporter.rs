@@ -1,7 +1,7 @@
 //! The exporter of OpenTelemetry, with a warning when it fails for the first time.
 
-use super::variables::ENDPOINT;
-use crate::output::Output;
+use super::variables::ENDPOINT_VARIABLE;
+use crate::output::CommandOutput;
 use opentelemetry_sdk::{
     Resource,
     error::OTelSdkResult,
@@ -18,56 +18,56 @@ use std::{
 
 /// Prints a warning about the first failure, and none about later ones.
 #[derive(Debug)]
-pub(super) struct Teller {
-    output: Output,
+pub(super) struct FailureReporter {
+    output: CommandOutput,
     is_told: AtomicBool,
     /// Why the last request failed.
     noted: Mutex<String>,
 }
 
-impl Teller {
-    pub(super) fn new(output: Output) -> Self {
+impl FailureReporter {
+    pub(super) fn new(output: CommandOutput) -> Self {
         Self { output, is_told: AtomicBool::new(false), noted: Mutex::default() }
     }
 
-    /// Keeps the reason of a failure until [`Self::tell`].
-    pub(super) fn note(&self, reason: String) {
+    /// Keeps the reason of a failure until [`Self::report_once`].
+    pub(super) fn note_reason(&self, reason: String) {
         *self.noted.lock().unwrap_or_else(PoisonError::into_inner) = reason;
     }
 
     /// Prints the warning, with the reason that was noted last, or else with this one.
-    pub(super) fn tell(&self, reason: &str) {
+    pub(super) fn report_once(&self, reason: &str) {
         let noted = mem::take(&mut *self.noted.lock().unwrap_or_else(PoisonError::into_inner));
         if self.is_told.swap(true, Ordering::Relaxed) {
             return;
         }
         let reason = if noted.is_empty() { reason } else { &noted };
         self.output.say(format_args!(
-            "warning: spans cannot be sent to the collector of {ENDPOINT} ({reason}); the run goes on, and they may be lost"
+            "warning: spans cannot be sent to the collector of {ENDPOINT_VARIABLE} ({reason}); the run goes on, and they may be lost"
         ));
     }
 }
 
 /// An exporter that warns about its first failure.
 #[derive(Debug)]
-pub(super) struct Exporter {
+pub(super) struct ReportingExporter {
     inner: opentelemetry_otlp::SpanExporter,
-    teller: Arc<Teller>,
+    teller: Arc<FailureReporter>,
 }
 
-impl Exporter {
-    pub(super) fn new(inner: opentelemetry_otlp::SpanExporter, teller: Arc<Teller>) -> Self {
+impl ReportingExporter {
+    pub(super) fn new(inner: opentelemetry_otlp::SpanExporter, teller: Arc<FailureReporter>) -> Self {
         Self { inner, teller }
     }
 }
 
-impl SpanExporter for Exporter {
+impl SpanExporter for ReportingExporter {
     async fn export(&self, batch: Vec<SpanData>) -> OTelSdkResult {
         let sent = self.inner.export(batch).await;
         match &sent {
             // Another try may have succeeded after a failure that was noted.
-            Ok(()) => self.teller.note(String::new()),
-            Err(error) => self.teller.tell(&error.to_string()),
+            Ok(()) => self.teller.note_reason(String::new()),
+            Err(error) => self.teller.report_once(&error.to_string()),
         }
         sent
     }

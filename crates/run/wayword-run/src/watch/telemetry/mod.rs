@@ -5,9 +5,9 @@ mod client;
 mod exporter;
 mod variables;
 
-use crate::output::Output;
-use client::Client;
-use exporter::{Exporter, Teller};
+use crate::output::CommandOutput;
+use client::CollectorClient;
+use exporter::{FailureReporter, ReportingExporter};
 use opentelemetry::{KeyValue, trace::TracerProvider};
 use opentelemetry_otlp::{Protocol, SpanExporter, WithExportConfig, WithHttpConfig};
 use opentelemetry_sdk::{
@@ -24,33 +24,33 @@ use tracing_subscriber::registry::LookupSpan;
 const LAST_WAIT: Duration = Duration::from_secs(5);
 
 /// The connection to a collector.
-pub(super) struct Telemetry {
+pub(super) struct SpanTelemetry {
     provider: SdkTracerProvider,
-    teller: Arc<Teller>,
+    teller: Arc<FailureReporter>,
 }
 
-impl Telemetry {
+impl SpanTelemetry {
     /// Begins to send, if the environment names a collector. Makes no connection yet. If the collector cannot be used, a warning
     /// is printed and no spans are sent.
-    pub(super) fn start(worker: &str, output: &Output) -> Option<Self> {
+    pub(super) fn start(worker: &str, output: &CommandOutput) -> Option<Self> {
         if !variables::is_asked() {
             return None;
         }
-        let teller = Arc::new(Teller::new(output.clone()));
-        let exporter = match exporter(&teller) {
+        let teller = Arc::new(FailureReporter::new(output.clone()));
+        let exporter = match make_exporter(&teller) {
             Ok(exporter) => exporter,
             Err(reason) => {
-                teller.tell(&reason);
+                teller.report_once(&reason);
                 return None;
             }
         };
         let provider =
-            SdkTracerProvider::builder().with_resource(resource(worker)).with_batch_exporter(exporter).build();
+            SdkTracerProvider::builder().with_resource(worker_resource(worker)).with_batch_exporter(exporter).build();
         Some(Self { provider, teller })
     }
 
     /// The layer of `tracing` that takes the program's spans.
-    pub(super) fn layer<S: Subscriber + for<'a> LookupSpan<'a>>(&self) -> OpenTelemetryLayer<S, SdkTracer> {
+    pub(super) fn tracing_layer<S: Subscriber + for<'a> LookupSpan<'a>>(&self) -> OpenTelemetryLayer<S, SdkTracer> {
         let layer = tracing_opentelemetry::layer().with_tracer(self.provider.tracer("wayword"));
         // Source lines and threads have no meaning for a user of the program.
         layer
@@ -62,27 +62,27 @@ impl Telemetry {
     }
 
     /// Sends the last spans, and gives up after a few seconds.
-    pub(super) fn end(self) {
+    pub(super) fn send_rest(self) {
         if let Err(error) = self.provider.shutdown_with_timeout(LAST_WAIT) {
-            self.teller.tell(&error.to_string());
+            self.teller.report_once(&error.to_string());
         }
     }
 }
 
-fn exporter(teller: &Arc<Teller>) -> Result<Exporter, String> {
-    let client = Client::new(Arc::clone(teller))?;
+fn make_exporter(teller: &Arc<FailureReporter>) -> Result<ReportingExporter, String> {
+    let client = CollectorClient::new(Arc::clone(teller))?;
     // The address may hold a password, so the error that quotes it is not passed on.
     let exporter = SpanExporter::builder()
         .with_http()
         .with_protocol(Protocol::HttpBinary)
         .with_http_client(client)
         .build()
-        .map_err(|_| format!("{} is no address, or another variable of its is wrong", variables::ENDPOINT))?;
-    Ok(Exporter::new(exporter, Arc::clone(teller)))
+        .map_err(|_| format!("{} is no address, or another variable of its is wrong", variables::ENDPOINT_VARIABLE))?;
+    Ok(ReportingExporter::new(exporter, Arc::clone(teller)))
 }
 
 /// The resource attributes of this worker. Names that the user sets in the environment win.
-fn resource(worker: &str) -> Resource {
+fn worker_resource(worker: &str) -> Resource {
     let ours = [
         KeyValue::new("service.name", "wayword"),
         KeyValue::new("service.version", env!("CARGO_PKG_VERSION")),
@@ -92,7 +92,7 @@ fn resource(worker: &str) -> Resource {
         .with_attributes(ours)
         .with_detector(Box::new(TelemetryResourceDetector))
         .with_detector(Box::new(EnvResourceDetector::new()));
-    match variables::text("OTEL_SERVICE_NAME") {
+    match variables::variable_text("OTEL_SERVICE_NAME") {
         Some(name) => resource.with_service_name(name).build(),
         None => resource.build(),
     }

@@ -19,7 +19,7 @@ use std::{
     process::{Command, Stdio},
 };
 use tempfile::TempDir;
-use wayword_formats::jsonl::{self, Record};
+use wayword_formats::jsonl::{self, InstructionRecord};
 
 /// A folder with the made-up building in `data`. Dropping it removes the folder.
 pub(crate) struct Building {
@@ -82,14 +82,14 @@ impl Building {
     }
 
     /// A run over the REVERIE episodes in both styles, in which every text passes.
-    pub(crate) fn run_over_episodes(&self, out: &str) -> Vec<Record> {
+    pub(crate) fn run_over_episodes(&self, out: &str) -> Vec<InstructionRecord> {
         let ran = self.generate(out, &["--episodes", EPISODES, "--style", "reverie", "--style", "r2r"]);
         assert_eq!(ran.code, Some(0), "{ran:?}");
         self.records(out)
     }
 
-    pub(crate) fn records(&self, run: &str) -> Vec<Record> {
-        jsonl::read(&self.path(run).join("instructions.jsonl")).unwrap()
+    pub(crate) fn records(&self, run: &str) -> Vec<InstructionRecord> {
+        jsonl::read_records(&self.path(run).join("instructions.jsonl")).unwrap()
     }
 
     pub(crate) fn lines(&self, file: &str) -> Vec<Value> {

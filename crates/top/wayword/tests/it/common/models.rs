@@ -5,8 +5,8 @@
 use crate::common::{self, Building, Ran, run};
 use std::{path::Path, process::Command};
 use wayword_testkit::provider::{
-    Behaviour, Dialect, Gallery, Provider,
-    scripts::{Cast, FlawedEye},
+    PictureGallery, ProviderBehaviour, ProviderDialect, ScriptedProvider,
+    scripts::{FlawedEye, ScriptedCast},
 };
 
 /// The variable that holds the provider's key.
@@ -15,27 +15,27 @@ pub(crate) const KEY_ENV: &str = "WAYWORD_TEST_KEY";
 pub(crate) const KEY: &str = "sk-test-7f3b19c2d4e5f6a7";
 
 /// A provider's behaviour with a careless cast behind two names.
-pub(crate) fn cast() -> Behaviour {
-    let cast = Cast::new(FlawedEye::new(Gallery::default(), 1, 0.15), 1, 0.2);
-    Behaviour::of("words", cast.clone()).and("eye", cast)
+pub(crate) fn cast() -> ProviderBehaviour {
+    let cast = ScriptedCast::new(FlawedEye::new(PictureGallery::default(), 1, 0.15), 1, 0.2);
+    ProviderBehaviour::for_model("words", cast.clone()).and_model("eye", cast)
 }
 
 /// The building with pictures, and a provider.
 pub(crate) struct Stage {
     pub(crate) building: Building,
-    pub(crate) provider: Provider,
+    pub(crate) provider: ScriptedProvider,
 }
 
 impl Stage {
-    pub(crate) fn new(behaviour: Behaviour) -> Self {
+    pub(crate) fn new(behaviour: ProviderBehaviour) -> Self {
         let building = Building::new();
         wayword_testkit::write_distinct_skyboxes(&building.data()).unwrap();
-        Self { building, provider: Provider::start(behaviour).unwrap() }
+        Self { building, provider: ScriptedProvider::start(behaviour).unwrap() }
     }
 
     /// The flags that name the models.
     pub(crate) fn models(&self) -> Vec<String> {
-        let base = self.provider.base_url(Dialect::OpenAi);
+        let base = self.provider.base_url(ProviderDialect::OpenAi);
         [
             "--llm",
             "server/words",

@@ -4,23 +4,25 @@
 use serde_json::{Value, json};
 use std::{f64::consts::FRAC_1_SQRT_2, fs, path::Path};
 use wayword_core::{DVec3, ViewpointGraph, ViewpointId};
-use wayword_house::{EYE_M, Ground, House, generate, glb, semantic_glb, semantic_txt, viewpoint_graph};
+use wayword_house::{
+    EYE_M, House, HouseGround, encode_glb, generate_house, semantic_glb, semantic_txt, viewpoint_graph,
+};
 
 /// The first houses of one storey.
 pub(crate) fn flats() -> impl Iterator<Item = House> {
     let is_flat = |house: &House| house.rooms.iter().all(|room| room.base_cm() == house.rooms[0].base_cm());
-    (0..).map(generate).filter(is_flat)
+    (0..).map(generate_house).filter(is_flat)
 }
 
 /// A house's viewpoint graph.
 pub(crate) fn graph_of(house: &House) -> ViewpointGraph {
-    viewpoint_graph(house, &Ground::of(house)).unwrap()
+    viewpoint_graph(house, &HouseGround::for_house(house)).unwrap()
 }
 
 /// Writes a house as `NAME.glb` (or with another ending) into a folder, with its semantic files next to it.
 pub(crate) fn write_scan(house: &House, folder: &Path, name: &str, ending: &str) {
     fs::create_dir_all(folder).unwrap();
-    fs::write(folder.join(format!("{name}{ending}")), with_z_up(&glb(house).unwrap())).unwrap();
+    fs::write(folder.join(format!("{name}{ending}")), with_z_up(&encode_glb(house).unwrap())).unwrap();
     fs::write(folder.join(format!("{name}.semantic.glb")), with_z_up(&semantic_glb(house).unwrap())).unwrap();
     fs::write(folder.join(format!("{name}.semantic.txt")), semantic_txt(house)).unwrap();
 }
@@ -39,9 +41,9 @@ pub(crate) fn included(graph: &ViewpointGraph) -> Vec<&ViewpointId> {
 pub(crate) fn connectivity(graph: &ViewpointGraph, place: impl Fn(DVec3) -> DVec3) -> Value {
     let (all, included): (Vec<_>, _) = (graph.viewpoints().collect(), included(graph));
     let item = |id| {
-        let open = graph.neighbours(id);
+        let open = graph.neighbours_of(id);
         let open: Vec<bool> = all.iter().map(|other| open.contains(other)).collect();
-        let DVec3 { x, y, z } = place(graph.position(id).unwrap());
+        let DVec3 { x, y, z } = place(graph.position_of(id).unwrap());
         json!({
             "image_id": id, "included": included.contains(&id), "height": EYE_M, "unobstructed": open, "visible": open,
             "pose": [0.0, -1.0, 0.0, x, 0.0, 0.0, -1.0, y, 1.0, 0.0, 0.0, z, 0.0, 0.0, 0.0, 1.0],

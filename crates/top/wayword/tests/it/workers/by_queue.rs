@@ -2,15 +2,15 @@
 
 use super::*;
 use std::sync::Arc;
-use wayword_testkit::Postgres;
+use wayword_testkit::PostgresServer;
 
 /// A PostgreSQL server, if `WAYWORD_TEST_POSTGRES` asks for one.
-pub(super) fn server(test: &str) -> Option<Arc<Postgres>> {
+pub(super) fn server(test: &str) -> Option<Arc<PostgresServer>> {
     if std::env::var_os("WAYWORD_TEST_POSTGRES").is_none() {
         eprintln!("skipped: {test} needs WAYWORD_TEST_POSTGRES=1 and PostgreSQL's programs");
         return None;
     }
-    Some(Postgres::shared().unwrap_or_else(|| panic!("{test}: PostgreSQL's initdb and pg_ctl are not installed")))
+    Some(PostgresServer::shared().unwrap_or_else(|| panic!("{test}: PostgreSQL's initdb and pg_ctl are not installed")))
 }
 
 /// Asserts that a run has no open chunk and none that was given up.
@@ -25,7 +25,7 @@ fn workers_of_a_queue_that_are_killed_make_what_one_makes_and_share_their_calls(
         return;
     };
     let kills = 4;
-    let behaviour = Behaviour { latency: Duration::from_millis(10), ..cast() };
+    let behaviour = ProviderBehaviour { latency: Duration::from_millis(10), ..cast() };
     let (whole, killed) = (Stage::new(behaviour.clone()), Stage::new(behaviour));
     let [alone, together] = [(), ()].map(|()| server.new_database());
     assert_eq!(with_models(&whole, "one", &["--queue", &alone]).status().unwrap().code(), Some(0));

@@ -88,7 +88,7 @@ fn a_chunk_that_is_opened_again_in_a_store_is_made_again() {
 #[test]
 fn workers_of_a_queue_that_are_killed_lose_nothing_in_a_store() {
     let Some(server) = by_queue::server("workers_of_a_queue_that_are_killed_lose_nothing_in_a_store") else { return };
-    let behaviour = Behaviour { latency: Duration::from_millis(10), ..cast() };
+    let behaviour = ProviderBehaviour { latency: Duration::from_millis(10), ..cast() };
     let (whole, killed) = (Stage::new(behaviour.clone()), Stage::new(behaviour));
     let [alone, together] = [(), ()].map(|()| server.new_database());
     assert_eq!(with_models(&whole, "one", &["--queue", &alone]).status().unwrap().code(), Some(0));
@@ -111,7 +111,7 @@ fn workers_of_a_queue_that_are_killed_lose_nothing_in_a_store() {
     let epoch = |mark: &str| serde_json::from_str::<serde_json::Value>(mark).unwrap()["epoch"].as_i64().unwrap();
     let mark = || fs::read_to_string(killed.building.path("big/chunks/000001.done")).unwrap();
     let before = epoch(&mark());
-    let mut table = wayword_database::Database::named(&together, None).unwrap().connect().unwrap();
+    let mut table = wayword_database::PostgresDatabase::from_name(&together, None).unwrap().connect().unwrap();
     let failed = "UPDATE wayword_queue.chunks SET state = 'dead', reason = 'timed out' WHERE chunk = 1";
     assert_eq!(table.execute(failed, &[]).unwrap(), 1);
     let retry = ["runs", "retry", &run, "--queue", &together, "--reason", "timed", "--json"];

@@ -77,7 +77,7 @@ impl Crowd<'_> {
 
 /// Bytes of a row in each table that grows with a run, with its indexes.
 fn tell_sizes(url: &str) {
-    let mut client = wayword_database::Database::named(url, None).unwrap().connect().unwrap();
+    let mut client = wayword_database::PostgresDatabase::from_name(url, None).unwrap().connect().unwrap();
     for table in ["wayword_ledger.calls", "wayword_ledger.sent", "wayword_ledger.uses", "wayword_queue.chunks"] {
         let sql = format!("SELECT pg_total_relation_size('{table}'), count(*) FROM {table}");
         let row = client.query_one(&sql, &[]).unwrap();
@@ -91,8 +91,8 @@ fn tell_sizes(url: &str) {
 #[ignore = "takes a quarter of an hour"]
 fn ten_minutes_of_kills_lose_and_double_no_result() {
     let Some(server) = server("nothing_is_lost_or_double_after_ten_minutes_of_kills") else { return };
-    let behaviour = Behaviour { latency: Duration::from_millis(200), ..cast() };
-    let (whole, killed) = (Stage::new(Behaviour { latency: Duration::ZERO, ..cast() }), Stage::new(behaviour));
+    let behaviour = ProviderBehaviour { latency: Duration::from_millis(200), ..cast() };
+    let (whole, killed) = (Stage::new(ProviderBehaviour { latency: Duration::ZERO, ..cast() }), Stage::new(behaviour));
     let [alone, together] = [(), ()].map(|()| server.new_database());
     let mut one = BIG.to_vec();
     one.extend(["--queue", &alone]);
@@ -109,7 +109,7 @@ fn ten_minutes_of_kills_lose_and_double_no_result() {
     let start = || asking_models(&killed, "big", &flags).spawn().unwrap();
     let workers = (0..WORKERS).map(|_| (start(), None)).collect();
     let mut crowd = Crowd { start: &start, workers };
-    let (begun, mut blows, mut rng) = (Instant::now(), Blows::default(), rng(5, &["blows"]));
+    let (begun, mut blows, mut rng) = (Instant::now(), Blows::default(), seeded_rng(5, &["blows"]));
     while !crowd.look() {
         thread::sleep(Duration::from_millis(100));
         let share = begun.elapsed().as_secs_f64() / LONG.as_secs_f64();
@@ -145,7 +145,7 @@ fn ten_minutes_of_kills_lose_and_double_no_result() {
 #[test]
 #[ignore = "needs root, to mount a small file system"]
 fn a_full_disk_loses_nothing() {
-    let behaviour = Behaviour { latency: Duration::from_millis(10), ..cast() };
+    let behaviour = ProviderBehaviour { latency: Duration::from_millis(10), ..cast() };
     let (whole, full) = (Stage::new(behaviour.clone()), Stage::new(behaviour));
     assert_eq!(with_models(&whole, "one", &["--shard", "0/1"]).status().unwrap().code(), Some(0));
     let bytes: usize = files(&whole.building.path("one")).values().map(Vec::len).sum();
@@ -186,7 +186,7 @@ fn a_full_disk_loses_nothing() {
 #[test]
 #[ignore = "needs strace 5.11 or later, which fakes the answers of statfs"]
 fn shards_on_a_network_file_system_use_no_lock_and_no_sqlite() {
-    let behaviour = Behaviour { latency: Duration::from_millis(10), ..cast() };
+    let behaviour = ProviderBehaviour { latency: Duration::from_millis(10), ..cast() };
     let (near, far) = (Stage::new(behaviour.clone()), Stage::new(behaviour));
     let traced = far.building.path("trace");
     let on_nfs = |command: &Command| {

@@ -1,6 +1,6 @@
 //! Weights by hand for the rooms and objects that a step names.
 
-use super::{Set, middle_deg};
+use super::{WeightSetter, middle_deg};
 use crate::{
     features::tables::{
         AHEAD, GROUPS, LAST_ROOM, LAST_THING, NAMED_ROOM, NAMED_THING, NEAREST, RELATIONS, ROOM, ROOM_MOVE,
@@ -8,16 +8,16 @@ use crate::{
     },
     near::CLASSES,
 };
-use wayword_language::reading::steps::Relation;
+use wayword_language::reading::steps::StepRelation;
 
 /// Weights of a mention by the distance class of the object, and of the room.
 const OF_THING: [f64; CLASSES] = [1.0, 0.8, 0.3, -0.4, -1.0, -1.5, 0.0];
 const OF_ROOM: [f64; CLASSES] = [1.5, 1.0, 0.2, -0.7, -1.5, -2.0, 0.0];
 
-pub(super) fn places(set: &mut Set<'_>) {
-    for relation in Relation::ALL {
-        near(relation, set);
-        direction(relation, set);
+pub(super) fn set_places(set: &mut WeightSetter<'_>) {
+    for relation in StepRelation::ALL {
+        set_nearness(relation, set);
+        set_direction(relation, set);
     }
     for class in 0..CLASSES {
         set(&TURN_AT, &[(0, 2), (class, CLASSES)], 0.4 * OF_THING[class]);
@@ -47,7 +47,7 @@ pub(super) fn places(set: &mut Set<'_>) {
 }
 
 /// Weights of the whole walk by its distance from the named places.
-fn of_walk(class: usize, is_goal: usize, set: &mut Set<'_>) {
+fn of_walk(class: usize, is_goal: usize, set: &mut WeightSetter<'_>) {
     let (is_goal, class) = ((is_goal, 2), (class, CLASSES));
     set(&NAMED_ROOM, &[is_goal, class], 0.5 * OF_ROOM[class.0]);
     for commonness in 0..3 {
@@ -60,16 +60,16 @@ fn of_walk(class: usize, is_goal: usize, set: &mut Set<'_>) {
     }
 }
 
-fn near(relation: Relation, set: &mut Set<'_>) {
+fn set_nearness(relation: StepRelation, set: &mut WeightSetter<'_>) {
     // Where along the stretch the place has to be: where it begins (0), anywhere (1), where it ends (2).
     let (at, of_room) = match relation {
-        Relation::OutOf => (0, 1.0),
-        Relation::Into | Relation::In => (2, 1.2),
-        Relation::Through => (1, 1.0),
-        Relation::Past | Relation::Between => (1, 0.5),
-        Relation::To | Relation::At | Relation::Near | Relation::Before => (2, 0.6),
-        Relation::Along => (1, 0.8),
-        Relation::Plain | Relation::With | Relation::Of => (1, 0.4),
+        StepRelation::OutOf => (0, 1.0),
+        StepRelation::Into | StepRelation::In => (2, 1.2),
+        StepRelation::Through => (1, 1.0),
+        StepRelation::Past | StepRelation::Between => (1, 0.5),
+        StepRelation::To | StepRelation::At | StepRelation::Near | StepRelation::Before => (2, 0.6),
+        StepRelation::Along => (1, 0.8),
+        StepRelation::Plain | StepRelation::With | StepRelation::Of => (1, 0.4),
     };
     let number = (relation as usize, RELATIONS);
     for class in 0..CLASSES {
@@ -81,8 +81,8 @@ fn near(relation: Relation, set: &mut Set<'_>) {
     }
     // By whether the stretch begins in the room (2) and ends in it (1).
     let moves = match relation {
-        Relation::OutOf => [-0.5, -1.0, 1.0, -0.5],
-        Relation::Into => [-0.5, 1.0, -1.0, 0.0],
+        StepRelation::OutOf => [-0.5, -1.0, 1.0, -0.5],
+        StepRelation::Into => [-0.5, 1.0, -1.0, 0.0],
         _ => return,
     };
     for (which, goes) in moves.into_iter().enumerate() {
@@ -91,16 +91,16 @@ fn near(relation: Relation, set: &mut Set<'_>) {
 }
 
 /// Whether the stretch leads to the place, and past it.
-fn direction(relation: Relation, set: &mut Set<'_>) {
+fn set_direction(relation: StepRelation, set: &mut WeightSetter<'_>) {
     let number = (relation as usize, RELATIONS);
     let towards = match relation {
-        Relation::To | Relation::Into | Relation::Past | Relation::Through => [0.5, 0.2, -0.3, -0.8],
-        Relation::OutOf => [-0.3, 0.0, 0.1, 0.2],
+        StepRelation::To | StepRelation::Into | StepRelation::Past | StepRelation::Through => [0.5, 0.2, -0.3, -0.8],
+        StepRelation::OutOf => [-0.3, 0.0, 0.1, 0.2],
         _ => [0.2, 0.1, -0.1, -0.3],
     };
     let ahead = match relation {
-        Relation::Past | Relation::OutOf => [-0.6, -0.2, 0.3, 0.5],
-        Relation::To | Relation::Before => [0.4, 0.1, -0.3, -0.5],
+        StepRelation::Past | StepRelation::OutOf => [-0.6, -0.2, 0.3, 0.5],
+        StepRelation::To | StepRelation::Before => [0.4, 0.1, -0.3, -0.5],
         _ => [0.0; 4],
     };
     for (is_room, angle) in (0..2).flat_map(|is_room| (0..4).map(move |angle| (is_room, angle))) {

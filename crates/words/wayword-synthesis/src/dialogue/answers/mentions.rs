@@ -3,30 +3,30 @@
 
 use super::{
     phrases::{PlacePhrase, colour_said_of, place_phrases},
-    polarity::Sentence,
+    polarity::AnswerSentence,
 };
 use std::{collections::BTreeSet, ops::Range};
-use wayword_core::{Where, Witness};
+use wayword_core::{ViewThird, WitnessAnswer};
 use wayword_language::{
     answers::{BRINGS_IN, MATERIALS, NO_OBJECTS, NUMBERS, OTHERS, PERCEIVING, QUALITIES, TELLS_NOTHING},
-    lexicon::{agree, normal, says_several, singular, thing},
+    lexicon::{find_thing, names_agree, normalise_name, says_several, to_singular},
     reading::{
-        What, read,
+        EventContent, read_instruction,
         vocabulary::{ABSTRACT, BREAKERS, COLOURS},
     },
-    text::{Token, tokens},
+    text::{TextToken, split_tokens},
 };
 
 /// Something that a text names.
 #[derive(Debug, Clone, PartialEq)]
-pub(in crate::dialogue) struct Mention {
+pub(in crate::dialogue) struct AnswerMention {
     /// Its name, in the singular if it has one. A denied thing keeps the words that distinguish it: "red chair".
     pub(in crate::dialogue) name: String,
     pub(in crate::dialogue) is_thing: bool,
     pub(in crate::dialogue) is_room: bool,
-    pub(in crate::dialogue) witness: Witness,
+    pub(in crate::dialogue) witness: WitnessAnswer,
     pub(in crate::dialogue) colour: Option<String>,
-    pub(in crate::dialogue) place: Option<Where>,
+    pub(in crate::dialogue) place: Option<ViewThird>,
     pub(in crate::dialogue) several: bool,
     /// The word before it, articles and adjectives skipped: "to", "of" ...
     pub(in crate::dialogue) before: String,
@@ -40,14 +40,14 @@ const MOST_NAME_BYTES: usize = 60;
 const MOST_BYTES: usize = 16_384;
 
 /// Finds the mentions of a text. `known` contains names, in normal spelling, that the lexicon may lack.
-pub(in crate::dialogue) fn mentions(text: &str, known: &BTreeSet<String>) -> Vec<Mention> {
+pub(in crate::dialogue) fn find_mentions(text: &str, known: &BTreeSet<String>) -> Vec<AnswerMention> {
     let text = &text[..text.floor_char_boundary(MOST_BYTES)].replace('’', "'");
-    let tokens = tokens(text);
+    let tokens = split_tokens(text);
     let words: Vec<&str> = tokens.iter().map(|token| token.word.as_str()).collect();
-    let nouns = nouns(text, &tokens, &words, known);
+    let nouns = find_nouns(text, &tokens, &words, known);
     let mut found = Vec::new();
-    for sentence in sentences(text, &tokens) {
-        let within: Vec<&Noun> =
+    for sentence in sentence_ranges(text, &tokens) {
+        let within: Vec<&NounMention> =
             nouns.iter().filter(|noun| sentence.contains(&noun.at.start) && noun.at.end <= sentence.end).collect();
         if !within.is_empty() {
             of_sentence(&words[sentence.clone()], sentence.start, &within, &mut found);
@@ -57,7 +57,7 @@ pub(in crate::dialogue) fn mentions(text: &str, known: &BTreeSet<String>) -> Vec
 }
 
 /// The sentences of a text as ranges of its tokens. A line break also ends one.
-fn sentences(text: &str, tokens: &[Token]) -> Vec<Range<usize>> {
+fn sentence_ranges(text: &str, tokens: &[TextToken]) -> Vec<Range<usize>> {
     let mut found = Vec::new();
     let mut start = 0;
     for at in 0..tokens.len() {
@@ -70,23 +70,23 @@ fn sentences(text: &str, tokens: &[Token]) -> Vec<Range<usize>> {
     found
 }
 
-fn of_sentence(words: &[&str], start: usize, nouns: &[&Noun], found: &mut Vec<Mention>) {
+fn of_sentence(words: &[&str], start: usize, nouns: &[&NounMention], found: &mut Vec<AnswerMention>) {
     let ranges: Vec<Range<usize>> = nouns.iter().map(|noun| noun.at.start - start..noun.at.end - start).collect();
-    let mut witnesses = Sentence { words, nouns: &ranges }.witnesses();
-    let doubles = alternatives(words, &ranges, &mut witnesses);
+    let mut witnesses = AnswerSentence { words, nouns: &ranges }.noun_witnesses();
+    let doubles = mark_alternatives(words, &ranges, &mut witnesses);
     let places = places_of(words, &ranges);
     for (at, noun) in nouns.iter().enumerate().filter(|(at, _)| !doubles.contains(at)) {
         let (range, witness) = (&ranges[at], witnesses[at]);
         let said = words[range.clone()].join(" ");
-        let which = which(words, range);
-        if witness == Witness::Denied && which.iter().any(|word| OTHERS.contains(word)) {
+        let which = distinguishing_words(words, range);
+        if witness == WitnessAnswer::Denied && which.iter().any(|word| OTHERS.contains(word)) {
             continue;
         }
         let plural = says_several(&said);
-        let name = if plural { singular(&said) } else { said };
-        let denied = witness == Witness::Denied;
+        let name = if plural { to_singular(&said) } else { said };
+        let denied = witness == WitnessAnswer::Denied;
         let colour = noun.colour.clone().or_else(|| colour_said_of(&words[range.end..])).filter(|_| !denied);
-        found.push(Mention {
+        found.push(AnswerMention {
             name: if denied && !which.is_empty() { format!("{} {name}", which.join(" ")) } else { name },
             is_thing: noun.is_thing,
             is_room: noun.is_room,
@@ -94,7 +94,7 @@ fn of_sentence(words: &[&str], start: usize, nouns: &[&Noun], found: &mut Vec<Me
             colour,
             place: places[at],
             several: !denied && (plural || is_counted(words, range.start)),
-            before: before(words, range.start).to_owned(),
+            before: word_before(words, range.start).to_owned(),
             is_beyond: is_beyond(words, range),
         });
     }
@@ -102,41 +102,43 @@ fn of_sentence(words: &[&str], start: usize, nouns: &[&Noun], found: &mut Vec<Me
 
 /// Handles "or". "A sofa or a bench" leaves open which it is, so both become unsure. "A sofa or couch" is one thing
 /// with two names; the second noun's index is returned, to be skipped.
-fn alternatives(words: &[&str], nouns: &[Range<usize>], witnesses: &mut [Witness]) -> Vec<usize> {
+fn mark_alternatives(words: &[&str], nouns: &[Range<usize>], witnesses: &mut [WitnessAnswer]) -> Vec<usize> {
     let mut doubles = Vec::new();
     for at in 1..nouns.len() {
         let between = &words[nouns[at - 1].end..nouns[at].start];
         let is_or = between.len() <= 4
             && between.contains(&"or")
             && !between.iter().any(|word| matches!(*word, "is" | "are" | "on" | "in" | "," | "and"));
-        if !is_or || witnesses[at - 1..=at].contains(&Witness::Denied) {
+        if !is_or || witnesses[at - 1..=at].contains(&WitnessAnswer::Denied) {
             continue;
         }
         let name = |noun: &Range<usize>| words[noun.clone()].join(" ");
-        if agree(&name(&nouns[at - 1]), &name(&nouns[at])) {
+        if names_agree(&name(&nouns[at - 1]), &name(&nouns[at])) {
             doubles.push(at);
         } else {
-            witnesses[at - 1..=at].fill(Witness::Unsure);
+            witnesses[at - 1..=at].fill(WitnessAnswer::Unsure);
         }
     }
     doubles
 }
 
 /// Whether a word may stand before a noun phrase.
-fn begins(word: &str) -> bool {
+fn begins_noun_phrase(word: &str) -> bool {
     TELLS_NOTHING.contains(&word) || BREAKERS.contains(&word) || PERCEIVING.contains(&word)
 }
 
 /// The words before a noun that distinguish it from others of its kind: colours, materials, uses.
-fn which<'a>(words: &[&'a str], noun: &Range<usize>) -> Vec<&'a str> {
+fn distinguishing_words<'a>(words: &[&'a str], noun: &Range<usize>) -> Vec<&'a str> {
     let from = (0..noun.start)
         .rev()
         .take_while(|at| {
             let skipped = matches!(words[*at], "large" | "small" | "big" | "single");
-            (skipped || !begins(words[*at])) && words[*at].chars().all(char::is_alphabetic) && noun.start - at <= 3
+            (skipped || !begins_noun_phrase(words[*at]))
+                && words[*at].chars().all(char::is_alphabetic)
+                && noun.start - at <= 3
         })
         .last();
-    let Some(from) = from.filter(|from| *from > 0 && begins(words[from - 1])) else { return Vec::new() };
+    let Some(from) = from.filter(|from| *from > 0 && begins_noun_phrase(words[from - 1])) else { return Vec::new() };
     words[from..noun.start].iter().filter(|word| !TELLS_NOTHING.contains(word)).copied().collect()
 }
 
@@ -157,7 +159,7 @@ fn is_beyond(words: &[&str], noun: &Range<usize>) -> bool {
 }
 
 /// The last word before a noun, articles and a few adjectives skipped.
-fn before<'a>(words: &[&'a str], noun: usize) -> &'a str {
+fn word_before<'a>(words: &[&'a str], noun: usize) -> &'a str {
     let skips =
         |word: &&&str| matches!(**word, "a" | "an" | "the" | "another" | "small" | "large" | "nearby" | "adjacent");
     words[..noun].iter().rev().find(|word| !skips(word)).copied().unwrap_or("")
@@ -178,7 +180,7 @@ fn is_counted(words: &[&str], noun: usize) -> bool {
 
 /// The place in the view of each noun of a sentence. A phrase of place belongs to the noun before it, or, at the head
 /// of its part of the sentence, to all nouns that follow.
-fn places_of(words: &[&str], nouns: &[Range<usize>]) -> Vec<Option<Where>> {
+fn places_of(words: &[&str], nouns: &[Range<usize>]) -> Vec<Option<ViewThird>> {
     let mut places = vec![None; nouns.len()];
     let told = place_phrases(words);
     for (at, phrase) in told.iter().enumerate() {
@@ -213,7 +215,7 @@ fn is_head(words: &[&str], phrase: &PlacePhrase, nouns: &[Range<usize>]) -> bool
 }
 
 /// A thing or room, as a range of the tokens of a text.
-struct Noun {
+struct NounMention {
     at: Range<usize>,
     is_thing: bool,
     is_room: bool,
@@ -222,9 +224,9 @@ struct Noun {
 
 /// The things and rooms that a text names, in order. `known` contains names, in normal spelling, that the lexicon may
 /// lack.
-fn nouns(text: &str, tokens: &[Token], words: &[&str], known: &BTreeSet<String>) -> Vec<Noun> {
-    let places = read(text, known).events.into_iter().filter_map(|event| match event.what {
-        What::Place(place) => Some((event.span, place)),
+fn find_nouns(text: &str, tokens: &[TextToken], words: &[&str], known: &BTreeSet<String>) -> Vec<NounMention> {
+    let places = read_instruction(text, known).events.into_iter().filter_map(|event| match event.what {
+        EventContent::Place(place) => Some((event.span, place)),
         _ => None,
     });
     places
@@ -232,13 +234,13 @@ fn nouns(text: &str, tokens: &[Token], words: &[&str], known: &BTreeSet<String>)
             let from = tokens.partition_point(|token| token.span[0] < span[0]);
             let to = tokens.partition_point(|token| token.span[0] < span[1]);
             let name = words[from..to].join(" ");
-            let in_lexicon = thing(&name).is_some() || place.is_room || known.contains(&normal(&name));
+            let in_lexicon = find_thing(&name).is_some() || place.is_room || known.contains(&normalise_name(&name));
             let is_object = if in_lexicon {
                 !is_the_picture(words, from, to) && !is_manner_of_speaking(words, from, to)
             } else {
                 is_brought_in(words, from, to)
             };
-            (is_object && !is_depicted(words, from) && name.len() <= MOST_NAME_BYTES).then_some(Noun {
+            (is_object && !is_depicted(words, from) && name.len() <= MOST_NAME_BYTES).then_some(NounMention {
                 at: from..to,
                 is_thing: place.is_thing,
                 is_room: place.is_room,
@@ -321,10 +323,11 @@ fn is_manner_of_speaking(words: &[&str], from: usize, to: usize) -> bool {
 /// Whether a noun that the lexicon lacks counts as a thing: only if the text introduces it ("there is a gizmo") and it
 /// is no word of description.
 fn is_brought_in(words: &[&str], from: usize, to: usize) -> bool {
-    let head = normal(words[to - 1]);
+    let head = normalise_name(words[to - 1]);
     let start = (0..from).rev().find(|at| matches!(words[*at], "." | "!" | "?" | ";")).map_or(0, |at| at + 1);
     let indefinite = from > 0 && matches!(words[from - 1], "a" | "an");
-    let stays = |word: &str| !NO_OBJECTS.contains(&normal(word).as_str()) && !word.ends_with("ing") && word != "shows";
+    let stays =
+        |word: &str| !NO_OBJECTS.contains(&normalise_name(word).as_str()) && !word.ends_with("ing") && word != "shows";
     let is_quality = QUALITIES.contains(&head.as_str()) || MATERIALS.contains(&head.as_str());
     indefinite
         && !is_quality

@@ -1,7 +1,7 @@
 //! Turns the transcript of a dialogue into sightings, one for each thing, and the name of the room.
 //!
 //! [`question`] finds out what a question asks for, and [`exchange`] interprets one answer to it. Both build on
-//! [`mentions`] (the things named in free text), [`polarity`] (affirmed or denied) and [`phrases`] (places, colours,
+//! [`find_mentions`] (the things named in free text), [`polarity`] (affirmed or denied) and [`phrases`] (places, colours,
 //! names).
 
 mod exchange;
@@ -12,25 +12,25 @@ mod question;
 #[cfg(test)]
 mod tests;
 
-use exchange::{listed, said};
-use polarity::{Polarity, is_unsure, polarity_of};
+use exchange::{parse_enumeration, read_exchange};
+use polarity::{AnswerPolarity, is_unsure, polarity_of};
 use std::collections::BTreeSet;
-use wayword_core::{Exchange, Sighting, Witness};
+use wayword_core::{DialogueExchange, ObjectSighting, WitnessAnswer};
 use wayword_language::{
     answers::TELLING,
-    lexicon::{is_thing, kinds, normal},
-    text::words,
+    lexicon::{is_thing, kinds_of, normalise_name},
+    text::split_words,
 };
 
-pub(super) use mentions::{Mention, mentions};
+pub(super) use mentions::{AnswerMention, find_mentions};
 pub(crate) use {
-    phrases::{Wanted, colour_at},
-    question::{Asked, asked},
+    phrases::{QuestionThing, colour_at},
+    question::{QuestionSubject, read_question},
 };
 
 /// A sighting from one answer, and whether the question was about that very thing.
-pub(super) struct Told {
-    pub(super) sighting: Sighting,
+pub(super) struct AnswerSighting {
+    pub(super) sighting: ObjectSighting,
     pub(super) direct: bool,
 }
 
@@ -39,15 +39,15 @@ pub(super) struct Told {
 /// A denial outweighs every other answer about a thing, earlier or later, because leaving out a real object harms a
 /// robot less than sending it to a hallucinated one. Between seen and not sure, the later answer to a direct question
 /// about the thing decides; doubt in passing changes no sighting.
-pub(crate) fn sightings(transcript: &[Exchange], by: &str) -> Vec<Sighting> {
-    let mut joined: Vec<Sighting> = Vec::new();
+pub(crate) fn dialogue_sightings(transcript: &[DialogueExchange], by: &str) -> Vec<ObjectSighting> {
+    let mut joined: Vec<ObjectSighting> = Vec::new();
     for exchange in transcript {
         let earlier = joined.len();
-        for told in said(exchange, by) {
-            if told.sighting.witness == Witness::Denied {
-                deny(&mut joined, told.sighting);
+        for told in read_exchange(exchange, by) {
+            if told.sighting.witness == WitnessAnswer::Denied {
+                add_denial(&mut joined, told.sighting);
             } else {
-                add(&mut joined, earlier, told);
+                add_sighting(&mut joined, earlier, told);
             }
         }
     }
@@ -56,33 +56,33 @@ pub(crate) fn sightings(transcript: &[Exchange], by: &str) -> Vec<Sighting> {
 
 /// Whether a denial covers a thing: "no chair" covers a dining chair, but "no dining chair" and "no red chair" do not
 /// cover a plain chair.
-pub(super) fn denies(denial: &Sighting, name: &str, colour: Option<&str>) -> bool {
-    if denial.witness != Witness::Denied {
+pub(super) fn denial_covers(denial: &ObjectSighting, name: &str, colour: Option<&str>) -> bool {
+    if denial.witness != WitnessAnswer::Denied {
         return false;
     }
-    let (denied, name) = (normal(&denial.name), normal(name));
-    if denied == name || colour.is_some_and(|colour| denied == normal(&format!("{colour} {name}"))) {
+    let (denied, name) = (normalise_name(&denial.name), normalise_name(name));
+    if denied == name || colour.is_some_and(|colour| denied == normalise_name(&format!("{colour} {name}"))) {
         return true;
     }
-    let general = kinds(&denied);
+    let general = kinds_of(&denied);
     // A name with more words than the lexicon's entry means a special kind of the thing.
     let is_one_of_many = !is_thing(&denied) && general[0] != denied;
-    !is_one_of_many && kinds(&name).contains(&general[0])
+    !is_one_of_many && kinds_of(&name).contains(&general[0])
 }
 
-fn places_agree(a: &Sighting, b: &Sighting) -> bool {
+fn places_agree(a: &ObjectSighting, b: &ObjectSighting) -> bool {
     a.place == b.place || a.place.is_none() || b.place.is_none()
 }
 
-fn deny(joined: &mut Vec<Sighting>, denial: Sighting) {
+fn add_denial(joined: &mut Vec<ObjectSighting>, denial: ObjectSighting) {
     let mut known = false;
     for before in joined.iter_mut() {
-        let other = before.witness != Witness::Denied && !places_agree(before, &denial);
-        if denies(&denial, &before.name, before.colour.as_deref()) {
+        let other = before.witness != WitnessAnswer::Denied && !places_agree(before, &denial);
+        if denial_covers(&denial, &before.name, before.colour.as_deref()) {
             // "No chair on the left" does not touch a chair on the right, and needs no entry of its own.
-            known |= other || kinds(&before.name)[0] == kinds(&denial.name)[0] || before.name == denial.name;
+            known |= other || kinds_of(&before.name)[0] == kinds_of(&denial.name)[0] || before.name == denial.name;
             if !other {
-                before.witness = Witness::Denied;
+                before.witness = WitnessAnswer::Denied;
             }
         }
     }
@@ -91,15 +91,16 @@ fn deny(joined: &mut Vec<Sighting>, denial: Sighting) {
     }
 }
 
-fn add(joined: &mut Vec<Sighting>, earlier: usize, told: Told) {
-    let Told { mut sighting, direct } = told;
-    let colours_agree =
-        |before: &Sighting| before.colour.is_none() || sighting.colour.is_none() || before.colour == sighting.colour;
-    let fits = |before: &Sighting| places_agree(before, &sighting) && colours_agree(before);
+fn add_sighting(joined: &mut Vec<ObjectSighting>, earlier: usize, told: AnswerSighting) {
+    let AnswerSighting { mut sighting, direct } = told;
+    let colours_agree = |before: &ObjectSighting| {
+        before.colour.is_none() || sighting.colour.is_none() || before.colour == sighting.colour
+    };
+    let fits = |before: &ObjectSighting| places_agree(before, &sighting) && colours_agree(before);
     let exact = joined.iter().position(|before| before.name == sighting.name && fits(before));
     let of_kind = || {
-        let kind = kinds(&sighting.name);
-        joined[..earlier].iter().position(|before| fits(before) && kinds(&before.name).contains(&kind[0]))
+        let kind = kinds_of(&sighting.name);
+        joined[..earlier].iter().position(|before| fits(before) && kinds_of(&before.name).contains(&kind[0]))
     };
     if let Some(at) = exact.or_else(of_kind) {
         let before = &mut joined[at];
@@ -107,18 +108,18 @@ fn add(joined: &mut Vec<Sighting>, earlier: usize, told: Told) {
         before.colour = before.colour.take().or(sighting.colour);
         before.several |= sighting.several;
         before.witness = match (before.witness, sighting.witness) {
-            (Witness::Denied, _) => Witness::Denied,
-            (Witness::Seen, Witness::Unsure) if direct => Witness::Unsure,
-            (Witness::Unsure, later) => later,
+            (WitnessAnswer::Denied, _) => WitnessAnswer::Denied,
+            (WitnessAnswer::Seen, WitnessAnswer::Unsure) if direct => WitnessAnswer::Unsure,
+            (WitnessAnswer::Unsure, later) => later,
             (before, _) => before,
         };
         return;
     }
-    let is_denied = |denial: &Sighting| {
-        places_agree(denial, &sighting) && denies(denial, &sighting.name, sighting.colour.as_deref())
+    let is_denied = |denial: &ObjectSighting| {
+        places_agree(denial, &sighting) && denial_covers(denial, &sighting.name, sighting.colour.as_deref())
     };
     if joined.iter().any(is_denied) {
-        sighting.witness = Witness::Denied;
+        sighting.witness = WitnessAnswer::Denied;
     }
     joined.push(sighting);
 }
@@ -127,24 +128,25 @@ fn add(joined: &mut Vec<Sighting>, earlier: usize, told: Told) {
 const MOST_BYTES: usize = 40;
 
 /// The name of the room: from the answer to a question for it, or else from the first description.
-pub(crate) fn room(transcript: &[Exchange]) -> Option<String> {
-    let asked_for = transcript.iter().find_map(|exchange| match asked(&exchange.question) {
-        Asked::Room => answered(&exchange.answer),
-        Asked::IsRoom(name) if polarity_of(&exchange.answer) == Polarity::Yes => Some(name),
-        Asked::IsRoom(_) => first_named(&exchange.answer, true),
+pub(crate) fn dialogue_room(transcript: &[DialogueExchange]) -> Option<String> {
+    let asked_for = transcript.iter().find_map(|exchange| match read_question(&exchange.question) {
+        QuestionSubject::Room => room_from_answer(&exchange.answer),
+        QuestionSubject::IsRoom(name) if polarity_of(&exchange.answer) == AnswerPolarity::Yes => Some(name),
+        QuestionSubject::IsRoom(_) => first_named(&exchange.answer, true),
         _ => None,
     });
     let described = || {
-        let opening = transcript.first().filter(|first| asked(&first.question) == Asked::Other(None))?;
-        listed(&opening.answer).is_none().then(|| first_named(&opening.answer, false)).flatten()
+        let opening =
+            transcript.first().filter(|first| read_question(&first.question) == QuestionSubject::Other(None))?;
+        parse_enumeration(&opening.answer).is_none().then(|| first_named(&opening.answer, false)).flatten()
     };
     asked_for.or_else(described)
 }
 
 /// "It is an office." names a room in any words; of a longer answer, the first room that the lexicon knows is taken.
-fn answered(answer: &str) -> Option<String> {
+fn room_from_answer(answer: &str) -> Option<String> {
     let said = answer.trim().trim_end_matches('.').to_lowercase();
-    let words = words(&said);
+    let words = split_words(&said);
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
     if is_unsure(&words) {
         return None;
@@ -163,20 +165,20 @@ fn answered(answer: &str) -> Option<String> {
 fn is_sentence(said: &str) -> bool {
     said.contains([',', '?', '!', ';', '\n'])
         || said.contains(". ")
-        || words(said).iter().any(|word| TELLING.contains(&word.as_str()))
+        || split_words(said).iter().any(|word| TELLING.contains(&word.as_str()))
 }
 
 /// The first room that a text names as the one in view. `ambiguous`: whether names count that can also be a thing's
 /// ("stairs").
 fn first_named(text: &str, ambiguous: bool) -> Option<String> {
-    const ELSEWHERE: [&str; 10] =
+    const ELSEWHERE_PREPOSITIONS: [&str; 10] =
         ["to", "into", "through", "toward", "towards", "from", "beyond", "adjoining", "next", "onto"];
-    let found = mentions(text, &BTreeSet::new()).into_iter().find(|mention| {
+    let found = find_mentions(text, &BTreeSet::new()).into_iter().find(|mention| {
         mention.is_room
             && (ambiguous || !mention.is_thing)
-            && mention.witness != Witness::Denied
+            && mention.witness != WitnessAnswer::Denied
             && !mention.is_beyond
-            && !ELSEWHERE.contains(&mention.before.as_str())
+            && !ELSEWHERE_PREPOSITIONS.contains(&mention.before.as_str())
     });
     found.map(|mention| mention.name).filter(|name| name.len() <= MOST_BYTES)
 }

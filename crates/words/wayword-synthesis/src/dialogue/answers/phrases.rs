@@ -1,10 +1,10 @@
 //! Recognises phrases within a question or an answer: places in the view, colours, and the names of things that a
 //! question asks for.
 
-use wayword_core::Where;
+use wayword_core::ViewThird;
 use wayword_language::{
     answers::{ANYTHING, BEFORE_SIDE, FILLERS, MORE_COLOURS, PREPOSITIONS, SIDE_PARTS, WHOLES},
-    lexicon::{is_room, is_thing, normal, says_several, singular},
+    lexicon::{is_room, is_thing, normalise_name, says_several, to_singular},
     reading::vocabulary::{ABSTRACT, BREAKERS, COLOURS},
 };
 
@@ -13,18 +13,18 @@ use wayword_language::{
 pub(super) struct PlacePhrase {
     pub(super) from: usize,
     pub(super) to: usize,
-    pub(super) place: Where,
+    pub(super) place: ViewThird,
 }
 
 /// The place that the phrase beginning at a word means, and where the phrase ends. `Some((None, _))` for a place
 /// relative to another thing ("to the left of the sofa").
-fn phrase_at(words: &[&str], from: usize) -> Option<(Option<Where>, usize)> {
+fn phrase_at(words: &[&str], from: usize) -> Option<(Option<ViewThird>, usize)> {
     let word = |at: usize| words.get(at).copied().unwrap_or("");
     match (word(from), word(from + 1), word(from + 2)) {
-        ("straight" | "directly" | "right", "ahead", _) => return Some((Some(Where::Middle), from + 2)),
-        ("ahead", ..) => return Some((Some(Where::Middle), from + 1)),
+        ("straight" | "directly" | "right", "ahead", _) => return Some((Some(ViewThird::Middle), from + 2)),
+        ("ahead", ..) => return Some((Some(ViewThird::Middle), from + 1)),
         ("in", "front", "of") if matches!(word(from + 3), "you" | "us" | "me") => {
-            return Some((Some(Where::Middle), from + 4));
+            return Some((Some(ViewThird::Middle), from + 4));
         }
         _ => {}
     }
@@ -36,9 +36,9 @@ fn phrase_at(words: &[&str], from: usize) -> Option<(Option<Where>, usize)> {
         at += 1;
     }
     let place = match word(at) {
-        "left" | "lefthand" => Where::Left,
-        "right" | "righthand" => Where::Right,
-        "middle" | "centre" | "center" | "background" | "distance" => Where::Middle,
+        "left" | "lefthand" => ViewThird::Left,
+        "right" | "righthand" => ViewThird::Right,
+        "middle" | "centre" | "center" | "background" | "distance" => ViewThird::Middle,
         _ => return None,
     };
     if at == from + 1 {
@@ -101,14 +101,14 @@ pub(super) fn first_colour(words: &[&str]) -> Option<String> {
 /// The colour that a sentence gives to the thing that it has just named: "is dark green", "appears to be mostly white".
 /// `after` has the words after the name.
 pub(super) fn colour_said_of(after: &[&str]) -> Option<String> {
-    const LINKS: [&str; 9] = ["is", "are", "was", "were", "looks", "look", "appears", "appear", "painted"];
-    const BETWEEN: [&str; 14] =
+    const COLOUR_LINK_VERBS: [&str; 9] = ["is", "are", "was", "were", "looks", "look", "appears", "appear", "painted"];
+    const WORDS_BEFORE_COLOUR: [&str; 14] =
         ["to", "be", "a", "an", "very", "mostly", "mainly", "also", "painted", "of", "in", "all", "large", "colour"];
     let (first, rest) = after.split_first()?;
-    if !LINKS.contains(first) {
+    if !COLOUR_LINK_VERBS.contains(first) {
         return None;
     }
-    let skipped = rest.iter().take(4).take_while(|word| BETWEEN.contains(word)).count();
+    let skipped = rest.iter().take(4).take_while(|word| WORDS_BEFORE_COLOUR.contains(word)).count();
     colour_at(&rest[skipped..]).map(|(colour, _)| colour)
 }
 
@@ -119,7 +119,7 @@ const MOST_THINGS: usize = 8;
 
 /// A thing that a question asks for.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Wanted {
+pub(crate) struct QuestionThing {
     /// Its name in the words of the question, without article and adjectives of size.
     pub(crate) said: String,
     /// The name without its colour, in the singular where it has one.
@@ -129,18 +129,18 @@ pub(crate) struct Wanted {
     /// Whether the question speaks of several.
     pub(crate) several: bool,
     /// The part of the view that is asked about.
-    pub(crate) place: Option<Where>,
+    pub(crate) place: Option<ViewThird>,
 }
 
 /// The things that these words ask for, separated by "or", "and" or commas, and whether one of the joints is an "or".
-pub(super) fn all_wanted(words: &[&str]) -> Option<(Vec<Wanted>, bool)> {
+pub(super) fn all_wanted(words: &[&str]) -> Option<(Vec<QuestionThing>, bool)> {
     let place = place_phrases(words).first().map(|phrase| phrase.place);
-    let mut found: Vec<Wanted> = Vec::new();
+    let mut found: Vec<QuestionThing> = Vec::new();
     let mut at = 0;
     let mut or = false;
     loop {
         let name = noun_phrase(words, &mut at)?;
-        found.push(wanted(&name, place)?);
+        found.push(question_thing(&name, place)?);
         match words.get(at) {
             Some(&"or") => or = true,
             Some(&"and") => {}
@@ -152,7 +152,7 @@ pub(super) fn all_wanted(words: &[&str]) -> Option<(Vec<Wanted>, bool)> {
         }
         at += 1;
         if found.len() == MOST_THINGS
-            || noun_phrase(words, &mut at.clone()).and_then(|name| wanted(&name, None)).is_none()
+            || noun_phrase(words, &mut at.clone()).and_then(|name| question_thing(&name, None)).is_none()
         {
             return Some((found, or));
         }
@@ -169,8 +169,9 @@ pub(super) fn noun_phrase<'a>(words: &[&'a str], at: &mut usize) -> Option<Vec<&
         let word = words[at];
         let of = word == "of"
             && at > start
-            && (1..=3)
-                .any(|more| words.get(start..at + 1 + more).is_some_and(|name| is_thing(&normal(&name.join(" ")))));
+            && (1..=3).any(|more| {
+                words.get(start..at + 1 + more).is_some_and(|name| is_thing(&normalise_name(&name.join(" "))))
+            });
         let is_word = word.starts_with(char::is_alphanumeric);
         is_word
             && at < start + 6
@@ -189,15 +190,15 @@ pub(super) fn noun_phrase<'a>(words: &[&'a str], at: &mut usize) -> Option<Vec<&
 }
 
 /// The thing that words begin with.
-pub(super) fn first_wanted(words: &[&str]) -> Option<Wanted> {
-    wanted(&noun_phrase(words, &mut 0)?, None)
+pub(super) fn first_wanted(words: &[&str]) -> Option<QuestionThing> {
+    question_thing(&noun_phrase(words, &mut 0)?, None)
 }
 
 /// Makes a wanted thing of a name; `None` for vague words such as "anything".
-pub(super) fn wanted(name: &[&str], place: Option<Where>) -> Option<Wanted> {
-    let head = normal(name.last()?);
+pub(super) fn question_thing(name: &[&str], place: Option<ViewThird>) -> Option<QuestionThing> {
+    let head = normalise_name(name.last()?);
     let nothing = |word: &str| ANYTHING.contains(&word);
-    let vague = ABSTRACT.contains(&head.as_str()) && !is_thing(&normal(&name.join(" ")));
+    let vague = ABSTRACT.contains(&head.as_str()) && !is_thing(&normalise_name(&name.join(" ")));
     if vague || nothing(&head) || name.iter().any(|word| nothing(word)) {
         return None;
     }
@@ -205,7 +206,7 @@ pub(super) fn wanted(name: &[&str], place: Option<Where>) -> Option<Wanted> {
     if said.len() > MOST_NAME_BYTES {
         return None;
     }
-    let in_lexicon = is_thing(&normal(&said));
+    let in_lexicon = is_thing(&normalise_name(&said));
     let (colour, length) =
         colour_at(name).filter(|_| !in_lexicon).map_or((None, 0), |(colour, length)| (Some(colour), length));
     let bare = name[length..].join(" ");
@@ -213,15 +214,15 @@ pub(super) fn wanted(name: &[&str], place: Option<Where>) -> Option<Wanted> {
         return None;
     }
     let several = says_several(&bare);
-    Some(Wanted { said, name: if several { singular(&bare) } else { bare }, colour, several, place })
+    Some(QuestionThing { said, name: if several { to_singular(&bare) } else { bare }, colour, several, place })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use Where::{Left, Middle, Right};
+    use ViewThird::{Left, Middle, Right};
 
-    fn places(text: &str) -> Vec<Where> {
+    fn places(text: &str) -> Vec<ViewThird> {
         place_phrases(&text.split(' ').collect::<Vec<_>>()).into_iter().map(|phrase| phrase.place).collect()
     }
 

@@ -6,18 +6,18 @@
 //! describe pictures.
 
 use std::ops::Range;
-use wayword_core::Witness;
+use wayword_core::WitnessAnswer;
 use wayword_language::{
     answers::{
         AFTER_NOUN, AUXILIARIES, DOUBTS, ENDS, IS_NOT, MAYBE, MEANWHILE, NEW_NOUN, NO, NO_DENIAL, NO_OBJECT,
         PERCEIVING, SHORT, SIGNS, STOPPERS, YES, YES_ALONE,
     },
-    text::words,
+    text::split_words,
 };
 
 /// The meaning of an answer to a yes-or-no question.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Polarity {
+pub(super) enum AnswerPolarity {
     Yes,
     No,
     Unsure,
@@ -27,32 +27,36 @@ pub(super) enum Polarity {
 
 /// The polarity of an answer, from how it begins, or from the yes or no after its first comma ("Looking again, no.").
 /// Doubt in the first sentence outweighs both.
-pub(super) fn polarity_of(answer: &str) -> Polarity {
+pub(super) fn polarity_of(answer: &str) -> AnswerPolarity {
     let answer = answer.replace('’', "'");
     let first = answer.split_inclusive(['.', '!', '?', '\n']).find(|part| part.contains(char::is_alphanumeric));
     let first = first.unwrap_or_default();
-    match of_words(&words(first)) {
-        Polarity::Open => {}
+    match of_words(&split_words(first)) {
+        AnswerPolarity::Open => {}
         polarity => return polarity,
     }
-    if let Some((_, rest)) = first.split_once(',').filter(|(before, _)| words(before).len() <= 8) {
-        let rest = words(rest);
+    if let Some((_, rest)) = first.split_once(',').filter(|(before, _)| split_words(before).len() <= 8) {
+        let rest = split_words(rest);
         if rest.first().is_some_and(|first| matches!(first.as_str(), "yes" | "no")) {
             return of_words(&rest);
         }
     }
-    let all = words(&answer);
-    if is_unsure(&all.iter().map(String::as_str).collect::<Vec<_>>()) { Polarity::Unsure } else { Polarity::Open }
+    let all = split_words(&answer);
+    if is_unsure(&all.iter().map(String::as_str).collect::<Vec<_>>()) {
+        AnswerPolarity::Unsure
+    } else {
+        AnswerPolarity::Open
+    }
 }
 
-fn of_words(words: &[String]) -> Polarity {
+fn of_words(words: &[String]) -> AnswerPolarity {
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
     let words = words.strip_prefix(&["well"]).unwrap_or(&words);
     let longest = |phrases: &[Vec<&'static str>]| {
         phrases.iter().filter(|phrase| words.starts_with(phrase)).map(|phrase| phrase.len()).max()
     };
     if is_unsure(words) || longest(&MAYBE).is_some() {
-        return Polarity::Unsure;
+        return AnswerPolarity::Unsure;
     }
     let alone = |words: &&Vec<&str>, said: &[&str]| {
         said.strip_prefix(words.as_slice())
@@ -60,9 +64,9 @@ fn of_words(words: &[String]) -> Polarity {
     };
     let alone = YES_ALONE.iter().filter(|phrase| alone(phrase, words)).map(Vec::len).max();
     match (longest(&YES).or(alone).unwrap_or(0), longest(&NO).unwrap_or(0)) {
-        (0, 0) => Polarity::Open,
-        (yes, no) if yes >= no => Polarity::Yes,
-        _ => Polarity::No,
+        (0, 0) => AnswerPolarity::Open,
+        (yes, no) if yes >= no => AnswerPolarity::Yes,
+        _ => AnswerPolarity::No,
     }
 }
 
@@ -73,37 +77,37 @@ pub(super) fn is_unsure(words: &[&str]) -> bool {
 
 /// A sentence: its words and punctuation marks in lower case, and the ranges of words that name things and rooms, in
 /// order.
-pub(super) struct Sentence<'a> {
+pub(super) struct AnswerSentence<'a> {
     pub(super) words: &'a [&'a str],
     pub(super) nouns: &'a [Range<usize>],
 }
 
 /// How far a trigger reaches, and the witness that it gives to the nouns within.
 #[derive(Clone, Copy)]
-struct Reach {
+struct TriggerReach {
     /// The word at which it begins.
     from: usize,
-    says: Witness,
+    says: WitnessAnswer,
     /// Whether it covers a whole list ("a lamp, a bed or a sofa"), as a negated verb does, and not only the first noun.
     over_articles: bool,
     /// Whether only the end of the sentence or a "but" ends it.
     to_the_end: bool,
 }
 
-const NOT: [&str; 2] = ["not", "never"];
+const NEGATION_WORDS: [&str; 2] = ["not", "never"];
 
 /// The length of the phrase of doubt with which words begin, if they do.
 pub(super) fn doubt_at(words: &[&str]) -> Option<usize> {
     DOUBTS.iter().filter(|phrase| words.starts_with(phrase)).map(|phrase| phrase.len()).max()
 }
 
-impl Sentence<'_> {
+impl AnswerSentence<'_> {
     /// The witness for each noun: seen, unless a trigger denies or doubts it.
-    pub(super) fn witnesses(&self) -> Vec<Witness> {
-        let mut said = vec![Witness::Seen; self.nouns.len()];
-        for reach in (0..self.words.len()).filter_map(|at| self.trigger(at)) {
-            for noun in self.within(reach) {
-                said[noun] = if said[noun] == Witness::Denied { Witness::Denied } else { reach.says };
+    pub(super) fn noun_witnesses(&self) -> Vec<WitnessAnswer> {
+        let mut said = vec![WitnessAnswer::Seen; self.nouns.len()];
+        for reach in (0..self.words.len()).filter_map(|at| self.trigger_at(at)) {
+            for noun in self.nouns_within(reach) {
+                said[noun] = if said[noun] == WitnessAnswer::Denied { WitnessAnswer::Denied } else { reach.says };
             }
         }
         for noun in 0..self.nouns.len() {
@@ -112,13 +116,13 @@ impl Sentence<'_> {
                 while first > 0 && self.is_joined(first - 1) {
                     first -= 1;
                 }
-                said[first..=noun].fill(Witness::Denied);
+                said[first..=noun].fill(WitnessAnswer::Denied);
             }
         }
         said
     }
 
-    fn word(&self, at: usize) -> &str {
+    fn word_at(&self, at: usize) -> &str {
         self.words.get(at).copied().unwrap_or("")
     }
 
@@ -126,73 +130,84 @@ impl Sentence<'_> {
         self.nouns.iter().position(|noun| noun.start == at)
     }
 
-    fn trigger(&self, at: usize) -> Option<Reach> {
-        let word = self.word(at);
-        let denial =
-            |from, over_articles| Some(Reach { from, says: Witness::Denied, over_articles, to_the_end: false });
+    fn trigger_at(&self, at: usize) -> Option<TriggerReach> {
+        let word = self.word_at(at);
+        let denial = |from, over_articles| {
+            Some(TriggerReach { from, says: WitnessAnswer::Denied, over_articles, to_the_end: false })
+        };
         if let Some(length) = doubt_at(&self.words[at..]) {
-            return Some(Reach { from: at + length, says: Witness::Unsure, over_articles: true, to_the_end: true });
+            return Some(TriggerReach {
+                from: at + length,
+                says: WitnessAnswer::Unsure,
+                over_articles: true,
+                to_the_end: true,
+            });
         }
         match word {
-            "no" if NO_DENIAL.contains(&self.word(at + 1)) => None,
+            "no" if NO_DENIAL.contains(&self.word_at(at + 1)) => None,
             "no" | "without" | "lacks" | "lacking" => denial(at + 1, false),
             "neither" | "nor" => denial(at + 1, true),
-            "absence" | "lack" | "devoid" if self.word(at + 1) == "of" => denial(at + 2, false),
-            "instead" if self.word(at + 1) == "of" => denial(at + 2, false),
-            "rather" if self.word(at + 1) == "than" => denial(at + 2, false),
-            "there's" if NOT.contains(&self.word(at + 1)) => denial(at + 2, true),
+            "absence" | "lack" | "devoid" if self.word_at(at + 1) == "of" => denial(at + 2, false),
+            "instead" if self.word_at(at + 1) == "of" => denial(at + 2, false),
+            "rather" if self.word_at(at + 1) == "than" => denial(at + 2, false),
+            "there's" if NEGATION_WORDS.contains(&self.word_at(at + 1)) => denial(at + 2, true),
             word if IS_NOT.contains(&word) && self.is_indefinite(at + 1) => denial(at + 1, true),
-            word if NOT.contains(&word) && self.is_indefinite(at + 1) => denial(at + 1, true),
+            word if NEGATION_WORDS.contains(&word) && self.is_indefinite(at + 1) => denial(at + 1, true),
             word if SHORT.contains(&word) => self.negated_verb(at + 1).and_then(|from| denial(from, true)),
-            word if NOT.contains(&word) && at > 0 && AUXILIARIES.contains(&self.word(at - 1)) => {
+            word if NEGATION_WORDS.contains(&word) && at > 0 && AUXILIARIES.contains(&self.word_at(at - 1)) => {
                 self.negated_verb(at + 1).and_then(|from| denial(from, true))
             }
-            _ => self.hedge(at),
+            _ => self.hedge_at(at),
         }
     }
 
     /// The reach of a word of doubt: "maybe a lamp", "might be a lamp".
-    fn hedge(&self, at: usize) -> Option<Reach> {
-        let is_hedge = match self.word(at) {
+    fn hedge_at(&self, at: usize) -> Option<TriggerReach> {
+        let is_hedge = match self.word_at(at) {
             "maybe" | "possibly" | "perhaps" | "potentially" | "presumably" | "probably" => true,
             "might" | "may" | "could" => {
-                (1..=3).any(|ahead| matches!(self.word(at + ahead), "be" | "have" | "contain" | "show"))
+                (1..=3).any(|ahead| matches!(self.word_at(at + ahead), "be" | "have" | "contain" | "show"))
             }
             _ => false,
         };
-        is_hedge.then_some(Reach { from: at + 1, says: Witness::Unsure, over_articles: false, to_the_end: false })
+        is_hedge.then_some(TriggerReach {
+            from: at + 1,
+            says: WitnessAnswer::Unsure,
+            over_articles: false,
+            to_the_end: false,
+        })
     }
 
     fn is_indefinite(&self, at: usize) -> bool {
-        matches!(self.word(at), "a" | "an" | "any" | "one")
+        matches!(self.word_at(at), "a" | "an" | "any" | "one")
     }
 
     /// Where the object of a negated verb begins; `after` is behind the "not".
     fn negated_verb(&self, after: usize) -> Option<usize> {
         let mut at = after;
-        while at < after + 5 && MEANWHILE.contains(&self.word(at)) {
+        while at < after + 5 && MEANWHILE.contains(&self.word_at(at)) {
             at += 1;
         }
-        let verb = self.word(at);
+        let verb = self.word_at(at);
         // "does not appear to be a lamp": the last word before the noun was taken for one in between.
-        let in_between = at > after && matches!(self.word(at - 1), "is" | "are" | "be" | "to");
+        let in_between = at > after && matches!(self.word_at(at - 1), "is" | "are" | "be" | "to");
         let mut from = match verb {
             verb if PERCEIVING.contains(&verb) => at + 1,
             _ if in_between && self.is_indefinite(at) => at,
             _ => return None,
         };
-        while matches!(self.word(from), "that" | "there" | "there's" | "is" | "are" | "to" | "be" | "like" | "see") {
+        while matches!(self.word_at(from), "that" | "there" | "there's" | "is" | "are" | "to" | "be" | "like" | "see") {
             from += 1;
         }
         Some(from)
     }
 
     /// The nouns that a trigger reaches.
-    fn within(&self, reach: Reach) -> Vec<usize> {
+    fn nouns_within(&self, reach: TriggerReach) -> Vec<usize> {
         let mut found: Vec<usize> = Vec::new();
         let mut at = reach.from;
         while at < self.words.len() {
-            let word = self.word(at);
+            let word = self.word_at(at);
             if ENDS.contains(&word) || (reach.to_the_end && word == "but") {
                 break;
             }
@@ -209,21 +224,21 @@ impl Sentence<'_> {
         found
     }
 
-    fn ends_reach(&self, at: usize, reach: Reach, had_noun: bool) -> bool {
-        let word = self.word(at);
+    fn ends_reach(&self, at: usize, reach: TriggerReach, had_noun: bool) -> bool {
+        let word = self.word_at(at);
         if STOPPERS.contains(&word) {
             return true;
         }
         if !had_noun {
-            let of_signs = word == "of" && at > 0 && SIGNS.contains(&self.word(at - 1));
+            let of_signs = word == "of" && at > 0 && SIGNS.contains(&self.word_at(at - 1));
             let elsewhere = AFTER_NOUN.contains(&word) && !of_signs && !matches!(word, "have" | "there" | "is" | "are");
             let too_far = at > reach.from + 6;
-            let hedged_verb = reach.says == Witness::Unsure && matches!(word, "be" | "have" | "contain" | "show");
+            let hedged_verb = reach.says == WitnessAnswer::Unsure && matches!(word, "be" | "have" | "contain" | "show");
             return !hedged_verb
                 && (elsewhere
                     || too_far
                     || word == ","
-                    || (NO_OBJECT.contains(&word) && reach.says == Witness::Denied));
+                    || (NO_OBJECT.contains(&word) && reach.says == WitnessAnswer::Denied));
         }
         match word {
             "," => !self.goes_on(at + 1, reach),
@@ -233,8 +248,8 @@ impl Sentence<'_> {
     }
 
     /// Whether a list goes on behind a comma or an "and".
-    fn goes_on(&self, at: usize, reach: Reach) -> bool {
-        match self.word(at) {
+    fn goes_on(&self, at: usize, reach: TriggerReach) -> bool {
+        match self.word_at(at) {
             "or" | "nor" | "any" => true,
             "and" => self.goes_on(at + 1, reach),
             word if NEW_NOUN.contains(&word) => {
@@ -250,12 +265,12 @@ impl Sentence<'_> {
     fn is_said_absent(&self, noun: usize) -> bool {
         let mut at = self.nouns[noun].end;
         while at < self.nouns[noun].end + 4
-            && matches!(self.word(at), "that" | "you" | "mentioned" | "itself" | "really" | "actually" | "also")
+            && matches!(self.word_at(at), "that" | "you" | "mentioned" | "itself" | "really" | "actually" | "also")
         {
             at += 1;
         }
-        let rest = |from: usize| (from..from + 4).map(|at| self.word(at)).collect::<Vec<_>>();
-        match (self.word(at), self.word(at + 1)) {
+        let rest = |from: usize| (from..from + 4).map(|at| self.word_at(at)).collect::<Vec<_>>();
+        match (self.word_at(at), self.word_at(at + 1)) {
             ("is" | "are" | "was" | "were", "absent" | "missing" | "invisible" | "nonexistent") => true,
             ("is" | "are" | "was" | "were", "not") => says_present(&rest(at + 2)),
             ("can" | "could", "not") | ("does" | "do" | "did", "not") => says_present(&rest(at + 2)),
@@ -296,20 +311,23 @@ mod tests {
     #[test]
     fn answers_say_yes_no_or_neither() {
         for (wanted, answers) in [
-            (Polarity::Yes, "Yes | yes. | Yes, there are two. | There is one. | No doubt. | I think so. | Of course"),
             (
-                Polarity::No,
+                AnswerPolarity::Yes,
+                "Yes | yes. | Yes, there are two. | There is one. | No doubt. | I think so. | Of course",
+            ),
+            (
+                AnswerPolarity::No,
                 "No | no. | NO! | No, there isn't. | None | Not that I can see. | There is no TV. | \
                  I don't think so. | There are none. | No, I don't see one. | I cannot see a lamp. | \
                  There isn’t one. | Neither. | It does not appear so.",
             ),
             (
-                Polarity::Unsure,
+                AnswerPolarity::Unsure,
                 "I am not sure. | Unclear | I can't tell | It is hard to say. | Unknown. | Maybe | \
                  There might be. | No, I'm not sure | It is not clear from the picture. | I don't know",
             ),
             (
-                Polarity::Open,
+                AnswerPolarity::Open,
                 "There is a lamp. | I can see a lamp. | There are two lamps. |  | A bed. | A bed is. | \
                  On the left | 🤖",
             ),

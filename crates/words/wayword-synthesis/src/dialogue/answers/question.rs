@@ -1,21 +1,23 @@
 //! Finds out what a question asks for, so that its answer can be interpreted: whether a thing is there, its colour,
 //! number or place, or the room.
 
-use super::phrases::{Wanted, all_wanted, colour_at, first_colour, first_wanted, noun_phrase, place_phrases, wanted};
-use wayword_core::Where;
+use super::phrases::{
+    QuestionThing, all_wanted, colour_at, first_colour, first_wanted, noun_phrase, place_phrases, question_thing,
+};
+use wayword_core::ViewThird;
 use wayword_language::{
     answers::LEADS,
-    lexicon::{is_room, normal},
-    text::tokens,
+    lexicon::{is_room, normalise_name},
+    text::split_tokens,
 };
 
 /// What a question asks for.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Asked {
+pub(crate) enum QuestionSubject {
     /// Whether things are there.
     Presence {
         /// One, or several with "or" or "and" between them.
-        wanted: Vec<Wanted>,
+        wanted: Vec<QuestionThing>,
         /// They are alternatives: a yes to them is not a yes to each.
         or: bool,
     },
@@ -27,57 +29,57 @@ pub(crate) enum Asked {
         guesses: Vec<String>,
     },
     /// How many there are.
-    Number(Wanted),
+    Number(QuestionThing),
     /// Where a thing is, which the question takes to be there.
-    Place(Wanted),
+    Place(QuestionThing),
     /// Which room it is.
     Room,
     /// Whether it is this room.
     IsRoom(String),
     /// Anything else, with the part of the view that it asks about, if any.
-    Other(Option<Where>),
+    Other(Option<ViewThird>),
 }
 
 /// What a question asks for.
-pub(crate) fn asked(question: &str) -> Asked {
+pub(crate) fn read_question(question: &str) -> QuestionSubject {
     // "Look again and answer in one short sentence: ...": only the words after the colon matter.
     let question = question.rsplit_once(": ").map_or(question, |(_, rest)| rest);
-    let tokens = tokens(question);
+    let tokens = split_tokens(question);
     let words: Vec<&str> = tokens.iter().map(|token| token.word.as_str()).collect();
     let skipped = words.iter().take_while(|word| LEADS.contains(word)).count();
     let words = &words[skipped..];
-    room(words)
-        .or_else(|| colour(question, words))
-        .or_else(|| number(words))
-        .or_else(|| place(words))
-        .or_else(|| identity(words))
-        .or_else(|| presence(words))
-        .unwrap_or_else(|| Asked::Other(place_phrases(words).first().map(|phrase| phrase.place)))
+    room_question(words)
+        .or_else(|| colour_question(question, words))
+        .or_else(|| number_question(words))
+        .or_else(|| place_question(words))
+        .or_else(|| identity_question(words))
+        .or_else(|| presence_question(words))
+        .unwrap_or_else(|| QuestionSubject::Other(place_phrases(words).first().map(|phrase| phrase.place)))
 }
 
-fn has(words: &[&str], run: &[&str]) -> bool {
+fn has_run(words: &[&str], run: &[&str]) -> bool {
     words.windows(run.len()).any(|window| window == run)
 }
 
-fn room(words: &[&str]) -> Option<Asked> {
+fn room_question(words: &[&str]) -> Option<QuestionSubject> {
     let asks = ["which", "what"].contains(words.first()?);
-    let kind = |of: &str| ["kind", "type", "sort"].iter().any(|kind| has(words, &[kind, "of", of]));
+    let kind = |of: &str| ["kind", "type", "sort"].iter().any(|kind| has_run(words, &[kind, "of", of]));
     let place = ["room", "place", "space", "area"].into_iter().any(kind);
-    let which = has(words, &["which", "room"])
-        || has(words, &["what", "room"])
-        || has(words, &["room", "is", "this"])
-        || has(words, &["what", "is", "this", "room"])
-        || has(words, &["what", "is", "the", "room"]);
+    let which = has_run(words, &["which", "room"])
+        || has_run(words, &["what", "room"])
+        || has_run(words, &["room", "is", "this"])
+        || has_run(words, &["what", "is", "this", "room"])
+        || has_run(words, &["what", "is", "the", "room"]);
     let taken = words.first() == Some(&"where") && words.iter().any(|word| matches!(*word, "taken" | "are"));
-    ((asks && (place || which)) || (taken && (has(words, &["picture"]) || has(words, &["image"]))))
-        .then_some(Asked::Room)
+    ((asks && (place || which)) || (taken && (has_run(words, &["picture"]) || has_run(words, &["image"]))))
+        .then_some(QuestionSubject::Room)
 }
 
 /// "What colour is the lamp?", "Is the sofa brown or black?".
-fn colour(question: &str, words: &[&str]) -> Option<Asked> {
+fn colour_question(question: &str, words: &[&str]) -> Option<QuestionSubject> {
     // The form of the asker by rules, where a name may have any words, marks and spelling.
     if let Some(name) = question.strip_prefix("What colour is the ").and_then(|rest| rest.strip_suffix('?')) {
-        return Some(Asked::Colour { name: name.to_owned(), guesses: Vec::new() });
+        return Some(QuestionSubject::Colour { name: name.to_owned(), guesses: Vec::new() });
     }
     let at = words.iter().position(|word| matches!(*word, "colour" | "color" | "colours" | "colors"));
     let rest = match at {
@@ -95,7 +97,7 @@ fn colour(question: &str, words: &[&str]) -> Option<Asked> {
         if at.is_some() { Vec::new() } else { (0..rest.len()).filter_map(|at| first_colour(&rest[at..=at])).collect() };
     let end = (0..rest.len()).find(|at| !guesses.is_empty() && colour_at(&rest[*at..]).is_some()).unwrap_or(rest.len());
     let wanted = first_wanted(&rest[..end])?;
-    Some(Asked::Colour { name: wanted.name, guesses })
+    Some(QuestionSubject::Colour { name: wanted.name, guesses })
 }
 
 /// Whether the colour at a word describes the words before it, and not a noun after it.
@@ -103,23 +105,23 @@ fn ends_phrase(words: &[&str], at: usize) -> bool {
     at > 1 && words.get(at + 1).is_none_or(|next| matches!(*next, "or" | "?" | "and" | "in" | ","))
 }
 
-fn number(words: &[&str]) -> Option<Asked> {
+fn number_question(words: &[&str]) -> Option<QuestionSubject> {
     let rest = words.strip_prefix(&["how", "many"])?;
-    first_wanted(rest).map(Asked::Number)
+    first_wanted(rest).map(QuestionSubject::Number)
 }
 
-fn place(words: &[&str]) -> Option<Asked> {
+fn place_question(words: &[&str]) -> Option<QuestionSubject> {
     let rest = match words {
         ["where", "is" | "are", rest @ ..] => rest,
         ["where", "in", _, _, "is" | "are", rest @ ..] => rest,
         ["on", "which" | "what", "side", "is" | "are", rest @ ..] => rest,
         _ => return None,
     };
-    first_wanted(rest).map(Asked::Place)
+    first_wanted(rest).map(QuestionSubject::Place)
 }
 
 /// "Is this a kitchen?", "Is that a mirror on the wall?".
-fn identity(words: &[&str]) -> Option<Asked> {
+fn identity_question(words: &[&str]) -> Option<QuestionSubject> {
     let rest = match words {
         ["is" | "are", "this" | "that" | "it" | "these" | "those", rest @ ..] => rest,
         ["is", "the", "room", rest @ ..] => rest,
@@ -128,14 +130,14 @@ fn identity(words: &[&str]) -> Option<Asked> {
     let rest = rest.strip_prefix(&["room"]).unwrap_or(rest);
     let name = noun_phrase(rest, &mut 0)?;
     let or = rest.contains(&"or");
-    match wanted(&name, None) {
-        _ if is_room(&normal(&name.join(" "))) && !or => Some(Asked::IsRoom(name.join(" "))),
-        _ if is_room(&normal(&name.join(" "))) => Some(Asked::Room),
+    match question_thing(&name, None) {
+        _ if is_room(&normalise_name(&name.join(" "))) && !or => Some(QuestionSubject::IsRoom(name.join(" "))),
+        _ if is_room(&normalise_name(&name.join(" "))) => Some(QuestionSubject::Room),
         _ => all_wanted(rest).filter(|_| !matches!(words[1], "it" | "the")).map(presence_of),
     }
 }
 
-fn presence(words: &[&str]) -> Option<Asked> {
+fn presence_question(words: &[&str]) -> Option<QuestionSubject> {
     let rest = match words {
         ["is" | "are" | "was" | "were", "there", rest @ ..] => rest,
         ["do" | "did" | "can" | "could" | "would", "you", rest @ ..] => {
@@ -155,8 +157,8 @@ fn presence(words: &[&str]) -> Option<Asked> {
     all_wanted(&rest[skipped..]).map(presence_of)
 }
 
-fn presence_of((wanted, or): (Vec<Wanted>, bool)) -> Asked {
-    Asked::Presence { wanted, or }
+fn presence_of((wanted, or): (Vec<QuestionThing>, bool)) -> QuestionSubject {
+    QuestionSubject::Presence { wanted, or }
 }
 
 /// The words after one of these verbs, if it comes early.
@@ -166,7 +168,7 @@ fn after_verb<'a, 'b>(words: &'a [&'b str], verbs: &[&str]) -> Option<&'a [&'b s
 }
 
 /// "Is the lamp you mentioned really there?", "Is a mirror visible in the picture?".
-fn really_there(words: &[&str]) -> Option<Asked> {
+fn really_there(words: &[&str]) -> Option<QuestionSubject> {
     let tail = |run: &[&str]| words.strip_suffix(&["?"]).unwrap_or(words).ends_with(run);
     let visible = ["there", "present", "visible", "real"].iter().any(|end| tail(&[end]));
     let whole = ["picture", "image", "room", "photo", "scene", "view"];
@@ -179,8 +181,10 @@ mod tests {
     use super::*;
 
     fn presence(question: &str) -> Option<(Vec<String>, bool)> {
-        match asked(question) {
-            Asked::Presence { wanted, or } => Some((wanted.into_iter().map(|wanted| wanted.name).collect(), or)),
+        match read_question(question) {
+            QuestionSubject::Presence { wanted, or } => {
+                Some((wanted.into_iter().map(|wanted| wanted.name).collect(), or))
+            }
             _ => None,
         }
     }
@@ -238,29 +242,36 @@ mod tests {
 
     #[test]
     fn read_question_distinguishes_colours_numbers_places_and_rooms() {
-        let colour = |name: &str, guesses: &[&str]| Asked::Colour {
+        let colour = |name: &str, guesses: &[&str]| QuestionSubject::Colour {
             name: name.into(),
             guesses: guesses.iter().map(|guess| (*guess).to_owned()).collect(),
         };
-        assert_eq!(asked("What colour is the sofa?"), colour("sofa", &[]));
-        assert_eq!(asked("What color are the chairs?"), colour("chair", &[]));
-        assert_eq!(asked("What is the color of the rug on the floor?"), colour("rug", &[]));
-        assert_eq!(asked("Is the sofa brown or black?"), colour("sofa", &["brown", "black"]));
-        assert!(matches!(asked("How many chairs are there?"), Asked::Number(wanted) if wanted.name == "chair"));
-        assert!(matches!(asked("Where is the lamp?"), Asked::Place(wanted) if wanted.name == "lamp"));
+        assert_eq!(read_question("What colour is the sofa?"), colour("sofa", &[]));
+        assert_eq!(read_question("What color are the chairs?"), colour("chair", &[]));
+        assert_eq!(read_question("What is the color of the rug on the floor?"), colour("rug", &[]));
+        assert_eq!(read_question("Is the sofa brown or black?"), colour("sofa", &["brown", "black"]));
+        assert!(
+            matches!(read_question("How many chairs are there?"), QuestionSubject::Number(wanted) if wanted.name == "chair")
+        );
+        assert!(matches!(read_question("Where is the lamp?"), QuestionSubject::Place(wanted) if wanted.name == "lamp"));
         for question in
             ["Which room is this?", "What kind of room is this?", "What type of room is shown in the image?"]
         {
-            assert_eq!(asked(question), Asked::Room, "{question}");
+            assert_eq!(read_question(question), QuestionSubject::Room, "{question}");
         }
-        assert_eq!(asked("Is this a kitchen?"), Asked::IsRoom("kitchen".into()));
-        assert_eq!(asked("What is on the left side of the room?"), Asked::Other(Some(Where::Left)));
+        assert_eq!(read_question("Is this a kitchen?"), QuestionSubject::IsRoom("kitchen".into()));
+        assert_eq!(
+            read_question("What is on the left side of the room?"),
+            QuestionSubject::Other(Some(ViewThird::Left))
+        );
     }
 
     #[test]
     fn read_question_returns_the_colour_and_the_place() {
-        let Asked::Presence { wanted, .. } = asked("Is there a red chair on the right?") else { panic!() };
+        let QuestionSubject::Presence { wanted, .. } = read_question("Is there a red chair on the right?") else {
+            panic!()
+        };
         assert_eq!((wanted[0].said.as_str(), wanted[0].colour.as_deref()), ("red chair", Some("red")));
-        assert_eq!(wanted[0].place, Some(Where::Right));
+        assert_eq!(wanted[0].place, Some(ViewThird::Right));
     }
 }

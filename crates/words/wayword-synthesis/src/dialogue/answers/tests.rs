@@ -1,20 +1,20 @@
 //! Answers of models about pictures, and the sightings that are read from them.
 
 use super::*;
-use crate::dialogue::OPENING;
+use crate::dialogue::OPENING_REQUEST;
 use proptest::prelude::*;
 
-fn read_all(pairs: &[(&str, &str)]) -> Vec<Sighting> {
-    let transcript: Vec<_> = pairs.iter().map(|(question, answer)| Exchange::new(*question, *answer)).collect();
-    sightings(&transcript, "test")
+fn read_all(pairs: &[(&str, &str)]) -> Vec<ObjectSighting> {
+    let transcript: Vec<_> = pairs.iter().map(|(question, answer)| DialogueExchange::new(*question, *answer)).collect();
+    dialogue_sightings(&transcript, "test")
 }
 
 /// A sighting in short: "+ dark red chair left several", with "-" for denied and "?" for not sure.
-fn short(sighting: &Sighting) -> String {
+fn short(sighting: &ObjectSighting) -> String {
     let sign = match sighting.witness {
-        Witness::Seen => "+",
-        Witness::Denied => "-",
-        Witness::Unsure => "?",
+        WitnessAnswer::Seen => "+",
+        WitnessAnswer::Denied => "-",
+        WitnessAnswer::Unsure => "?",
     };
     let place = sighting.place.map(|place| format!("{place:?}").to_lowercase());
     let several = sighting.several.then(|| "several".to_owned());
@@ -40,18 +40,24 @@ fn check(question: &str, table: &[(&str, &str)]) {
 #[test]
 fn a_later_no_outweighs_an_earlier_sighting() {
     let told = read_all(&[
-        (OPENING, "I can see a bed and a mirror."),
+        (OPENING_REQUEST, "I can see a bed and a mirror."),
         ("Is there a mirror?", "No."),
         ("Is there a lamp?", "I am not sure."),
     ]);
     let witness = |name: &str| told.iter().find(|s| s.name == name).unwrap().witness;
-    assert_eq!((witness("bed"), witness("mirror"), witness("lamp")), (Witness::Seen, Witness::Denied, Witness::Unsure));
+    assert_eq!(
+        (witness("bed"), witness("mirror"), witness("lamp")),
+        (WitnessAnswer::Seen, WitnessAnswer::Denied, WitnessAnswer::Unsure)
+    );
 }
 
 #[test]
 fn colours_join_the_things_they_belong_to() {
     assert_eq!(
-        told(&[(OPENING, "There is a sofa in the middle."), ("What colour is the sofa?", "The sofa is green.")]),
+        told(&[
+            (OPENING_REQUEST, "There is a sofa in the middle."),
+            ("What colour is the sofa?", "The sofa is green.")
+        ]),
         "+ green sofa middle"
     );
 }
@@ -59,7 +65,7 @@ fn colours_join_the_things_they_belong_to() {
 #[test]
 fn descriptions_are_read_with_colours_places_and_numbers() {
     check(
-        OPENING,
+        OPENING_REQUEST,
         &[
             ("The picture shows a bedroom with a bed and a mirror.", "+ bed, + mirror"),
             ("There is a red sofa on the left and a lamp to the right.", "+ red sofa left, + lamp right"),
@@ -88,7 +94,7 @@ fn descriptions_are_read_with_colours_places_and_numbers() {
 #[test]
 fn long_descriptions_are_read_to_their_end() {
     check(
-        OPENING,
+        OPENING_REQUEST,
         &[
             (
                 "The image depicts a cozy living room with a large, comfortable couch positioned in the center of the room. \
@@ -131,7 +137,7 @@ fn long_descriptions_are_read_to_their_end() {
 #[test]
 fn denials_within_descriptions_are_heard() {
     check(
-        OPENING,
+        OPENING_REQUEST,
         &[
             ("There is a bed but no mirror.", "+ bed, - mirror"),
             ("There are no chairs or tables.", "- chair, - table"),
@@ -161,7 +167,7 @@ fn denials_within_descriptions_are_heard() {
 #[test]
 fn not_every_no_is_a_denial() {
     check(
-        OPENING,
+        OPENING_REQUEST,
         &[
             ("No doubt there is a lamp.", "+ lamp"),
             ("There is nothing on the table.", "+ table"),
@@ -183,7 +189,7 @@ fn not_every_no_is_a_denial() {
 #[test]
 fn hedged_things_are_unsure_and_appearances_are_seen() {
     check(
-        OPENING,
+        OPENING_REQUEST,
         &[
             ("There might be a lamp on the table.", "? lamp, + table"),
             ("There is possibly a mirror.", "? mirror"),
@@ -306,7 +312,8 @@ fn answers_to_all_forms_of_questions_are_read() {
 
 #[test]
 fn answers_are_joined_and_any_denial_outweighs() {
-    let opening = (OPENING, "A room with a sofa, a chair, two dining chairs and a staircase. There might be a piano.");
+    let opening =
+        (OPENING_REQUEST, "A room with a sofa, a chair, two dining chairs and a staircase. There might be a piano.");
     for (question, answer, wanted) in [
         (
             "Is there a couch?",
@@ -325,13 +332,16 @@ fn answers_are_joined_and_any_denial_outweighs() {
     }
     let yes = ("Is there really a sofa?", "Yes.");
     assert!(told(&[opening, ("Is there a sofa?", "No."), yes, yes]).starts_with("- sofa"));
-    assert_eq!(told(&[("Is there a chair?", "No."), (OPENING, "There is an armchair.")]), "- chair, - armchair");
+    assert_eq!(
+        told(&[("Is there a chair?", "No."), (OPENING_REQUEST, "There is an armchair.")]),
+        "- chair, - armchair"
+    );
 }
 
 #[test]
 fn a_denial_of_one_side_leaves_the_other() {
     assert_eq!(
-        told(&[(OPENING, "There is a chair on the right."), ("Is there a chair on the left?", "No.")]),
+        told(&[(OPENING_REQUEST, "There is a chair on the right."), ("Is there a chair on the left?", "No.")]),
         "+ chair right"
     );
 }
@@ -339,7 +349,7 @@ fn a_denial_of_one_side_leaves_the_other() {
 #[test]
 fn endless_text_is_read_in_reasonable_time() {
     let long = "There is no chair, a lamp or a table on the left and maybe the sofa is red ".repeat(20_000);
-    assert!(read_all(&[(OPENING, &long)]).len() < 20);
+    assert!(read_all(&[(OPENING_REQUEST, &long)]).len() < 20);
 }
 
 #[test]
@@ -360,7 +370,7 @@ fn rooms_are_found_in_answers_to_the_question_for_them() {
         ("Yes, there is a lamp on the table and it is lit.", None),
         ("", None),
     ] {
-        let told = room(&[Exchange::new("What kind of room is this?", answer)]);
+        let told = dialogue_room(&[DialogueExchange::new("What kind of room is this?", answer)]);
         assert_eq!(told.as_deref(), wanted, "{answer}");
     }
 }
@@ -374,13 +384,13 @@ fn room_comes_from_the_first_description_without_a_question() {
         ("There is a closet on the left.", None),
         ("There are stairs and a bar.", None),
     ] {
-        assert_eq!(room(&[Exchange::new(OPENING, answer)]).as_deref(), wanted, "{answer}");
+        assert_eq!(dialogue_room(&[DialogueExchange::new(OPENING_REQUEST, answer)]).as_deref(), wanted, "{answer}");
     }
 }
 
 #[test]
 fn a_room_that_is_asked_about_is_confirmed_or_corrected() {
-    let told = |answer: &str| room(&[Exchange::new("Is this a kitchen?", answer)]);
+    let told = |answer: &str| dialogue_room(&[DialogueExchange::new("Is this a kitchen?", answer)]);
     assert_eq!(told("Yes.").as_deref(), Some("kitchen"));
     assert_eq!(told("No, it is a laundry room.").as_deref(), Some("laundry room"));
     assert_eq!(told("No."), None);
@@ -389,7 +399,7 @@ fn a_room_that_is_asked_about_is_confirmed_or_corrected() {
 proptest! {
     #[test]
     fn any_words_can_be_read(question in "(\\PC|[\n?.,]){0,60}", answer in "(\\PC|[\n?.,]){0,200}") {
-        let told = read_all(&[(OPENING, &answer), (&question, &answer)]);
+        let told = read_all(&[(OPENING_REQUEST, &answer), (&question, &answer)]);
         prop_assert!(told.iter().all(|sighting| !sighting.name.is_empty() && sighting.by == "test"));
     }
 
@@ -408,14 +418,14 @@ proptest! {
         let at = at.min(words.len());
         let (question, answer) = (words[..at].join(" "), words[at..].join(" "));
         read_all(&[(&question, &answer), (&answer, &question)]);
-        room(&[Exchange::new(question, answer)]);
+        dialogue_room(&[DialogueExchange::new(question, answer)]);
     }
 }
 
 #[test]
 fn figures_of_speech_name_no_things() {
     check(
-        OPENING,
+        OPENING_REQUEST,
         &[
             ("There is a bed with a soft, blotchy pattern on the wall.", "+ bed"),
             ("The wall steps forward next to a sofa.", "+ sofa"),
@@ -431,7 +441,7 @@ fn figures_of_speech_name_no_things() {
 #[test]
 fn long_noun_phrases_are_read_whole() {
     check(
-        OPENING,
+        OPENING_REQUEST,
         &[
             ("There are two tall grey armchairs on the left.", "+ grey armchair left several"),
             ("The large flat-screen television on the wall is off.", "+ television"),
@@ -443,7 +453,7 @@ fn long_noun_phrases_are_read_whole() {
 
 #[test]
 fn the_room_is_the_one_that_one_stands_in() {
-    let room_of = |question: &str, answer: &str| room(&[Exchange::new(question, answer)]);
+    let room_of = |question: &str, answer: &str| dialogue_room(&[DialogueExchange::new(question, answer)]);
     for (answer, wanted) in [
         ("A hallway leading to a kitchen.", Some("hallway")),
         ("Through the doorway a bedroom can be seen.", None),
@@ -452,7 +462,7 @@ fn the_room_is_the_one_that_one_stands_in() {
         ("A living room with a view into the kitchen.", Some("living room")),
         ("This is a hallway, with a bathroom visible beyond the door.", Some("hallway")),
     ] {
-        for question in [OPENING, "Which room is this?"] {
+        for question in [OPENING_REQUEST, "Which room is this?"] {
             assert_eq!(room_of(question, answer).as_deref(), wanted, "{question} {answer}");
         }
     }

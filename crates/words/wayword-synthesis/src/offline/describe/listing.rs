@@ -1,15 +1,15 @@
 //! The objects of a building by their labels: where each one is, in which room, and from where it is seen.
 
 use std::collections::{BTreeMap, BTreeSet};
-use wayword_core::{DMat3, DVec3, Frame, Heading, Label, ObjectId, Survey, ViewpointId};
-use wayword_language::lexicon::{Class, kinds, thing};
+use wayword_core::{DMat3, DVec3, Frame, Heading, ObjectId, ObjectLabel, ViewpointId, ViewpointSurvey};
+use wayword_language::lexicon::{ThingClass, find_thing, kinds_of};
 
 /// Every object that the platform lists in a building, or around one frame.
 #[derive(Debug, Clone, Default)]
-pub struct Listing {
-    pub(super) objects: Vec<Object>,
-    pub(super) places: Vec<Place>,
-    pub(super) rooms: Vec<Room>,
+pub struct BuildingListing {
+    pub(super) objects: Vec<ListingObject>,
+    pub(super) places: Vec<ListingViewpoint>,
+    pub(super) rooms: Vec<ListingRoom>,
     /// How many storeys there are.
     pub(super) storeys: usize,
     by_id: BTreeMap<ObjectId, usize>,
@@ -18,10 +18,10 @@ pub struct Listing {
 
 /// An object.
 #[derive(Debug, Clone)]
-pub(super) struct Object {
+pub(super) struct ListingObject {
     pub(super) name: String,
     kinds: Vec<String>,
-    pub(super) class: Class,
+    pub(super) class: ThingClass,
     pub(super) salience: u8,
     pub(super) colour: Option<String>,
     /// Its centre, metres, world frame.
@@ -33,16 +33,16 @@ pub(super) struct Object {
 
 /// A viewpoint with its room and the objects that are seen from it.
 #[derive(Debug, Clone)]
-pub(super) struct Place {
+pub(super) struct ListingViewpoint {
     pub(super) eye: DVec3,
     pub(super) room: usize,
     level: Option<u32>,
-    pub(super) sights: Vec<Sight>,
+    pub(super) sights: Vec<ListingSighting>,
 }
 
 /// An object as it is seen from a viewpoint.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Sight {
+pub(super) struct ListingSighting {
     pub(super) object: usize,
     pub(super) heading: Heading,
     elevation_rad: f64,
@@ -51,7 +51,7 @@ pub(super) struct Sight {
 
 /// Connected viewpoints with the same room name and storey.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Room {
+pub(super) struct ListingRoom {
     pub(super) name: Option<String>,
     /// Names of the neighbouring rooms.
     pub(super) beside: BTreeSet<String>,
@@ -62,7 +62,7 @@ pub(super) struct Room {
 /// An object may be in the room of each viewpoint that is not farther from it than this many times the nearest one.
 const ALSO_IN: f64 = 1.3;
 
-impl Object {
+impl ListingObject {
     /// Whether both could be called by the same name.
     pub(super) fn is_like(&self, other: &Self) -> bool {
         other.kinds.contains(&self.kinds[0]) || self.kinds.contains(&other.kinds[0])
@@ -74,13 +74,13 @@ impl Object {
     }
 }
 
-impl Listing {
+impl BuildingListing {
     /// The listing of a whole building.
     #[must_use]
-    pub fn of(survey: &Survey) -> Self {
+    pub fn from_survey(survey: &ViewpointSurvey) -> Self {
         let mut listing = Self::default();
-        let room_of = rooms(survey);
-        listing.rooms = vec![Room::default(); room_of.iter().max().map_or(0, |last| last + 1)];
+        let room_of = number_rooms(survey);
+        listing.rooms = vec![ListingRoom::default(); room_of.iter().max().map_or(0, |last| last + 1)];
         for (at, viewpoint) in survey.viewpoints().iter().enumerate() {
             let room = &mut listing.rooms[room_of[at]];
             room.name.clone_from(&viewpoint.known.room);
@@ -90,61 +90,68 @@ impl Listing {
             listing.place_of.insert(viewpoint.id.clone(), at);
             listing.add_place(viewpoint.position, room_of[at], viewpoint.level, labels);
         }
-        listing.locate();
+        listing.locate_objects();
         listing
     }
 
     /// The listing of the objects around one frame, where no survey of the building exists.
     #[must_use]
-    pub fn around<'a>(frame: &Frame, labels: impl Iterator<Item = &'a Label>) -> Self {
-        let mut listing = Self { rooms: vec![Room::default()], ..Self::default() };
+    pub fn around_frame<'a>(frame: &Frame, labels: impl Iterator<Item = &'a ObjectLabel>) -> Self {
+        let mut listing = Self { rooms: vec![ListingRoom::default()], ..Self::default() };
         listing.add_place(frame.pose.position, 0, frame.level, labels);
         listing.place_of.extend(frame.viewpoint.clone().map(|id| (id, 0)));
-        listing.locate();
+        listing.locate_objects();
         listing
     }
 
-    pub(super) fn object(&self, id: &ObjectId) -> Option<usize> {
+    pub(super) fn object_index(&self, id: &ObjectId) -> Option<usize> {
         self.by_id.get(id).copied()
     }
 
     /// The place of a frame. Where its viewpoint is not known, there is one place at most.
-    pub(super) fn place(&self, frame: &Frame) -> Option<usize> {
+    pub(super) fn place_index(&self, frame: &Frame) -> Option<usize> {
         let only = || (self.places.len() == 1).then_some(0);
         frame.viewpoint.as_ref().and_then(|id| self.place_of.get(id).copied()).or_else(only)
     }
 
     /// Whether the place of a frame is listed, with something in view.
     #[must_use]
-    pub fn knows(&self, frame: &Frame) -> bool {
-        self.place(frame).is_some_and(|place| !self.places[place].sights.is_empty())
+    pub fn knows_frame(&self, frame: &Frame) -> bool {
+        self.place_index(frame).is_some_and(|place| !self.places[place].sights.is_empty())
     }
 
-    fn add_place<'a>(&mut self, eye: DVec3, room: usize, level: Option<u32>, labels: impl Iterator<Item = &'a Label>) {
-        let mut sights: Vec<Sight> = Vec::new();
+    fn add_place<'a>(
+        &mut self,
+        eye: DVec3,
+        room: usize,
+        level: Option<u32>,
+        labels: impl Iterator<Item = &'a ObjectLabel>,
+    ) {
+        let mut sights: Vec<ListingSighting> = Vec::new();
         // Labels come in the order of the views' headings. Sorting by object makes the result independent of the first
         // heading.
-        let mut labels: Vec<&Label> = labels.collect();
+        let mut labels: Vec<&ObjectLabel> = labels.collect();
         labels.sort_by(|a, b| a.object.cmp(&b.object));
         for label in labels {
             let object = self.add_object(label);
             // Views of one panorama may show an object twice.
             if !sights.iter().any(|sight| sight.object == object) {
                 let (heading, elevation_rad) = (label.heading, label.elevation_rad);
-                sights.push(Sight { object, heading, elevation_rad, distance_m: label.distance_m });
+                sights.push(ListingSighting { object, heading, elevation_rad, distance_m: label.distance_m });
             }
         }
-        self.places.push(Place { eye, room, level, sights });
+        self.places.push(ListingViewpoint { eye, room, level, sights });
     }
 
-    fn add_object(&mut self, label: &Label) -> usize {
+    fn add_object(&mut self, label: &ObjectLabel) -> usize {
         if let Some(at) = self.by_id.get(&label.object) {
             return *at;
         }
-        let (class, salience) = thing(&label.name).map_or((Class::Unknown, 0), |thing| (thing.class, thing.salience));
-        self.objects.push(Object {
+        let (class, salience) =
+            find_thing(&label.name).map_or((ThingClass::Unknown, 0), |thing| (thing.class, thing.salience));
+        self.objects.push(ListingObject {
             name: label.name.clone(),
-            kinds: kinds(&label.name),
+            kinds: kinds_of(&label.name),
             class,
             salience,
             colour: label.colour.clone(),
@@ -157,8 +164,8 @@ impl Listing {
     }
 
     /// Estimates the position of objects that have none, and assigns objects to rooms.
-    fn locate(&mut self) {
-        let mut seen: Vec<Vec<(usize, Sight)>> = vec![Vec::new(); self.objects.len()];
+    fn locate_objects(&mut self) {
+        let mut seen: Vec<Vec<(usize, ListingSighting)>> = vec![Vec::new(); self.objects.len()];
         for (at, place) in self.places.iter().enumerate() {
             place.sights.iter().for_each(|sight| seen[sight.object].push((at, *sight)));
         }
@@ -167,9 +174,9 @@ impl Listing {
         for (object, seen) in seen.iter().enumerate() {
             let rays: Vec<(DVec3, DVec3)> = seen
                 .iter()
-                .map(|(at, sight)| (self.places[*at].eye, sight.heading.raised(sight.elevation_rad)))
+                .map(|(at, sight)| (self.places[*at].eye, sight.heading.raised_vector(sight.elevation_rad)))
                 .collect();
-            let position = self.objects[object].position.or_else(|| meeting(&rays));
+            let position = self.objects[object].position.or_else(|| meeting_point(&rays));
             let how_far = |at: usize| position.map_or(0.0, |position| self.places[at].eye.distance(position));
             let nearest = seen.iter().map(|(at, _)| *at).min_by(|a, b| how_far(*a).total_cmp(&how_far(*b)));
             let Some(nearest) = nearest else { continue };
@@ -185,7 +192,7 @@ impl Listing {
 
 /// The point nearest to all rays (origin and direction, least squares); `None` unless at least two rays cross at a
 /// clear angle.
-fn meeting(rays: &[(DVec3, DVec3)]) -> Option<DVec3> {
+fn meeting_point(rays: &[(DVec3, DVec3)]) -> Option<DVec3> {
     let crosses = |a: &DVec3, b: &DVec3| a.cross(*b).length() > 0.25;
     rays.iter().find(|(_, way)| crosses(way, &rays[0].1))?;
     let (mut matrix, mut vector) = (DMat3::ZERO, DVec3::ZERO);
@@ -202,7 +209,7 @@ fn meeting(rays: &[(DVec3, DVec3)]) -> Option<DVec3> {
 }
 
 /// For each viewpoint, the number of its room: neighbours of one name and storey are in one room.
-fn rooms(survey: &Survey) -> Vec<usize> {
+fn number_rooms(survey: &ViewpointSurvey) -> Vec<usize> {
     let viewpoints = survey.viewpoints();
     let is_one = |a: usize, b: usize| {
         let (a, b) = (&viewpoints[a], &viewpoints[b]);

@@ -11,51 +11,51 @@ mod superlatives;
 #[cfg(test)]
 mod tests;
 
-pub use listing::Listing;
+pub use listing::BuildingListing;
 
-use properties::{Property, Scene};
-use wayword_core::{Description, Distinction, Frame, Target};
+use properties::{TargetContext, TargetProperty};
+use wayword_core::{Frame, ObjectDescription, ObjectDistinction, PathTarget};
 
 /// Most descriptions of a target.
 const MOST_KEPT: usize = 32;
 /// Most properties that are combined, the cheapest first.
 const MOST_PROPERTIES: usize = 36;
 /// Extra cost of a superlative ("the leftmost") where more objects of the kind exist than can be seen from the end.
-const UNCLEAR: f64 = 1.2;
+const UNCLEAR_SUPERLATIVE_COST: f64 = 1.2;
 /// Cost of a second property of the object.
-const SECOND: f64 = 1.0;
+const SECOND_PROPERTY_COST: f64 = 1.0;
 /// Cost of a property that is not needed to single the target out.
-const IDLE: f64 = 1.0;
+const IDLE_PROPERTY_COST: f64 = 1.0;
 
 /// Fills in how a target can be described: for a listener at the last frame, who sees other objects of the same name
 /// there, and for a listener who knows the whole building. Does nothing if the target is not listed.
-pub fn describe(target: &mut Target, last: &Frame, listing: &Listing) {
-    let (Some(own), Some(place)) = (listing.object(&target.object), listing.place(last)) else { return };
+pub fn describe_target(target: &mut PathTarget, last: &Frame, listing: &BuildingListing) {
+    let (Some(own), Some(place)) = (listing.object_index(&target.object), listing.place_index(last)) else { return };
     let place = &listing.places[place];
-    let scene = Scene::new(listing, last, place, own);
-    let mut properties = scene.properties();
+    let scene = TargetContext::new(listing, last, place, own);
+    let mut properties = scene.all_properties();
     properties.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     properties.truncate(MOST_PROPERTIES);
-    let namesakes: Vec<bool> = scene.rivals.iter().map(|rival| scene.sight(*rival).is_some()).collect();
+    let namesakes: Vec<bool> = scene.rivals.iter().map(|rival| scene.sight_of_object(*rival).is_some()).collect();
     target.has_namesake = namesakes.contains(&true);
     target.told_by = told_by(&scene, &properties, &namesakes);
-    target.descriptions = search(&scene, &properties);
-    target.hangs = scene.hangs();
+    target.descriptions = search_descriptions(&scene, &properties);
+    target.hangs = scene.target_hangs();
     target.storeys = listing.storeys;
 }
 
 /// The single properties that no namesake in view has, the cheapest first.
-fn told_by(scene: &Scene<'_>, properties: &[Property], namesakes: &[bool]) -> Vec<Distinction> {
-    let tells = |property: &&Property| {
+fn told_by(scene: &TargetContext<'_>, properties: &[TargetProperty], namesakes: &[bool]) -> Vec<ObjectDistinction> {
+    let tells = |property: &&TargetProperty| {
         !property.told.is_of_room() && !property.fits.iter().zip(namesakes).any(|(fits, in_view)| *fits && *in_view)
     };
-    let mut told: Vec<(f64, Distinction)> =
+    let mut told: Vec<(f64, ObjectDistinction)> =
         properties.iter().filter(tells).map(|property| (property.cost, property.told.clone())).collect();
     if namesakes.contains(&true) {
-        told.extend(scene.superlatives(namesakes));
+        told.extend(scene.superlatives_among(namesakes));
     }
     // A listener who hears "on the right" looks for the only one there.
-    let is_clear = |told: &Distinction| !told.is_of_room() && !matches!(told, Distinction::OnSide { .. });
+    let is_clear = |told: &ObjectDistinction| !told.is_of_room() && !matches!(told, ObjectDistinction::OnSide { .. });
     if told.is_empty() {
         // No property excludes all namesakes: one that excludes most of them is better than none.
         let count = |fits: &[bool]| fits.iter().zip(namesakes).filter(|(fits, in_view)| **fits && **in_view).count();
@@ -65,7 +65,7 @@ fn told_by(scene: &Scene<'_>, properties: &[Property], namesakes: &[bool]) -> Ve
     }
     if told.is_empty() {
         // A property that all of them share still narrows down where to look.
-        let is_said = |told: &Distinction| is_clear(told) || !told.is_of_room() && scene.is_outermost();
+        let is_said = |told: &ObjectDistinction| is_clear(told) || !told.is_of_room() && scene.is_outermost();
         let of_object = properties.iter().filter(|property| is_said(&property.told));
         told.extend(of_object.map(|property| (property.cost, property.told.clone())));
     }
@@ -74,60 +74,70 @@ fn told_by(scene: &Scene<'_>, properties: &[Property], namesakes: &[bool]) -> Ve
 }
 
 /// A description in the making.
-struct Found {
+struct DescriptionCandidate {
     cost: f64,
-    description: Description,
+    description: ObjectDescription,
 }
 
-fn search(scene: &Scene<'_>, properties: &[Property]) -> Vec<Description> {
+fn search_descriptions(scene: &TargetContext<'_>, properties: &[TargetProperty]) -> Vec<ObjectDescription> {
     let base = scene.rivals_in_kind();
-    let mut found: Vec<Found> = Vec::new();
-    add(scene, &[], &base, &mut found);
+    let mut found: Vec<DescriptionCandidate> = Vec::new();
+    add_candidates(scene, &[], &base, &mut found);
     for (first, a) in properties.iter().enumerate() {
-        let left = and(&base, &a.fits);
-        add(scene, &[a], &left, &mut found);
+        let left = both_true(&base, &a.fits);
+        add_candidates(scene, &[a], &left, &mut found);
         for (second, b) in properties.iter().enumerate().skip(first + 1) {
-            let left = and(&left, &b.fits);
-            add(scene, &[a, b], &left, &mut found);
+            let left = both_true(&left, &b.fits);
+            add_candidates(scene, &[a, b], &left, &mut found);
             if !left.contains(&true) {
                 continue;
             }
             for c in &properties[second + 1..] {
-                let left = and(&left, &c.fits);
+                let left = both_true(&left, &c.fits);
                 if !left.contains(&true) {
-                    push(&[a, b, c], 0, None, &mut found);
+                    push_candidate(&[a, b, c], 0, None, &mut found);
                 }
             }
         }
     }
     // If several are on one side, "the one on the left" means the leftmost.
     if !scene.is_outermost() {
-        let is_side = |by: &Distinction| matches!(by, Distinction::OnSide { .. });
+        let is_side = |by: &ObjectDistinction| matches!(by, ObjectDistinction::OnSide { .. });
         found.retain(|found| found.description.leaves == 1 || !found.description.by.iter().any(is_side));
     }
-    best(found)
+    best_descriptions(found)
 }
 
-fn and(a: &[bool], b: &[bool]) -> Vec<bool> {
+fn both_true(a: &[bool], b: &[bool]) -> Vec<bool> {
     a.iter().zip(b).map(|(a, b)| *a && *b).collect()
 }
 
 /// Adds a candidate with these properties alone, and candidates with a superlative among the namesakes in view. The
 /// superlative ignores namesakes that cannot be seen from the end; that is less clear, so it costs more.
-fn add(scene: &Scene<'_>, by: &[&Property], left: &[bool], found: &mut Vec<Found>) {
+fn add_candidates(
+    scene: &TargetContext<'_>,
+    by: &[&TargetProperty],
+    left: &[bool],
+    found: &mut Vec<DescriptionCandidate>,
+) {
     let count = |left: &[bool]| left.iter().filter(|left| **left).count();
-    push(by, count(left), None, found);
+    push_candidate(by, count(left), None, found);
     let in_view: Vec<bool> =
-        left.iter().zip(&scene.rivals).map(|(left, rival)| *left && scene.sight(*rival).is_some()).collect();
+        left.iter().zip(&scene.rivals).map(|(left, rival)| *left && scene.sight_of_object(*rival).is_some()).collect();
     if in_view.contains(&true) {
-        let unclear = if count(left) > count(&in_view) { UNCLEAR } else { 0.0 };
-        for (cost, superlative) in scene.superlatives(&in_view) {
-            push(by, 0, Some((cost + unclear, superlative)), found);
+        let unclear = if count(left) > count(&in_view) { UNCLEAR_SUPERLATIVE_COST } else { 0.0 };
+        for (cost, superlative) in scene.superlatives_among(&in_view) {
+            push_candidate(by, 0, Some((cost + unclear, superlative)), found);
         }
     }
 }
 
-fn push(by: &[&Property], rest: usize, superlative: Option<(f64, Distinction)>, found: &mut Vec<Found>) {
+fn push_candidate(
+    by: &[&TargetProperty],
+    rest: usize,
+    superlative: Option<(f64, ObjectDistinction)>,
+    found: &mut Vec<DescriptionCandidate>,
+) {
     let cost = by.iter().map(|property| property.cost).sum::<f64>() + superlative.as_ref().map_or(0.0, |of| of.0);
     // Two properties of the object and two of its room are enough.
     let of_room = by.iter().filter(|property| property.told.is_of_room()).count();
@@ -135,33 +145,35 @@ fn push(by: &[&Property], rest: usize, superlative: Option<(f64, Distinction)>, 
         return;
     }
     // No thing is mentioned twice in a description.
-    let names = |at: usize| by[at].told.names();
+    let names = |at: usize| by[at].told.named_things();
     let repeats = (1..by.len()).any(|at| names(at).any(|name| (0..at).any(|before| names(before).any(|o| o == name))));
     if repeats {
         return;
     }
-    let of_object = |told: &&&Property| !told.told.is_of_room() && !matches!(told.told, Distinction::Colour { .. });
+    let of_object =
+        |told: &&&TargetProperty| !told.told.is_of_room() && !matches!(told.told, ObjectDistinction::Colour { .. });
     let more = by.iter().filter(of_object).count() + usize::from(superlative.is_some());
-    let has_side = by.iter().any(|property| matches!(property.told, Distinction::OnSide { .. }));
+    let has_side = by.iter().any(|property| matches!(property.told, ObjectDistinction::OnSide { .. }));
     // "The lamp by the sofa on the left": it is unclear which of the two is on the left.
     if has_side && more > 1 {
         return;
     }
-    let cost = cost + if more > 1 { SECOND } else { 0.0 };
+    let cost = cost + if more > 1 { SECOND_PROPERTY_COST } else { 0.0 };
     let told = by.iter().map(|property| property.told.clone()).chain(superlative.map(|of| of.1));
-    found.push(Found { cost, description: Description { by: told.collect(), leaves: rest + 1 } });
+    found.push(DescriptionCandidate { cost, description: ObjectDescription { by: told.collect(), leaves: rest + 1 } });
 }
 
 /// The cheapest descriptions that fit only the target; if there are none, those that fit the fewest objects.
-fn best(mut found: Vec<Found>) -> Vec<Description> {
+fn best_descriptions(mut found: Vec<DescriptionCandidate>) -> Vec<ObjectDescription> {
     let least = found.iter().map(|found| found.description.leaves).min().unwrap_or(1);
     found.retain(|found| found.description.leaves == least);
     found.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-    let mut kept: Vec<Found> = Vec::new();
+    let mut kept: Vec<DescriptionCandidate> = Vec::new();
     for mut one in found {
-        let holds = |other: &Found| other.description.by.iter().all(|by| one.description.by.contains(by));
+        let holds =
+            |other: &DescriptionCandidate| other.description.by.iter().all(|by| one.description.by.contains(by));
         if kept.iter().any(holds) {
-            one.cost += IDLE;
+            one.cost += IDLE_PROPERTY_COST;
         }
         kept.push(one);
     }

@@ -1,15 +1,15 @@
 //! Properties of the target (room, colour, side, relations), each with the rivals that share it. In doubt a rival
 //! counts as sharing a property, so a description never seems to fit fewer objects than it does.
 
-use super::listing::{Listing, Object, Place, Sight};
+use super::listing::{BuildingListing, ListingObject, ListingSighting, ListingViewpoint};
 use std::collections::BTreeSet;
-use wayword_core::{DVec3, Distinction, Frame, Heading, Side};
-use wayword_language::lexicon::{Class, room_name, same_room};
+use wayword_core::{DVec3, Frame, Heading, ObjectDistinction, Side};
+use wayword_language::lexicon::{ThingClass, room_name, same_room};
 
 /// A property that the target has.
 #[derive(Debug, Clone)]
-pub(super) struct Property {
-    pub(super) told: Distinction,
+pub(super) struct TargetProperty {
+    pub(super) told: ObjectDistinction,
     /// For each rival, whether it fits too.
     pub(super) fits: Vec<bool>,
     /// The cost of mentioning it, roughly its words.
@@ -17,9 +17,9 @@ pub(super) struct Property {
 }
 
 /// The target, the viewpoint at the end, and the rivals: all objects that could be called by the target's name.
-pub(super) struct Scene<'a> {
-    pub(super) listing: &'a Listing,
-    pub(super) place: &'a Place,
+pub(super) struct TargetContext<'a> {
+    pub(super) listing: &'a BuildingListing,
+    pub(super) place: &'a ListingViewpoint,
     pub(super) heading: Heading,
     pub(super) target: usize,
     pub(super) rivals: Vec<usize>,
@@ -30,35 +30,35 @@ const IN_SIGHT_M: f64 = 8.0;
 /// A hanging thing is at most this far below the eye, metres.
 const HIGH_M: f64 = 0.4;
 
-impl<'a> Scene<'a> {
-    pub(super) fn new(listing: &'a Listing, last: &Frame, place: &'a Place, target: usize) -> Self {
+impl<'a> TargetContext<'a> {
+    pub(super) fn new(listing: &'a BuildingListing, last: &Frame, place: &'a ListingViewpoint, target: usize) -> Self {
         let own = &listing.objects[target];
         let is_rival = |at: &usize| *at != target && listing.objects[*at].is_like(own);
         let rivals = (0..listing.objects.len()).filter(is_rival).collect();
         Self { listing, place, heading: last.pose.heading, target, rivals }
     }
 
-    pub(super) fn object(&self, at: usize) -> &'a Object {
+    pub(super) fn object_at(&self, at: usize) -> &'a ListingObject {
         &self.listing.objects[at]
     }
 
-    pub(super) fn sight(&self, object: usize) -> Option<&'a Sight> {
+    pub(super) fn sight_of_object(&self, object: usize) -> Option<&'a ListingSighting> {
         self.place.sights.iter().find(|sight| sight.object == object)
     }
 
     /// The direction of an object from the heading of arrival, radians, positive right, where it is seen at the end.
     pub(super) fn turn_rad(&self, object: usize) -> Option<f64> {
-        Some(self.heading.turn_to(self.sight(object)?.heading))
+        Some(self.heading.turn_to(self.sight_of_object(object)?.heading))
     }
 
     pub(super) fn distance_m(&self, object: usize) -> Option<f64> {
-        let sight = self.sight(object)?;
-        sight.distance_m.or_else(|| Some(self.object(object).position?.distance(self.place.eye)))
+        let sight = self.sight_of_object(object)?;
+        sight.distance_m.or_else(|| Some(self.object_at(object).position?.distance(self.place.eye)))
     }
 
     /// Whether the target is in the room where the path ends.
     pub(super) fn is_in_end_room(&self) -> bool {
-        self.object(self.target).rooms.contains(&self.place.room)
+        self.object_at(self.target).rooms.contains(&self.place.room)
     }
 
     /// The rivals that are in a room of the same kind; all of them, where the target's room is not the one at the end.
@@ -68,73 +68,80 @@ impl<'a> Scene<'a> {
             (Some(own), Some(other)) => same_room(own, other),
             _ => true,
         };
-        self.rivals.iter().map(|rival| self.object(*rival).rooms.iter().any(is_kind)).collect()
+        self.rivals.iter().map(|rival| self.object_at(*rival).rooms.iter().any(is_kind)).collect()
     }
 
-    pub(super) fn property(&self, told: Distinction, cost: f64, fits: impl Fn(usize) -> bool) -> Property {
-        Property { told, cost, fits: self.rivals.iter().map(|rival| fits(*rival)).collect() }
+    pub(super) fn new_property(
+        &self,
+        told: ObjectDistinction,
+        cost: f64,
+        fits: impl Fn(usize) -> bool,
+    ) -> TargetProperty {
+        TargetProperty { told, cost, fits: self.rivals.iter().map(|rival| fits(*rival)).collect() }
     }
 
     /// All properties of the target that do not depend on the rest of the description; superlatives do.
-    pub(super) fn properties(&self) -> Vec<Property> {
+    pub(super) fn all_properties(&self) -> Vec<TargetProperty> {
         let mut all = self.of_room();
-        let own = self.object(self.target);
+        let own = self.object_at(self.target);
         if let Some(colour) = &own.colour {
-            let told = Distinction::Colour { colour: colour.clone() };
-            all.push(self.property(told, 0.8, |rival| {
-                self.object(rival)
+            let told = ObjectDistinction::Colour { colour: colour.clone() };
+            all.push(self.new_property(told, 0.8, |rival| {
+                self.object_at(rival)
                     .colour
                     .as_ref()
                     .is_none_or(|other| other.contains(&**colour) || colour.contains(&**other))
             }));
         }
-        all.extend(self.side());
-        all.extend(self.relations());
+        all.extend(self.side_property());
+        all.extend(self.relation_properties());
         all
     }
 
     /// Whether the target certainly hangs on a wall: a picture or a mirror, high enough, with no object right below
     /// that could carry it.
-    pub(super) fn hangs(&self) -> bool {
-        let own = self.object(self.target);
+    pub(super) fn target_hangs(&self) -> bool {
+        let own = self.object_at(self.target);
         let Some(here) = own.position else { return false };
-        let carries = |at: &Object| {
+        let carries = |at: &ListingObject| {
             let Some(there) = at.position else { return false };
             let aside = DVec3::new(there.x - here.x, there.y - here.y, 0.0).length();
-            !matches!(at.class, Class::WallArt | Class::Glass | Class::Light)
+            !matches!(at.class, ThingClass::WallArt | ThingClass::Glass | ThingClass::Light)
                 && aside < 0.7
                 && (-0.2..0.6).contains(&(here.z - there.z))
         };
         let is_high = here.z > self.place.eye.z - HIGH_M;
-        matches!(own.class, Class::WallArt | Class::Glass)
+        matches!(own.class, ThingClass::WallArt | ThingClass::Glass)
             && own.kind() != "window"
             && is_high
             && !self.listing.objects.iter().any(carries)
     }
 
-    fn of_room(&self) -> Vec<Property> {
-        let (listing, own) = (self.listing, self.object(self.target));
+    fn of_room(&self) -> Vec<TargetProperty> {
+        let (listing, own) = (self.listing, self.object_at(self.target));
         let mut all = Vec::new();
         if !self.is_in_end_room() {
             return all;
         }
         if let Some(level) = own.level.filter(|_| listing.storeys > 1) {
-            let told = Distinction::Level { level };
-            all.push(self.property(told, 1.0, |rival| self.object(rival).level.is_none_or(|other| other == level)));
+            let told = ObjectDistinction::Level { level };
+            all.push(
+                self.new_property(told, 1.0, |rival| self.object_at(rival).level.is_none_or(|other| other == level)),
+            );
         }
         let room = &listing.rooms[self.place.room];
         let Some(name) = room.name.as_deref() else { return all };
         let others: BTreeSet<&String> = room.beside.iter().filter(|other| !same_room(other, name)).collect();
         for other in others.into_iter().filter(|other| room_name(other).is_some()) {
             let is_beside = |at: &usize| listing.rooms[*at].beside.iter().any(|beside| same_room(beside, other));
-            let told = Distinction::RoomBy { room: other.clone() };
-            all.push(self.property(told, 2.0, |rival| self.object(rival).rooms.iter().any(is_beside)));
+            let told = ObjectDistinction::RoomBy { room: other.clone() };
+            all.push(self.new_property(told, 2.0, |rival| self.object_at(rival).rooms.iter().any(is_beside)));
         }
         let mut told: Vec<&str> = Vec::new();
-        for thing in room.things.iter().map(|at| self.object(*at)) {
+        for thing in room.things.iter().map(|at| self.object_at(*at)) {
             let is_told = |name: &&str| **name == *thing.name;
             if thing.salience < 2
-                || thing.class == Class::Stairs
+                || thing.class == ThingClass::Stairs
                 || thing.is_like(own)
                 || told.iter().any(is_told)
                 || is_unclear(thing)
@@ -142,14 +149,14 @@ impl<'a> Scene<'a> {
                 continue;
             }
             told.push(&thing.name);
-            let has = |at: &usize| listing.rooms[*at].things.iter().any(|other| self.object(*other).is_like(thing));
-            let with = Distinction::RoomWith { thing: thing.name.clone() };
-            all.push(self.property(with, 2.2, |rival| self.object(rival).rooms.iter().any(has)));
+            let has = |at: &usize| listing.rooms[*at].things.iter().any(|other| self.object_at(*other).is_like(thing));
+            let with = ObjectDistinction::RoomWith { thing: thing.name.clone() };
+            all.push(self.new_property(with, 2.2, |rival| self.object_at(rival).rooms.iter().any(has)));
         }
         all
     }
 
-    fn side(&self) -> Option<Property> {
+    fn side_property(&self) -> Option<TargetProperty> {
         let (side, sign) = match self.bearing_deg(self.target)? {
             deg if (25.0..155.0).contains(&deg) => (Side::Right, 1.0),
             deg if (25.0..155.0).contains(&-deg) => (Side::Left, -1.0),
@@ -157,7 +164,7 @@ impl<'a> Scene<'a> {
         };
         // "On the left" describes the view on arrival.
         let may_be = |rival: usize| self.bearing_deg(rival).is_some_and(|deg| (5.0..175.0).contains(&(deg * sign)));
-        Some(self.property(Distinction::OnSide { side }, 3.4, may_be))
+        Some(self.new_property(ObjectDistinction::OnSide { side }, 3.4, may_be))
     }
 
     /// Whether no rival is farther to the target's side.
@@ -171,7 +178,7 @@ impl<'a> Scene<'a> {
     /// of the same room or of one with its name, so their position is used where it is known.
     fn bearing_deg(&self, at: usize) -> Option<f64> {
         let here = || {
-            let (object, name) = (self.object(at), self.listing.rooms[self.place.room].name.as_ref());
+            let (object, name) = (self.object_at(at), self.listing.rooms[self.place.room].name.as_ref());
             let is_here = |room: &usize| *room == self.place.room || self.listing.rooms[*room].name.as_ref() == name;
             let there = object
                 .position
@@ -183,7 +190,7 @@ impl<'a> Scene<'a> {
 }
 
 /// Whether an object is too vague to find another one by: parts of the building, and names that the lexicon lacks.
-pub(super) fn is_unclear(thing: &Object) -> bool {
-    matches!(thing.class, Class::Fabric | Class::Unknown | Class::Structure)
+pub(super) fn is_unclear(thing: &ListingObject) -> bool {
+    matches!(thing.class, ThingClass::Fabric | ThingClass::Unknown | ThingClass::Structure)
         && !matches!(thing.kind(), "window" | "fireplace" | "column" | "railing")
 }

@@ -4,38 +4,38 @@
 //! rival.
 
 use super::{
-    listing::Object,
-    properties::{Property, Scene, is_unclear},
+    listing::ListingObject,
+    properties::{TargetContext, TargetProperty, is_unclear},
 };
-use wayword_core::{DVec3, Distinction, Relation};
-use wayword_language::lexicon::Class;
+use wayword_core::{DVec3, ObjectDistinction, ObjectRelation};
+use wayword_language::lexicon::ThingClass;
 
 /// Two things are near each other within this distance, metres.
 const NEAR_M: f64 = 1.5;
 /// Two things farther apart than this are certainly not near each other, metres.
 const NOT_NEAR_M: f64 = 1.8;
 /// The target has to be nearer than this share of the distance of every rival.
-const CLEARLY: f64 = 0.7;
+const CLEARLY_NEARER_SHARE: f64 = 0.7;
 /// The target also has to be nearer by this, metres.
 const CLEARLY_M: f64 = 0.3;
 /// Extra cost of a relation to a small thing.
-const SMALL: f64 = 0.9;
+const SMALL_NEIGHBOUR_COST: f64 = 0.9;
 /// Distances are compared after rounding to this many units per metre, a tenth of a millimetre each.
 const PER_M: f64 = 10_000.0;
 /// Most neighbours of the target that are considered, the nearest first.
 const MOST_NEIGHBOURS: usize = 8;
 
-impl<'a> Scene<'a> {
+impl<'a> TargetContext<'a> {
     /// The things near the target that a walker at the end can see too, the nearest first.
-    fn neighbours(&self) -> Vec<(usize, f64)> {
-        let own = self.object(self.target);
+    fn near_neighbours(&self) -> Vec<(usize, f64)> {
+        let own = self.object_at(self.target);
         let seen = self.place.sights.iter().map(|sight| sight.object);
         let tells = |at: &usize| {
-            let thing = self.object(*at);
+            let thing = self.object_at(*at);
             *at != self.target && !thing.is_like(own) && !is_unclear(thing)
         };
         let mut near: Vec<(usize, f64)> =
-            seen.filter(tells).filter_map(|at| Some((at, apart(own, self.object(at))?))).collect();
+            seen.filter(tells).filter_map(|at| Some((at, centre_distance_m(own, self.object_at(at))?))).collect();
         near.retain(|(_, apart_m)| *apart_m <= NEAR_M);
         // At equal distance the order of ids decides, not rounding errors of the positions.
         near.sort_by_key(|(_, apart_m)| (apart_m * PER_M).round() as i64);
@@ -43,136 +43,152 @@ impl<'a> Scene<'a> {
         near
     }
 
-    pub(super) fn relations(&self) -> Vec<Property> {
-        let neighbours = self.neighbours();
-        let mut all: Vec<Property> = Vec::new();
+    pub(super) fn relation_properties(&self) -> Vec<TargetProperty> {
+        let neighbours = self.near_neighbours();
+        let mut all: Vec<TargetProperty> = Vec::new();
         for (at, apart_m) in &neighbours {
-            let name = &self.object(*at).name;
-            if all.iter().any(|property| matches!(&property.told, Distinction::Related { to, .. } if to == name)) {
+            let name = &self.object_at(*at).name;
+            if all.iter().any(|property| matches!(&property.told, ObjectDistinction::Related { to, .. } if to == name))
+            {
                 continue;
             }
             all.extend(self.relations_to(*at, *apart_m));
         }
         for (index, (one, _)) in neighbours.iter().enumerate() {
-            all.extend(neighbours[index + 1..].iter().filter_map(|(other, _)| self.between(*one, *other)));
+            all.extend(neighbours[index + 1..].iter().filter_map(|(other, _)| self.between_property(*one, *other)));
         }
         all
     }
 
     /// The listed things of that name, or of a name that means the same.
-    fn alike(&self, thing: &Object) -> Vec<&'a Object> {
+    fn objects_like(&self, thing: &ListingObject) -> Vec<&'a ListingObject> {
         self.listing.objects.iter().filter(|other| other.is_like(thing)).collect()
     }
 
-    fn relations_to(&self, at: usize, apart_m: f64) -> Vec<Property> {
-        let (own, to) = (self.object(self.target), self.object(at));
-        let alike = self.alike(to);
+    fn relations_to(&self, at: usize, apart_m: f64) -> Vec<TargetProperty> {
+        let (own, to) = (self.object_at(self.target), self.object_at(at));
+        let alike = self.objects_like(to);
         let nearest = |rival: usize| {
-            let from = self.object(rival);
-            let all = alike.iter().map(|other| apart(from, other).unwrap_or(0.0));
+            let from = self.object_at(rival);
+            let all = alike.iter().map(|other| centre_distance_m(from, other).unwrap_or(0.0));
             all.fold(f64::INFINITY, f64::min)
         };
-        let related = |relation| Distinction::Related { relation, to: to.name.clone() };
-        let mut all = vec![self.property(related(Relation::Near), 1.6, |rival| nearest(rival) <= NOT_NEAR_M)];
+        let related = |relation| ObjectDistinction::Related { relation, to: to.name.clone() };
+        let mut all = vec![self.new_property(related(ObjectRelation::Near), 1.6, |rival| nearest(rival) <= NOT_NEAR_M)];
         let is_alone =
-            alike.iter().filter(|other| apart(own, other).is_none_or(|m| m <= 2.0 * NOT_NEAR_M)).count() == 1;
+            alike.iter().filter(|other| centre_distance_m(own, other).is_none_or(|m| m <= 2.0 * NOT_NEAR_M)).count()
+                == 1;
         // No rival may be nearer to it, wherever the rival is.
-        let is_nearest =
-            self.rivals.iter().all(|rival| apart(self.object(*rival), to).is_none_or(|m| m > 1.05 * apart_m));
+        let is_nearest = self
+            .rivals
+            .iter()
+            .all(|rival| centre_distance_m(self.object_at(*rival), to).is_none_or(|m| m > 1.05 * apart_m));
         if is_alone && is_nearest {
-            let told = Distinction::NextTo { neighbour: to.name.clone() };
+            let told = ObjectDistinction::NextTo { neighbour: to.name.clone() };
             let may_be = |rival: usize| {
-                let other_m = apart(self.object(rival), to).unwrap_or(0.0);
-                let is_elsewhere = other_m > (apart_m / CLEARLY).max(apart_m + CLEARLY_M);
+                let other_m = centre_distance_m(self.object_at(rival), to).unwrap_or(0.0);
+                let is_elsewhere = other_m > (apart_m / CLEARLY_NEARER_SHARE).max(apart_m + CLEARLY_M);
                 let own_one = alike.iter().filter(|other| other.position != to.position);
-                let has_own = own_one.filter_map(|other| apart(self.object(rival), other)).any(|m| m <= NOT_NEAR_M);
+                let has_own = own_one
+                    .filter_map(|other| centre_distance_m(self.object_at(rival), other))
+                    .any(|m| m <= NOT_NEAR_M);
                 !is_elsewhere || has_own
             };
-            all.push(self.property(told, 1.5, may_be));
+            all.push(self.new_property(told, 1.5, may_be));
         }
-        for relation in [Relation::Above, Relation::Under, Relation::On] {
-            if holds(relation, own, to, Strict::Yes) {
-                let may_be =
-                    |rival: usize| alike.iter().any(|other| holds(relation, self.object(rival), other, Strict::No));
-                all.push(self.property(related(relation), 1.4, may_be));
+        for relation in [ObjectRelation::Above, ObjectRelation::Under, ObjectRelation::On] {
+            if relation_holds(relation, own, to, RelationStrictness::Yes) {
+                let may_be = |rival: usize| {
+                    alike
+                        .iter()
+                        .any(|other| relation_holds(relation, self.object_at(rival), other, RelationStrictness::No))
+                };
+                all.push(self.new_property(related(relation), 1.4, may_be));
             }
         }
-        all.extend(self.beside(at, &alike));
+        all.extend(self.beside_property(at, &alike));
         // A small thing such as a plate is hard to find itself.
         if to.salience < 2 {
-            all.iter_mut().for_each(|property| property.cost += SMALL);
+            all.iter_mut().for_each(|property| property.cost += SMALL_NEIGHBOUR_COST);
         }
         all
     }
 
     /// Left or right of a thing, as seen from the end.
-    fn beside(&self, at: usize, alike: &[&Object]) -> Option<Property> {
-        let (own, to) = (self.object(self.target), self.object(at));
+    fn beside_property(&self, at: usize, alike: &[&ListingObject]) -> Option<TargetProperty> {
+        let (own, to) = (self.object_at(self.target), self.object_at(at));
         let level_m = (own.position?.z - to.position?.z).abs();
-        let off_rad = self.sight(at)?.heading.turn_to(self.sight(self.target)?.heading);
+        let off_rad = self.sight_of_object(at)?.heading.turn_to(self.sight_of_object(self.target)?.heading);
         let off_deg = off_rad.to_degrees();
         if level_m > 0.9 || !(8.0..70.0).contains(&off_deg.abs()) {
             return None;
         }
-        let relation = if off_deg > 0.0 { Relation::RightOf } else { Relation::LeftOf };
+        let relation = if off_deg > 0.0 { ObjectRelation::RightOf } else { ObjectRelation::LeftOf };
         let may_be = |rival: usize| {
-            let near = alike.iter().filter(|other| apart(self.object(rival), other).is_none_or(|m| m <= NOT_NEAR_M));
-            let seen = self.sight(rival);
+            let near = alike
+                .iter()
+                .filter(|other| centre_distance_m(self.object_at(rival), other).is_none_or(|m| m <= NOT_NEAR_M));
+            let seen = self.sight_of_object(rival);
             near.into_iter().any(|other| {
                 let other_sight =
-                    self.place.sights.iter().find(|sight| self.object(sight.object).position == other.position);
+                    self.place.sights.iter().find(|sight| self.object_at(sight.object).position == other.position);
                 match (seen, other_sight) {
                     (Some(seen), Some(to)) => to.heading.turn_to(seen.heading) * off_rad.signum() > -0.05,
                     _ => true,
                 }
             })
         };
-        let told = Distinction::Related { relation, to: to.name.clone() };
-        Some(self.property(told, 1.9, may_be))
+        let told = ObjectDistinction::Related { relation, to: to.name.clone() };
+        Some(self.new_property(told, 1.9, may_be))
     }
 
-    fn between(&self, one: usize, other: usize) -> Option<Property> {
-        let (one, other) = (self.object(one), self.object(other));
-        let stands = |object: &Object, degrees: f64| {
-            let all_one = self.alike(one);
-            let all_other = self.alike(other);
+    fn between_property(&self, one: usize, other: usize) -> Option<TargetProperty> {
+        let (one, other) = (self.object_at(one), self.object_at(other));
+        let stands = |object: &ListingObject, degrees: f64| {
+            let all_one = self.objects_like(one);
+            let all_other = self.objects_like(other);
             all_one.iter().any(|a| all_other.iter().any(|b| is_between(object, a, b, degrees).unwrap_or(true)))
         };
-        let own = self.object(self.target);
+        let own = self.object_at(self.target);
         if one.is_like(other) || !is_between(own, one, other, 140.0)? {
             return None;
         }
-        let told = Distinction::Between { one: one.name.clone(), other: other.name.clone() };
-        Some(self.property(told, 3.0, |rival| stands(self.object(rival), 100.0)))
+        let told = ObjectDistinction::Between { one: one.name.clone(), other: other.name.clone() };
+        Some(self.new_property(told, 3.0, |rival| stands(self.object_at(rival), 100.0)))
     }
 }
 
 /// Metres between two centres.
-fn apart(a: &Object, b: &Object) -> Option<f64> {
+fn centre_distance_m(a: &ListingObject, b: &ListingObject) -> Option<f64> {
     Some(a.position?.distance(b.position?))
 }
 
 /// Whether a relation has to hold clearly (for the target) or may just hold (for a rival).
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Strict {
+enum RelationStrictness {
     Yes,
     No,
 }
 
-fn holds(relation: Relation, a: &Object, b: &Object, strict: Strict) -> bool {
-    let (Some(from), Some(to)) = (a.position, b.position) else { return strict == Strict::No };
+fn relation_holds(relation: ObjectRelation, a: &ListingObject, b: &ListingObject, strict: RelationStrictness) -> bool {
+    let (Some(from), Some(to)) = (a.position, b.position) else { return strict == RelationStrictness::No };
     let rise = from.z - to.z;
     let aside = DVec3::new(from.x - to.x, from.y - to.y, 0.0).length();
-    let is_strict = strict == Strict::Yes;
-    let wide = if matches!(b.class, Class::Bed | Class::Tub | Class::Surface | Class::Seat) { 0.25 } else { 0.0 };
+    let is_strict = strict == RelationStrictness::Yes;
+    let wide = if matches!(b.class, ThingClass::Bed | ThingClass::Tub | ThingClass::Surface | ThingClass::Seat) {
+        0.25
+    } else {
+        0.0
+    };
     match relation {
-        Relation::Above if is_strict => (0.25..1.5).contains(&rise) && aside <= 0.45 + wide,
-        Relation::Above => (0.0..2.0).contains(&rise) && aside <= 1.2,
-        Relation::Under if is_strict => (0.25..1.5).contains(&-rise) && aside <= 0.45 + wide,
-        Relation::Under => (0.0..2.0).contains(&-rise) && aside <= 1.2,
-        Relation::On => {
-            let carried = matches!(a.class, Class::Textile | Class::Small | Class::Ornament | Class::Plant);
-            let carries = matches!(b.class, Class::Bed | Class::Surface | Class::Seat);
+        ObjectRelation::Above if is_strict => (0.25..1.5).contains(&rise) && aside <= 0.45 + wide,
+        ObjectRelation::Above => (0.0..2.0).contains(&rise) && aside <= 1.2,
+        ObjectRelation::Under if is_strict => (0.25..1.5).contains(&-rise) && aside <= 0.45 + wide,
+        ObjectRelation::Under => (0.0..2.0).contains(&-rise) && aside <= 1.2,
+        ObjectRelation::On => {
+            let carried =
+                matches!(a.class, ThingClass::Textile | ThingClass::Small | ThingClass::Ornament | ThingClass::Plant);
+            let carries = matches!(b.class, ThingClass::Bed | ThingClass::Surface | ThingClass::Seat);
             let is_there = if is_strict {
                 (-0.05..0.6).contains(&rise) && aside <= 0.5 + wide
             } else {
@@ -185,7 +201,7 @@ fn holds(relation: Relation, a: &Object, b: &Object, strict: Strict) -> bool {
 }
 
 /// Whether a thing lies between two others, seen from above: the directions to them differ by at least `degrees`.
-fn is_between(thing: &Object, one: &Object, other: &Object, degrees: f64) -> Option<bool> {
+fn is_between(thing: &ListingObject, one: &ListingObject, other: &ListingObject, degrees: f64) -> Option<bool> {
     let (here, one, other) = (thing.position?, one.position?, other.position?);
     let limit_m = if degrees > 120.0 { NEAR_M } else { NOT_NEAR_M };
     let flat = |to: DVec3| DVec3::new(to.x - here.x, to.y - here.y, 0.0);

@@ -1,28 +1,32 @@
 //! Superlatives of the target among the objects of its name in view: the leftmost, the nearest, the highest.
 
-use super::properties::Scene;
-use wayword_core::{Distinction, Side};
+use super::properties::TargetContext;
+use wayword_core::{ObjectDistinction, Side};
 
 /// Least angle between the target and the next in a row, degrees.
 const APART_DEG: f64 = 5.0;
 /// The widest row, degrees. If things lie all around the walker, none of them is the leftmost.
 const WIDEST_DEG: f64 = 150.0;
 /// The nearest has to be nearer than this share of the distance of the next.
-const CLEARLY: f64 = 0.75;
+const CLEARLY_NEAREST_SHARE: f64 = 0.75;
 /// The highest has to be higher than the next by this, metres.
 const HIGHER_M: f64 = 0.3;
 /// The longest row in which people count ("the third from the left").
 const LONGEST_ROW: usize = 5;
 
-impl Scene<'_> {
+impl TargetContext<'_> {
     /// The superlatives that hold clearly of the target among itself and the given rivals, each with its cost.
-    pub(super) fn superlatives(&self, among: &[bool]) -> Vec<(f64, Distinction)> {
+    pub(super) fn superlatives_among(&self, among: &[bool]) -> Vec<(f64, ObjectDistinction)> {
         let others: Vec<usize> =
             self.rivals.iter().zip(among).filter(|(_, among)| **among).map(|(rival, _)| *rival).collect();
-        self.in_row(&others).into_iter().chain(self.range(&others)).chain(self.height(&others)).collect()
+        self.in_row(&others)
+            .into_iter()
+            .chain(self.range_superlative(&others))
+            .chain(self.height_superlative(&others))
+            .collect()
     }
 
-    fn in_row(&self, others: &[usize]) -> Option<(f64, Distinction)> {
+    fn in_row(&self, others: &[usize]) -> Option<(f64, ObjectDistinction)> {
         let own = self.turn_rad(self.target)?.to_degrees();
         let turns: Option<Vec<f64>> = others.iter().map(|other| Some(self.turn_rad(*other)?.to_degrees())).collect();
         let turns = turns?;
@@ -41,24 +45,24 @@ impl Scene<'_> {
             _ if of > LONGEST_ROW => return None,
             _ => 2.3,
         };
-        Some((cost, Distinction::InRow { place, of, from }))
+        Some((cost, ObjectDistinction::InRow { place, of, from }))
     }
 
-    fn range(&self, others: &[usize]) -> Option<(f64, Distinction)> {
+    fn range_superlative(&self, others: &[usize]) -> Option<(f64, ObjectDistinction)> {
         let own_m = self.distance_m(self.target)?;
         let others: Option<Vec<f64>> = others.iter().map(|other| self.distance_m(*other)).collect();
         let others = others?;
-        let nearest = others.iter().all(|other_m| own_m < CLEARLY * other_m);
-        let furthest = others.iter().all(|other_m| own_m * CLEARLY > *other_m);
-        (nearest || furthest).then_some((2.0, Distinction::Range { nearest }))
+        let nearest = others.iter().all(|other_m| own_m < CLEARLY_NEAREST_SHARE * other_m);
+        let furthest = others.iter().all(|other_m| own_m * CLEARLY_NEAREST_SHARE > *other_m);
+        (nearest || furthest).then_some((2.0, ObjectDistinction::Range { nearest }))
     }
 
-    fn height(&self, others: &[usize]) -> Option<(f64, Distinction)> {
-        let own_m = self.object(self.target).position?.z;
-        let others: Option<Vec<f64>> = others.iter().map(|other| Some(self.object(*other).position?.z)).collect();
+    fn height_superlative(&self, others: &[usize]) -> Option<(f64, ObjectDistinction)> {
+        let own_m = self.object_at(self.target).position?.z;
+        let others: Option<Vec<f64>> = others.iter().map(|other| Some(self.object_at(*other).position?.z)).collect();
         let others = others?;
         let highest = others.iter().all(|other_m| own_m > other_m + HIGHER_M);
         let lowest = others.iter().all(|other_m| own_m + HIGHER_M < *other_m);
-        (highest || lowest).then_some((1.8, Distinction::Height { highest }))
+        (highest || lowest).then_some((1.8, ObjectDistinction::Height { highest }))
     }
 }

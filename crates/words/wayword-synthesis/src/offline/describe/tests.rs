@@ -1,9 +1,9 @@
 //! A made-up building: two bedrooms side by side, each with a bed, and a hallway before them.
 
-use super::{Listing, describe};
+use super::{BuildingListing, describe_target};
 use wayword_core::{
-    DVec3, Description, Distinction, Frame, Heading, Label, ObjectId, Pose, Survey, Target, ViewpointGraph,
-    ViewpointId, graph::GraphError, survey::Known,
+    DVec3, Frame, Heading, ObjectDescription, ObjectDistinction, ObjectId, ObjectLabel, PathTarget, Pose,
+    ViewpointGraph, ViewpointId, ViewpointSurvey, graph::GraphError, survey::ViewpointKnowledge,
 };
 
 /// A viewpoint: its name, where it is, its room, and the things that are seen there (id, name, where they are).
@@ -13,17 +13,17 @@ fn id(name: &str) -> ViewpointId {
     ViewpointId::new(name).unwrap()
 }
 
-fn survey(spots: &[Spot<'_>], joined: &[(&str, &str)], has_positions: bool) -> Survey {
+fn survey(spots: &[Spot<'_>], joined: &[(&str, &str)], has_positions: bool) -> ViewpointSurvey {
     let mut graph = ViewpointGraph::default();
     for (name, eye, ..) in spots {
-        graph.add(id(name), *eye, Some(1)).unwrap();
+        graph.add_viewpoint(id(name), *eye, Some(1)).unwrap();
     }
     for (a, b) in joined {
-        graph.join(&id(a), &id(b)).unwrap();
+        graph.join_viewpoints(&id(a), &id(b)).unwrap();
     }
     let known = |place: &ViewpointId, eye: DVec3| {
         let (.., room, things) = spots.iter().find(|spot| id(spot.0) == *place).unwrap();
-        let label = |(object, name, position): &(&str, &str, DVec3)| Label {
+        let label = |(object, name, position): &(&str, &str, DVec3)| ObjectLabel {
             object: ObjectId::new(*object).unwrap(),
             name: (*name).to_owned(),
             heading: Heading::towards(eye, *position).unwrap(),
@@ -34,20 +34,20 @@ fn survey(spots: &[Spot<'_>], joined: &[(&str, &str)], has_positions: bool) -> S
             colour: None,
         };
         let things = Some(things.iter().map(label).collect());
-        Ok::<_, GraphError>(Known { room: Some((*room).to_owned()), things })
+        Ok::<_, GraphError>(ViewpointKnowledge { room: Some((*room).to_owned()), things })
     };
-    Survey::of(&graph, known).unwrap()
+    ViewpointSurvey::from_graph(&graph, known).unwrap()
 }
 
 const LEFT: DVec3 = DVec3::new(-1.0, 3.0, 1.0);
 const RIGHT: DVec3 = DVec3::new(1.0, 3.0, 1.0);
 
-fn described(target: &str, spots: &[Spot<'_>], joined: &[(&str, &str)], has_positions: bool) -> Target {
+fn described(target: &str, spots: &[Spot<'_>], joined: &[(&str, &str)], has_positions: bool) -> PathTarget {
     let survey = survey(spots, joined, has_positions);
     let (place, eye, _, things) = spots[0];
-    let frame = Frame { pose: Pose::level(eye, Heading::NORTH), viewpoint: Some(id(place)), level: Some(1) };
+    let frame = Frame { pose: Pose::looking_level(eye, Heading::NORTH), viewpoint: Some(id(place)), level: Some(1) };
     let name = things.iter().find(|thing| thing.0 == target).unwrap().1.to_owned();
-    let mut target = Target {
+    let mut target = PathTarget {
         object: ObjectId::new(target).unwrap(),
         name,
         told_by: Vec::new(),
@@ -56,7 +56,7 @@ fn described(target: &str, spots: &[Spot<'_>], joined: &[(&str, &str)], has_posi
         hangs: false,
         storeys: 0,
     };
-    describe(&mut target, &frame, &Listing::of(&survey));
+    describe_target(&mut target, &frame, &BuildingListing::from_survey(&survey));
     target
 }
 
@@ -66,7 +66,7 @@ const FAR: DVec3 = DVec3::new(20.0, 0.0, 1.5);
 #[test]
 fn the_only_one_needs_no_more_than_its_name() {
     let lamp = described("1", &[("a", EYE, "bedroom", &[("1", "lamp", LEFT)])], &[], true);
-    assert_eq!(lamp.descriptions.first(), Some(&Description { by: vec![], leaves: 1 }));
+    assert_eq!(lamp.descriptions.first(), Some(&ObjectDescription { by: vec![], leaves: 1 }));
     assert!(!lamp.has_namesake && lamp.told_by.is_empty());
 }
 
@@ -75,10 +75,10 @@ fn a_neighbour_or_a_row_distinguishes_one_of_two() {
     let sofa = ("3", "sofa", LEFT + DVec3::new(0.0, 0.6, 0.0));
     let things = [("1", "lamp", LEFT), ("2", "lamp", RIGHT), sofa];
     let lamp = described("1", &[("a", EYE, "bedroom", &things)], &[], true);
-    assert!(lamp.has_namesake && lamp.descriptions.iter().all(Description::pins), "{lamp:?}");
-    let says = |by: &Distinction| lamp.descriptions.iter().any(|description| description.by == [by.clone()]);
-    assert!(says(&Distinction::NextTo { neighbour: "sofa".into() }));
-    assert!(says(&Distinction::InRow { place: 1, of: 2, from: wayword_core::Side::Left }));
+    assert!(lamp.has_namesake && lamp.descriptions.iter().all(ObjectDescription::fits_one_object), "{lamp:?}");
+    let says = |by: &ObjectDistinction| lamp.descriptions.iter().any(|description| description.by == [by.clone()]);
+    assert!(says(&ObjectDistinction::NextTo { neighbour: "sofa".into() }));
+    assert!(says(&ObjectDistinction::InRow { place: 1, of: 2, from: wayword_core::Side::Left }));
     assert!(!lamp.descriptions.iter().any(|description| description.by.is_empty()));
 }
 
@@ -107,8 +107,12 @@ fn the_room_is_identified_by_its_neighbours() {
         ("c", EYE - DVec3::Y * 3.0, "bathroom", &[]),
     ];
     let lamp = described("1", &spots, &[("a", "c")], true);
-    let by_bathroom = Distinction::RoomBy { room: "bathroom".into() };
-    assert!(lamp.descriptions.iter().any(|description| description.by == [by_bathroom.clone()] && description.pins()));
+    let by_bathroom = ObjectDistinction::RoomBy { room: "bathroom".into() };
+    assert!(
+        lamp.descriptions
+            .iter()
+            .any(|description| description.by == [by_bathroom.clone()] && description.fits_one_object())
+    );
 }
 
 #[test]
@@ -117,7 +121,7 @@ fn without_positions_things_are_found_where_rays_meet() {
     let things = [("1", "lamp", LEFT), ("2", "lamp", RIGHT), sofa];
     let spots: [Spot<'_>; 2] = [("a", EYE, "bedroom", &things), ("b", EYE + DVec3::X * 3.0, "bedroom", &things)];
     let lamp = described("1", &spots, &[("a", "b")], false);
-    let next_to = Distinction::NextTo { neighbour: "sofa".into() };
+    let next_to = ObjectDistinction::NextTo { neighbour: "sofa".into() };
     assert!(lamp.descriptions.iter().any(|description| description.by == [next_to.clone()]), "{lamp:?}");
 }
 
@@ -130,8 +134,11 @@ fn the_one_on_the_left_is_the_outermost_of_several() {
         // No other property differs between the beds: the other bedroom is the same.
         let spots: [Spot<'_>; 2] = [("a", EYE, "bedroom", &pillows), ("b", FAR, "bedroom", &other)];
         let pillow = described(target, &spots, &[], true);
-        let is_side = |by: &Distinction| matches!(by, Distinction::OnSide { .. });
-        pillow.descriptions.iter().any(|description| !description.pins() && description.by.iter().any(is_side))
+        let is_side = |by: &ObjectDistinction| matches!(by, ObjectDistinction::OnSide { .. });
+        pillow
+            .descriptions
+            .iter()
+            .any(|description| !description.fits_one_object() && description.by.iter().any(is_side))
             || pillow.told_by.iter().any(is_side)
     };
     assert!(!says_side("1"), "the other one is farther to the left");
@@ -144,7 +151,7 @@ fn unlisted_rivals_at_the_end_count_for_sides() {
     let (here, there) = ([("1", "chair", one)], [("2", "chair", other)]);
     let spots: [Spot<'_>; 2] = [("a", EYE, "kitchen", &here), ("b", EYE - DVec3::X * 4.0, "kitchen", &there)];
     let chair = described("1", &spots, &[("a", "b")], true);
-    let is_side = |by: &Distinction| matches!(by, Distinction::OnSide { .. });
+    let is_side = |by: &ObjectDistinction| matches!(by, ObjectDistinction::OnSide { .. });
     assert!(!chair.descriptions.iter().any(|description| description.by.iter().any(is_side)), "{chair:?}");
 }
 
@@ -154,10 +161,12 @@ fn describe_mentions_no_thing_twice() {
     let things = [("1", "lamp", LEFT), ("2", "lamp", RIGHT), shelf];
     let lamp = described("1", &[("a", EYE, "bedroom", &things)], &[], true);
     for description in &lamp.descriptions {
-        let names: Vec<&str> = description.by.iter().flat_map(Distinction::names).collect();
+        let names: Vec<&str> = description.by.iter().flat_map(ObjectDistinction::named_things).collect();
         assert!(names.len() < 2 || names[0] != names[1], "{description:?}");
     }
     assert!(
-        lamp.descriptions.iter().any(|description| description.by.iter().any(|by| by.names().next() == Some("shelf")))
+        lamp.descriptions
+            .iter()
+            .any(|description| description.by.iter().any(|by| by.named_things().next() == Some("shelf")))
     );
 }

@@ -8,8 +8,8 @@ mod shapes;
 #[cfg(test)]
 mod tests;
 
-pub use kind::Kind;
-pub use shapes::{Joint, is_until};
+pub use kind::ClauseKind;
+pub use shapes::{ClauseJoint, is_until};
 
 use serde::{Deserialize, Serialize};
 use std::{
@@ -17,24 +17,24 @@ use std::{
     sync::LazyLock,
 };
 use wayword_language::{
-    lexicon::{normal, room_name, thing},
-    reading::{Reading, What},
+    lexicon::{find_thing, normalise_name, room_name},
+    reading::{EventContent, TextReading},
 };
 
 /// How the texts of a style describe a way.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct Way {
+pub struct WayWording {
     /// The shapes of each kind of clause, with how often they occur.
-    pub shapes: BTreeMap<Kind, BTreeMap<String, f64>>,
+    pub shapes: BTreeMap<ClauseKind, BTreeMap<String, f64>>,
     /// How often each kind of clause occurs, whatever its words.
-    pub kinds: BTreeMap<Kind, f64>,
+    pub kinds: BTreeMap<ClauseKind, f64>,
     /// What joins a clause to the one before it.
-    pub joints: BTreeMap<Joint, f64>,
+    pub joints: BTreeMap<ClauseJoint, f64>,
     /// The same after a turn without any other detail.
-    pub turn_joints: BTreeMap<Joint, f64>,
+    pub turn_joints: BTreeMap<ClauseJoint, f64>,
     /// The same before the clause to stop.
-    pub stop_joints: BTreeMap<Joint, f64>,
+    pub stop_joints: BTreeMap<ClauseJoint, f64>,
     /// The names of each room, by its usual name.
     pub rooms: BTreeMap<String, BTreeMap<String, f64>>,
     /// The names of each thing, by its usual name.
@@ -47,45 +47,46 @@ struct BuiltIn {
     /// The words of which shapes may consist.
     words: String,
     #[serde(flatten)]
-    way: Way,
+    way: WayWording,
 }
 
 static BUILT_IN: LazyLock<BuiltIn> =
     LazyLock::new(|| toml::from_str(include_str!("../builtin/way.toml")).unwrap_or_default());
 
-static ALLOWED: LazyLock<BTreeSet<&'static str>> = LazyLock::new(|| BUILT_IN.words.split_whitespace().collect());
+static ALLOWED_SHAPE_WORDS: LazyLock<BTreeSet<&'static str>> =
+    LazyLock::new(|| BUILT_IN.words.split_whitespace().collect());
 
 /// A shape is used if at least this many texts have it.
 const FEWEST_TEXTS: f64 = 3.0;
 /// With this many clauses, the measured shares are preferred to the built-in ones.
-const ENOUGH: f64 = 40.0;
+const ENOUGH_CLAUSES: f64 = 40.0;
 /// A name belongs to a room or thing if it has at least this share of its mentions.
 const LEAST_SHARE: f64 = 0.04;
 
-impl Way {
+impl WayWording {
     /// Measures texts with their readings. Where their clauses show too little, the built-in constructions fill in.
     #[must_use]
-    pub fn measure<'a>(texts: impl IntoIterator<Item = (&'a str, &'a Reading)>) -> Self {
+    pub fn from_texts<'a>(texts: impl IntoIterator<Item = (&'a str, &'a TextReading)>) -> Self {
         let mut way = Self::default();
         for (text, reading) in texts {
-            way.add(text, reading);
+            way.add_text(text, reading);
         }
-        way.settle();
-        way.complete();
+        way.keep_common();
+        way.fill_from_built_in();
         way
     }
 
-    fn add(&mut self, text: &str, reading: &Reading) {
+    fn add_text(&mut self, text: &str, reading: &TextReading) {
         let mut seen = BTreeSet::new();
         let mut after_turn = false;
-        for clause in shapes::told(text, reading, &ALLOWED) {
+        for clause in shapes::shape_clauses(text, reading, &ALLOWED_SHAPE_WORDS) {
             let joints = match () {
                 () if clause.stops => &mut self.stop_joints,
                 () if after_turn => &mut self.turn_joints,
                 () => &mut self.joints,
             };
-            after_turn = clause.kind.is_some_and(Kind::is_bare_turn);
-            if !matches!(clause.joint, Joint::Start | Joint::Run) {
+            after_turn = clause.kind.is_some_and(ClauseKind::is_bare_turn);
+            if !matches!(clause.joint, ClauseJoint::Start | ClauseJoint::Run) {
                 *joints.entry(clause.joint).or_default() += 1.0;
             }
             if let Some(kind) = clause.kind {
@@ -98,14 +99,14 @@ impl Way {
             }
         }
         for event in &reading.events {
-            let What::Place(place) = &event.what else { continue };
+            let EventContent::Place(place) = &event.what else { continue };
             let Some(said) = text.get(event.span[0]..event.span[1]).map(str::to_lowercase) else { continue };
             if place.several || said.contains(|c: char| !c.is_ascii_lowercase() && c != ' ') {
                 continue;
             }
             if let Some(room) = room_name(&place.name).filter(|_| place.is_room) {
                 *self.rooms.entry(room.to_owned()).or_default().entry(said).or_default() += 1.0;
-            } else if let Some(thing) = thing(&place.name) {
+            } else if let Some(thing) = find_thing(&place.name) {
                 *self.things.entry(thing.name.to_owned()).or_default().entry(said).or_default() += 1.0;
             }
         }
@@ -113,16 +114,18 @@ impl Way {
 
     /// Keeps the shapes that several texts have and that our reader understands as the same kind and shape; likewise
     /// the names.
-    fn settle(&mut self) {
+    fn keep_common(&mut self) {
         for (kind, shapes) in &mut self.shapes {
-            shapes.retain(|shape, texts| *texts >= FEWEST_TEXTS && shapes::reads_the_same(*kind, shape, &ALLOWED));
+            shapes.retain(|shape, texts| {
+                *texts >= FEWEST_TEXTS && shapes::reads_the_same(*kind, shape, &ALLOWED_SHAPE_WORDS)
+            });
         }
         self.shapes.retain(|_, shapes| !shapes.is_empty());
         for (usual, names) in self.rooms.iter_mut().chain(self.things.iter_mut()) {
             let total: f64 = names.values().sum();
             names.retain(|name, texts| {
                 let is_plain = name == usual || !name.ends_with(&format!(" {usual}"));
-                *texts >= FEWEST_TEXTS && *texts >= total * LEAST_SHARE && is_plain && normal(name) == *name
+                *texts >= FEWEST_TEXTS && *texts >= total * LEAST_SHARE && is_plain && normalise_name(name) == *name
             });
         }
         self.rooms.retain(|_, names| !names.is_empty());
@@ -130,14 +133,14 @@ impl Way {
     }
 
     /// Fills in the built-in constructions and names where these texts show too few.
-    fn complete(&mut self) {
+    fn fill_from_built_in(&mut self) {
         let own = &BUILT_IN.way;
-        if self.kinds.values().sum::<f64>() < ENOUGH * ENOUGH {
+        if self.kinds.values().sum::<f64>() < ENOUGH_CLAUSES * ENOUGH_CLAUSES {
             self.kinds = own.kinds.clone();
         }
         for (kind, shapes) in &own.shapes {
             let told = self.shapes.entry(*kind).or_default();
-            if told.values().sum::<f64>() < ENOUGH {
+            if told.values().sum::<f64>() < ENOUGH_CLAUSES {
                 *told = shapes.clone();
             }
             // An "until" clause is read together with the clause before it, so no measured clause shows it.
@@ -149,12 +152,12 @@ impl Way {
             (&mut self.turn_joints, &own.turn_joints),
             (&mut self.stop_joints, &own.stop_joints),
         ] {
-            if told.values().sum::<f64>() < ENOUGH {
+            if told.values().sum::<f64>() < ENOUGH_CLAUSES {
                 *told = own.clone();
             }
         }
         for (told, own) in [(&mut self.rooms, &own.rooms), (&mut self.things, &own.things)] {
-            let is_small = told.values().flat_map(BTreeMap::values).sum::<f64>() < ENOUGH * ENOUGH;
+            let is_small = told.values().flat_map(BTreeMap::values).sum::<f64>() < ENOUGH_CLAUSES * ENOUGH_CLAUSES;
             if is_small {
                 *told = own.clone();
             }
@@ -169,13 +172,13 @@ impl Way {
 
     /// How often a kind of clause occurs.
     #[must_use]
-    pub fn count(&self, kind: Kind) -> f64 {
+    pub fn kind_count(&self, kind: ClauseKind) -> f64 {
         self.kinds.get(&kind).copied().unwrap_or_default()
     }
 
     /// How often things of that usual name are mentioned.
     #[must_use]
-    pub fn mentions(&self, usual: &str) -> f64 {
+    pub fn thing_mentions(&self, usual: &str) -> f64 {
         self.things.get(usual).map_or(0.0, |names| names.values().sum())
     }
 }

@@ -1,11 +1,11 @@
 //! Turns the clauses of reference texts into shapes with slots, so that the writer can fill them with other names.
 
-use super::kind::{Kind, Parts};
+use super::kind::{ClauseKind, ClauseParts};
 use std::collections::BTreeSet;
 use wayword_core::Side;
 use wayword_language::{
-    reading::{Event, Reading, What, read},
-    text::{self, Token},
+    reading::{EventContent, TextEvent, TextReading, read_instruction},
+    text::{self, TextToken},
 };
 
 /// Most words of a shape.
@@ -13,11 +13,11 @@ const MOST_WORDS: usize = 13;
 
 /// A clause of a text, with its joint to the clause before and, if it has one, its shape.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Told {
-    pub(super) joint: Joint,
+pub(super) struct ShapedClause {
+    pub(super) joint: ClauseJoint,
     /// Its kind, if it has one.
-    pub(super) kind: Option<Kind>,
-    pub(super) shape: Option<(Kind, String)>,
+    pub(super) kind: Option<ClauseKind>,
+    pub(super) shape: Option<(ClauseKind, String)>,
     /// Whether it is an order to stop.
     pub(super) stops: bool,
 }
@@ -26,7 +26,7 @@ pub(super) struct Told {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[allow(missing_docs)] // The names explain themselves.
-pub enum Joint {
+pub enum ClauseJoint {
     Start,
     Stop,
     StopThen,
@@ -40,10 +40,10 @@ pub enum Joint {
     Run,
 }
 
-impl Joint {
+impl ClauseJoint {
     /// The words and marks of the joint.
     #[must_use]
-    pub fn words(self) -> &'static str {
+    pub fn joining_words(self) -> &'static str {
         match self {
             Self::Start => "",
             Self::Stop => ". ",
@@ -66,18 +66,18 @@ impl Joint {
 }
 
 /// Words that join clauses and do not belong to a shape.
-const LINKS: &[&str] = &["and", "then", "next", "now"];
+const JOINING_WORDS: &[&str] = &["and", "then", "next", "now"];
 
 /// The clauses of a text. A shape may consist only of `allowed` words.
-pub(super) fn told(text: &str, reading: &Reading, allowed: &BTreeSet<&str>) -> Vec<Told> {
-    let tokens = text::tokens(text);
+pub(super) fn shape_clauses(text: &str, reading: &TextReading, allowed: &BTreeSet<&str>) -> Vec<ShapedClause> {
+    let tokens = text::split_tokens(text);
     let (mut clauses, mut end, mut pending) = (Vec::new(), 0, Vec::<&str>::new());
     let mut is_first = true;
     for (number, clause) in reading.clauses.iter().enumerate() {
         let [from, to] = clause.span;
-        let of = |token: &&Token| token.span[0] >= from && token.span[1] <= to && token.is_word();
-        let words: Vec<&Token> = tokens.iter().filter(of).collect();
-        let links = words.iter().take_while(|token| LINKS.contains(&token.word.as_str())).count();
+        let of = |token: &&TextToken| token.span[0] >= from && token.span[1] <= to && token.is_word();
+        let words: Vec<&TextToken> = tokens.iter().filter(of).collect();
+        let links = words.iter().take_while(|token| JOINING_WORDS.contains(&token.word.as_str())).count();
         let between = if from >= end { text.get(end..from).unwrap_or_default() } else { "" };
         pending.push(between);
         pending.extend(words[..links].iter().map(|token| token.word.as_str()));
@@ -87,50 +87,59 @@ pub(super) fn told(text: &str, reading: &Reading, allowed: &BTreeSet<&str>) -> V
         }
         let runs_on = words[links].word == "until" && pending.iter().all(|part| part.trim().is_empty());
         let joint = match () {
-            () if is_first => Joint::Start,
-            () if runs_on => Joint::Run,
-            () => joint(&pending),
+            () if is_first => ClauseJoint::Start,
+            () if runs_on => ClauseJoint::Run,
+            () => joint_between(&pending),
         };
         (is_first, pending) = (false, Vec::new());
-        let events: Vec<&Event> = reading.events.iter().filter(|event| event.clause == number).collect();
-        let stops = events.iter().any(|event| event.what == What::Stop);
+        let events: Vec<&TextEvent> = reading.events.iter().filter(|event| event.clause == number).collect();
+        let stops = events.iter().any(|event| event.what == EventContent::Stop);
         let (kind, shape) = match clause.understood {
-            true => shape(&words[links..], &events, allowed),
+            true => clause_shape(&words[links..], &events, allowed),
             false => (None, None),
         };
-        clauses.push(Told { joint, kind, shape, stops });
+        clauses.push(ShapedClause { joint, kind, shape, stops });
     }
     clauses
 }
 
 /// The joint that marks and words make.
-fn joint(between: &[&str]) -> Joint {
+fn joint_between(between: &[&str]) -> ClauseJoint {
     let has = |part: &str| between.iter().any(|other| other.contains(part));
     let is = |word: &str| between.contains(&word);
     match (has(".") || has("!") || has(";") || has("\n"), has(","), is("and"), is("then")) {
-        (true, _, _, false) => Joint::Stop,
-        (true, _, _, true) => Joint::StopThen,
-        (false, true, false, false) => Joint::Comma,
-        (false, true, true, _) => Joint::CommaAnd,
-        (false, true, false, true) => Joint::CommaThen,
-        (false, false, true, true) => Joint::AndThen,
-        (false, false, false, true) => Joint::Then,
+        (true, _, _, false) => ClauseJoint::Stop,
+        (true, _, _, true) => ClauseJoint::StopThen,
+        (false, true, false, false) => ClauseJoint::Comma,
+        (false, true, true, _) => ClauseJoint::CommaAnd,
+        (false, true, false, true) => ClauseJoint::CommaThen,
+        (false, false, true, true) => ClauseJoint::AndThen,
+        (false, false, false, true) => ClauseJoint::Then,
         // Two clauses without any word between them count as joined by "and".
-        (false, false, _, false) => Joint::And,
+        (false, false, _, false) => ClauseJoint::And,
     }
 }
 
 /// The kind of a clause, and its shape if it consists of allowed words.
-fn shape(words: &[&Token], events: &[&Event], allowed: &BTreeSet<&str>) -> (Option<Kind>, Option<(Kind, String)>) {
+fn clause_shape(
+    words: &[&TextToken],
+    events: &[&TextEvent],
+    allowed: &BTreeSet<&str>,
+) -> (Option<ClauseKind>, Option<(ClauseKind, String)>) {
     let all: BTreeSet<&str> = words.iter().map(|token| token.word.as_str()).collect();
-    let Some(parts) = Parts::of(events) else { return (None, None) };
-    let Some(kind) = parts.kind(&all) else { return (None, None) };
-    let shape = slotted(words, &parts, kind, allowed).filter(|shape| is_whole(kind, shape));
+    let Some(parts) = ClauseParts::from_events(events) else { return (None, None) };
+    let Some(kind) = parts.clause_kind(&all) else { return (None, None) };
+    let shape = words_with_slots(words, &parts, kind, allowed).filter(|shape| is_whole(kind, shape));
     (Some(kind), shape.map(|shape| (kind, shape)))
 }
 
 /// The words of a clause with slots for its names and sides.
-fn slotted(words: &[&Token], parts: &Parts<'_>, kind: Kind, allowed: &BTreeSet<&str>) -> Option<String> {
+fn words_with_slots(
+    words: &[&TextToken],
+    parts: &ClauseParts<'_>,
+    kind: ClauseKind,
+    allowed: &BTreeSet<&str>,
+) -> Option<String> {
     if words.len() > MOST_WORDS {
         return None;
     }
@@ -139,7 +148,7 @@ fn slotted(words: &[&Token], parts: &Parts<'_>, kind: Kind, allowed: &BTreeSet<&
         let within = |span: [usize; 2]| token.span[0] >= span[0] && token.span[1] <= span[1];
         let slot = match () {
             () if parts.things.iter().any(|(_, span)| within(*span)) => Some("{l}"),
-            () if kind == Kind::LeaveEnter && within(parts.rooms[0].1) => Some("{a}"),
+            () if kind == ClauseKind::LeaveEnter && within(parts.rooms[0].1) => Some("{a}"),
             () if parts.rooms.iter().any(|(_, span)| within(*span)) => Some("{r}"),
             () if matches!(token.word.as_str(), "left" | "right") => {
                 let of_turn = parts.turn_span().is_some_and(within);
@@ -159,40 +168,46 @@ fn slotted(words: &[&Token], parts: &Parts<'_>, kind: Kind, allowed: &BTreeSet<&
 }
 
 /// Whether a shape has the slots that its kind needs, each once, and no other.
-fn is_whole(kind: Kind, shape: &str) -> bool {
+fn is_whole(kind: ClauseKind, shape: &str) -> bool {
     let count = |slot: &str| shape.matches(slot).count();
     let (s, l, r, a, p) = (count("{s}"), count("{l}"), count("{r}"), count("{a}"), count("{p}"));
     let fits = match kind {
-        Kind::Turn
-        | Kind::TurnSlightly
-        | Kind::TurnThroughDoor
-        | Kind::TurnAtDoor
-        | Kind::TurnAtTop
-        | Kind::TurnAtBottom => (s, l, r, a, p) == (1, 0, 0, 0, 0),
-        Kind::TurnAt => (s, l, r, a, p) == (1, 1, 0, 0, 0),
-        Kind::TurnIn | Kind::TurnInto | Kind::TurnOut | Kind::TurnAtEnd => (s, l, r, a, p) == (1, 0, 1, 0, 0),
-        // "The room" can replace its name.
-        Kind::Enter | Kind::Leave | Kind::Through | Kind::StopIn => (s, l, a, p) == (0, 0, 0, 0) && r <= 1,
-        Kind::LeaveByDoor | Kind::EnterThroughDoor | Kind::StopInDoorwayOf | Kind::Along | Kind::AlongToEnd => {
-            (s, l, r, a, p) == (0, 0, 1, 0, 0)
+        ClauseKind::Turn
+        | ClauseKind::TurnSlightly
+        | ClauseKind::TurnThroughDoor
+        | ClauseKind::TurnAtDoor
+        | ClauseKind::TurnAtTop
+        | ClauseKind::TurnAtBottom => (s, l, r, a, p) == (1, 0, 0, 0, 0),
+        ClauseKind::TurnAt => (s, l, r, a, p) == (1, 1, 0, 0, 0),
+        ClauseKind::TurnIn | ClauseKind::TurnInto | ClauseKind::TurnOut | ClauseKind::TurnAtEnd => {
+            (s, l, r, a, p) == (1, 0, 1, 0, 0)
         }
-        Kind::EnterWith => (s, l, a, p) == (0, 1, 0, 0) && r <= 1,
-        Kind::LeaveEnter => (s, l, r, a, p) == (0, 0, 1, 1, 0),
-        Kind::Pass | Kind::To | Kind::StopAt => (s, l, r, a, p) == (0, 1, 0, 0, 0),
-        Kind::EnterOnSide => (s, l, r, a, p) == (0, 0, 1, 0, 1),
-        Kind::DoorOnSide => (s, l, r, a, p) == (0, 0, 0, 0, 1),
-        Kind::PassEnter | Kind::StopAtIn => (s, l, r, a, p) == (0, 1, 1, 0, 0),
-        Kind::PassOnSide => (s, l, r, a, p) == (0, 1, 0, 0, 1),
+        // "The room" can replace its name.
+        ClauseKind::Enter | ClauseKind::Leave | ClauseKind::Through | ClauseKind::StopIn => {
+            (s, l, a, p) == (0, 0, 0, 0) && r <= 1
+        }
+        ClauseKind::LeaveByDoor
+        | ClauseKind::EnterThroughDoor
+        | ClauseKind::StopInDoorwayOf
+        | ClauseKind::Along
+        | ClauseKind::AlongToEnd => (s, l, r, a, p) == (0, 0, 1, 0, 0),
+        ClauseKind::EnterWith => (s, l, a, p) == (0, 1, 0, 0) && r <= 1,
+        ClauseKind::LeaveEnter => (s, l, r, a, p) == (0, 0, 1, 1, 0),
+        ClauseKind::Pass | ClauseKind::To | ClauseKind::StopAt => (s, l, r, a, p) == (0, 1, 0, 0, 0),
+        ClauseKind::EnterOnSide => (s, l, r, a, p) == (0, 0, 1, 0, 1),
+        ClauseKind::DoorOnSide => (s, l, r, a, p) == (0, 0, 0, 0, 1),
+        ClauseKind::PassEnter | ClauseKind::StopAtIn => (s, l, r, a, p) == (0, 1, 1, 0, 0),
+        ClauseKind::PassOnSide => (s, l, r, a, p) == (0, 1, 0, 0, 1),
         _ => (s, l, r, a, p) == (0, 0, 0, 0, 0),
     };
-    let may_run = !is_until(shape) || matches!(kind, Kind::To | Kind::ToDoor);
+    let may_run = !is_until(shape) || matches!(kind, ClauseKind::To | ClauseKind::ToDoor);
     fits && may_run && is_english(shape)
 }
 
 /// Words that cannot end a clause.
-const DANGLING: &[&str] = &["the", "a", "an", "of", "to", "your", "on", "in", "at"];
+const DANGLING_WORDS: &[&str] = &["the", "a", "an", "of", "to", "your", "on", "in", "at"];
 /// Words that cannot begin a clause of its own.
-const FRAGMENTS: &[&str] =
+const FRAGMENT_OPENERS: &[&str] =
     &["down", "past", "into", "through", "once", "when", "out", "{s}", "up", "across", "along", "the", "on", "off"];
 
 /// Whether a shape limits the clause before it, as in "until you reach the sofa".
@@ -222,13 +237,17 @@ fn is_english(shape: &str) -> bool {
         "foot" | "bottom" | "top" => shape.contains("stair") || shape.contains("step"),
         _ => true,
     };
-    let is_whole = !FRAGMENTS.contains(&words[0]) && !DANGLING.contains(&words[words.len() - 1]);
+    let is_whole = !FRAGMENT_OPENERS.contains(&words[0]) && !DANGLING_WORDS.contains(&words[words.len() - 1]);
     is_whole && words.iter().enumerate().all(fits)
 }
 
 /// Whether a shape, filled with new names, is read as a clause of the same kind and shape, and understood completely.
-pub(super) fn reads_the_same(kind: Kind, shape: &str, allowed: &BTreeSet<&str>) -> bool {
-    let room = if matches!(kind, Kind::Along | Kind::AlongToEnd | Kind::TurnAtEnd) { "hallway" } else { "bedroom" };
+pub(super) fn reads_the_same(kind: ClauseKind, shape: &str, allowed: &BTreeSet<&str>) -> bool {
+    let room = if matches!(kind, ClauseKind::Along | ClauseKind::AlongToEnd | ClauseKind::TurnAtEnd) {
+        "hallway"
+    } else {
+        "bedroom"
+    };
     [("left", "sofa"), ("right", "desk")].iter().all(|(side, thing)| {
         let filled = shape
             .replace("{s}", side)
@@ -236,12 +255,12 @@ pub(super) fn reads_the_same(kind: Kind, shape: &str, allowed: &BTreeSet<&str>) 
             .replace("{l}", thing)
             .replace("{r}", room)
             .replace("{a}", "kitchen");
-        let reading = read(&filled, &BTreeSet::new());
-        let clauses = told(&filled, &reading, allowed);
+        let reading = read_instruction(&filled, &BTreeSet::new());
+        let clauses = shape_clauses(&filled, &reading, allowed);
         let all_understood = reading.clauses.iter().all(|clause| clause.understood);
         let same_side = reading.events.iter().all(|event| match &event.what {
-            What::Turn(Side::Left) => *side == "left",
-            What::Turn(Side::Right) => *side == "right",
+            EventContent::Turn(Side::Left) => *side == "left",
+            EventContent::Turn(Side::Right) => *side == "right",
             _ => true,
         });
         let is_same =

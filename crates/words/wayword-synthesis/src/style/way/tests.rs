@@ -1,13 +1,13 @@
 use super::*;
-use wayword_language::reading::read;
+use wayword_language::reading::read_instruction;
 
-fn measured(texts: &[&str]) -> Way {
-    let readings: Vec<Reading> = texts.iter().map(|text| read(text, &BTreeSet::new())).collect();
-    let mut way = Way::default();
+fn measured(texts: &[&str]) -> WayWording {
+    let readings: Vec<TextReading> = texts.iter().map(|text| read_instruction(text, &BTreeSet::new())).collect();
+    let mut way = WayWording::default();
     for (text, reading) in texts.iter().zip(&readings) {
-        way.add(text, reading);
+        way.add_text(text, reading);
     }
-    way.settle();
+    way.keep_common();
     way
 }
 
@@ -18,12 +18,15 @@ fn a_shape_is_a_clause_of_several_texts_without_names() {
         "Walk past the globe, then turn right at the lamp. Wait in the attic.",
         "Leave the kitchen. Walk past the bench and turn left at the stove and stop by the sink.",
     ]);
-    assert_eq!(way.shapes[&Kind::Pass]["walk past the {l}"], 3.0);
-    assert_eq!(way.shapes[&Kind::TurnAt]["turn {s} at the {l}"], 3.0);
-    assert!(!way.shapes.contains_key(&Kind::Leave), "one text is no formula");
-    assert_eq!((way.kinds[&Kind::Leave], way.kinds[&Kind::StopAt]), (1.0, 2.0));
-    assert_eq!((way.joints[&Joint::And], way.joints[&Joint::CommaThen], way.joints[&Joint::Stop]), (2.0, 1.0, 1.0));
-    assert_eq!((way.stop_joints[&Joint::Stop], way.stop_joints[&Joint::And]), (2.0, 1.0));
+    assert_eq!(way.shapes[&ClauseKind::Pass]["walk past the {l}"], 3.0);
+    assert_eq!(way.shapes[&ClauseKind::TurnAt]["turn {s} at the {l}"], 3.0);
+    assert!(!way.shapes.contains_key(&ClauseKind::Leave), "one text is no formula");
+    assert_eq!((way.kinds[&ClauseKind::Leave], way.kinds[&ClauseKind::StopAt]), (1.0, 2.0));
+    assert_eq!(
+        (way.joints[&ClauseJoint::And], way.joints[&ClauseJoint::CommaThen], way.joints[&ClauseJoint::Stop]),
+        (2.0, 1.0, 1.0)
+    );
+    assert_eq!((way.stop_joints[&ClauseJoint::Stop], way.stop_joints[&ClauseJoint::And]), (2.0, 1.0));
 }
 
 #[test]
@@ -49,17 +52,17 @@ fn names_are_counted_by_their_usual_name() {
     let way = measured(&["Cross the hall. Stop by the couch."; 3]);
     assert_eq!(way.rooms["hallway"]["hall"], 3.0);
     assert_eq!(way.things["sofa"]["couch"], 3.0);
-    assert_eq!(way.mentions("sofa"), 3.0);
+    assert_eq!(way.thing_mentions("sofa"), 3.0);
 }
 
 #[test]
 fn every_built_in_shape_is_read_as_its_kind() {
-    let own = Way::built_in();
+    let own = WayWording::built_in();
     assert!(own.shapes.len() > 30 && own.joints.len() > 5, "way.toml is not read");
     for (kind, shapes) in &own.shapes {
         assert!(own.kinds.contains_key(kind), "{kind:?} has no share");
         for shape in shapes.keys() {
-            assert!(shapes::reads_the_same(*kind, shape, &ALLOWED), "{kind:?}: {shape}");
+            assert!(shapes::reads_the_same(*kind, shape, &ALLOWED_SHAPE_WORDS), "{kind:?}: {shape}");
         }
     }
 }
@@ -67,7 +70,7 @@ fn every_built_in_shape_is_read_as_its_kind() {
 #[test]
 fn few_texts_are_completed_by_our_own_constructions() {
     let text = "Walk past the piano.";
-    let reading = read(text, &BTreeSet::new());
-    let way = Way::measure([(text, &reading)]);
-    assert_eq!(&way, Way::built_in());
+    let reading = read_instruction(text, &BTreeSet::new());
+    let way = WayWording::from_texts([(text, &reading)]);
+    assert_eq!(&way, WayWording::built_in());
 }

@@ -1,21 +1,21 @@
 //! Words for the room at the end: its name, its storey, and properties that distinguish it from other rooms.
 
 use crate::{
-    style::Wording,
-    writer::{Brief, phrases::ordinal, route::last_climb},
+    style::PlaceWording,
+    writer::{WritingBrief, phrases::storey_ordinal, route::last_climb},
 };
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeSet;
-use wayword_core::{Climb, Distinction};
+use wayword_core::{ClimbDirection, ObjectDistinction};
 use wayword_language::lexicon::{room_name, with_article};
 
 /// The room where a path ends.
-pub(super) struct Goal<'a> {
-    wording: &'a Wording,
+pub(super) struct GoalRoom<'a> {
+    wording: &'a PlaceWording,
     room: &'a str,
     level: Option<u32>,
-    climb: Option<Climb>,
+    climb: Option<ClimbDirection>,
     /// Probability that the storey is named although it is not needed.
     names_level: f64,
     /// How many storeys the building has; 0 where that is not known.
@@ -26,8 +26,8 @@ pub(super) struct Goal<'a> {
 /// the building has several storeys, and where it has one.
 const BY_NEED: [f64; 3] = [1.5, 0.75, 0.2];
 
-impl<'a> Goal<'a> {
-    pub(super) fn new(brief: &Brief<'a>, room: &'a str) -> Self {
+impl<'a> GoalRoom<'a> {
+    pub(super) fn new(brief: &WritingBrief<'a>, room: &'a str) -> Self {
         let path = &brief.walk.path;
         let levels: BTreeSet<u32> = path.frames.iter().filter_map(|frame| frame.level).collect();
         let storeys = path.target.as_ref().map_or(0, |target| target.storeys);
@@ -38,7 +38,7 @@ impl<'a> Goal<'a> {
             _ => BY_NEED[1],
         };
         let wording = &brief.profile.wording;
-        let names_level = (wording.share("level") * need).clamp(0.0, 0.97);
+        let names_level = (wording.share_of_texts("level") * need).clamp(0.0, 0.97);
         let level = path.frames.last().and_then(|frame| frame.level);
         Self { wording, room, level, climb: last_climb(brief.walk), names_level, storeys }
     }
@@ -54,13 +54,13 @@ impl<'a> Goal<'a> {
     }
 
     /// "Go to", "proceed to": up or down only where the path goes there.
-    pub(super) fn opener(&self, rng: &mut ChaCha8Rng) -> &'a str {
+    pub(super) fn draw_opener(&self, rng: &mut ChaCha8Rng) -> &'a str {
         let fits = |opener: &str| {
             let holds = |word: &str| opener.split(' ').any(|part| part == word);
             match self.climb {
                 _ if holds("into") || holds("enter") => room_name(self.room) != Some("stairs"),
-                Some(Climb::Up) => !holds("down") && !holds("downstairs"),
-                Some(Climb::Down) => !holds("up") && !holds("upstairs"),
+                Some(ClimbDirection::Up) => !holds("down") && !holds("downstairs"),
+                Some(ClimbDirection::Down) => !holds("up") && !holds("upstairs"),
                 _ => !["up", "down", "upstairs", "downstairs"].iter().any(|word| holds(word)),
             }
         };
@@ -68,7 +68,7 @@ impl<'a> Goal<'a> {
     }
 
     /// "In", "from", "on": before the room, behind a task.
-    pub(super) fn preposition(&self, verb: &str, rng: &mut ChaCha8Rng) -> &'static str {
+    pub(super) fn draw_preposition(&self, verb: &str, rng: &mut ChaCha8Rng) -> &'static str {
         let takes = ["bring", "grab", "fetch", "take", "get", "remove"].iter().any(|take| verb.starts_with(take));
         match room_name(self.room) {
             _ if takes && rng.random_bool(0.5) => "from",
@@ -78,31 +78,32 @@ impl<'a> Goal<'a> {
     }
 
     /// The room with its article and the properties in `by` that are about rooms.
-    pub(super) fn phrase(&self, by: &[&Distinction], names_level: bool, rng: &mut ChaCha8Rng) -> String {
-        let must = by.iter().any(|by| matches!(by, Distinction::Level { .. }));
+    pub(super) fn room_phrase(&self, by: &[&ObjectDistinction], names_level: bool, rng: &mut ChaCha8Rng) -> String {
+        let must = by.iter().any(|by| matches!(by, ObjectDistinction::Level { .. }));
         let level = self.level.filter(|_| must || names_level);
-        let room = self.wording.called(self.room, rng);
+        let room = self.wording.draw_name(self.room, rng);
         // "The kitchen by the corridor with the stove" reads as if the corridor had it.
-        let has_with = |by: &Distinction| matches!(by, Distinction::RoomWith { .. });
-        let (with, beside): (Vec<&Distinction>, Vec<&Distinction>) = by.iter().partition(|by| has_with(by));
-        let qualifiers: Vec<String> = with.into_iter().chain(beside).filter_map(|by| self.qualifier(by, rng)).collect();
-        let Some(level) = level else { return join(&[format!("the {room}")], &qualifiers) };
-        let has_ordinal = |way: &str| ordinal(level).is_some() || !way.contains("{th}");
+        let has_with = |by: &ObjectDistinction| matches!(by, ObjectDistinction::RoomWith { .. });
+        let (with, beside): (Vec<&ObjectDistinction>, Vec<&ObjectDistinction>) = by.iter().partition(|by| has_with(by));
+        let qualifiers: Vec<String> =
+            with.into_iter().chain(beside).filter_map(|by| self.room_qualifier(by, rng)).collect();
+        let Some(level) = level else { return join_words(&[format!("the {room}")], &qualifiers) };
+        let has_ordinal = |way: &str| storey_ordinal(level).is_some() || !way.contains("{th}");
         let way = self.wording.draw("level", rng, has_ordinal).unwrap_or("the {r} on level {n}");
-        let filled = way.replace("{n}", &level.to_string()).replace("{th}", ordinal(level).unwrap_or_default());
+        let filled = way.replace("{n}", &level.to_string()).replace("{th}", storey_ordinal(level).unwrap_or_default());
         // "The bathroom next to the hall on level 2": the storey may also come last.
         let is_last = filled.starts_with("the {r} ") && rng.random_bool(0.35);
         if is_last && !qualifiers.is_empty() {
             let level = filled.trim_start_matches("the {r} ").to_owned();
-            return join(&[format!("the {room}")], &[qualifiers, vec![level]].concat());
+            return join_words(&[format!("the {room}")], &[qualifiers, vec![level]].concat());
         }
-        join(&[filled.replace("{r}", room)], &qualifiers)
+        join_words(&[filled.replace("{r}", room)], &qualifiers)
     }
 
-    fn qualifier(&self, by: &Distinction, rng: &mut ChaCha8Rng) -> Option<String> {
+    fn room_qualifier(&self, by: &ObjectDistinction, rng: &mut ChaCha8Rng) -> Option<String> {
         let (table, name) = match by {
-            Distinction::RoomBy { room } => ("room by", self.wording.called(room, rng).to_owned()),
-            Distinction::RoomWith { thing } => ("room with", self.wording.called(thing, rng).to_owned()),
+            ObjectDistinction::RoomBy { room } => ("room by", self.wording.draw_name(room, rng).to_owned()),
+            ObjectDistinction::RoomWith { thing } => ("room with", self.wording.draw_name(thing, rng).to_owned()),
             _ => return None,
         };
         let way = self.wording.draw(table, rng, |_| true)?;
@@ -110,6 +111,6 @@ impl<'a> Goal<'a> {
     }
 }
 
-fn join(first: &[String], others: &[String]) -> String {
+fn join_words(first: &[String], others: &[String]) -> String {
     [first, others].concat().join(" ")
 }

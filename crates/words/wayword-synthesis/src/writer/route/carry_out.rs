@@ -1,35 +1,35 @@
 //! Carries out a plan: fills its places with the things that are there.
 
-use super::{Clause, Kind, MAIN, Role, onward::past};
+use super::{ClauseKind, MAIN_WEIGHT, OfferRole, WayClause, onward::passing_kind};
 use crate::writer::{
-    Brief,
-    dice::Dice,
-    landmarks::{Landmark, Landmarks, Spot},
-    phrases::draw,
+    WritingBrief,
+    dice::TextDice,
+    landmarks::{ChosenLandmark, LandmarkChooser, LandmarkSpot},
+    phrases::draw_option,
 };
 use std::collections::{BTreeMap, BTreeSet};
 use wayword_core::Side;
 
 /// The clauses of a plan, with a thing in each place where there is one.
 pub(in crate::writer) fn carry_out(
-    plan: &[Clause],
-    brief: &Brief<'_>,
-    landmarks: &Landmarks<'_>,
-    dice: Dice,
-) -> Vec<Clause> {
+    plan: &[WayClause],
+    brief: &WritingBrief<'_>,
+    landmarks: &LandmarkChooser<'_>,
+    dice: TextDice,
+) -> Vec<WayClause> {
     let mut things = things_of(plan, landmarks);
     let (mut told, mut passed) = (Vec::new(), 0);
     let mut follows_offer = false;
     for (at, clause) in plan.iter().enumerate() {
         let thing = things.remove(&at);
-        let clause = Clause { follows_offer, ..clause.clone() };
+        let clause = WayClause { follows_offer, ..clause.clone() };
         follows_offer = clause.is_offer();
         match (clause.offer.as_ref().map(|offer| offer.role), thing) {
             (Some(role), Some(thing)) => told.extend(with_thing(clause, (role, thing), brief, dice, passed)),
             (Some(_), None) => {
-                let goes_straight = told.last().is_some_and(|before: &Clause| before.kind == Kind::Straight);
+                let goes_straight = told.last().is_some_and(|before: &WayClause| before.kind == ClauseKind::Straight);
                 let new = without_thing(clause).into_iter();
-                told.extend(new.skip_while(|clause| goes_straight && clause.kind == Kind::Straight));
+                told.extend(new.skip_while(|clause| goes_straight && clause.kind == ClauseKind::Straight));
             }
             (None, _) => told.push(clause),
         }
@@ -39,11 +39,11 @@ pub(in crate::writer) fn carry_out(
 }
 
 /// The thing of each place, by the number of its clause.
-fn things_of(plan: &[Clause], landmarks: &Landmarks<'_>) -> BTreeMap<usize, Landmark> {
+fn things_of(plan: &[WayClause], landmarks: &LandmarkChooser<'_>) -> BTreeMap<usize, ChosenLandmark> {
     let offers = || plan.iter().enumerate().filter_map(|(at, clause)| Some((at, clause.offer.as_ref()?)));
-    let spots: Vec<Spot> = offers().map(|(_, offer)| offer.spot()).collect();
-    let found = offers().zip(landmarks.at(&spots)).filter_map(|((at, _), thing)| Some((at, thing?)));
-    let mut things: BTreeMap<usize, Landmark> = found.collect();
+    let spots: Vec<LandmarkSpot> = offers().map(|(_, offer)| offer.landmark_spot()).collect();
+    let found = offers().zip(landmarks.landmarks_at(&spots)).filter_map(|((at, _), thing)| Some((at, thing?)));
+    let mut things: BTreeMap<usize, ChosenLandmark> = found.collect();
     let mut told: BTreeSet<usize> = plan
         .iter()
         .enumerate()
@@ -59,57 +59,58 @@ fn things_of(plan: &[Clause], landmarks: &Landmarks<'_>) -> BTreeMap<usize, Land
 }
 
 /// Whether a clause exists for a thing and is no replacement of another.
-fn is_own(clause: &Clause) -> bool {
+fn is_own(clause: &WayClause) -> bool {
     clause.is_offer() && clause.offer.as_ref().is_some_and(|offer| offer.stands_in_for.is_none())
 }
 
 /// The clauses of a place that got no thing.
-fn without_thing(clause: Clause) -> Vec<Clause> {
+fn without_thing(clause: WayClause) -> Vec<WayClause> {
     let is_straight = clause.offer.as_ref().is_some_and(|offer| offer.or_straight);
-    let straight = is_straight.then(|| Clause { kind: Kind::Straight, ..bare(&clause) });
+    let straight = is_straight.then(|| WayClause { kind: ClauseKind::Straight, ..bare_clause(&clause) });
     let own = (!clause.is_offer()).then_some(clause);
     straight.into_iter().chain(own).collect()
 }
 
 /// A clause of the same place without the parts that belong to its thing.
-fn bare(clause: &Clause) -> Clause {
+fn bare_clause(clause: &WayClause) -> WayClause {
     let (follows_offer, number) = (clause.follows_offer, clause.number);
-    Clause { follows_offer, number, ..Clause::new(clause.kind, clause.at, clause.weight) }
+    WayClause { follows_offer, number, ..WayClause::new(clause.kind, clause.at, clause.weight) }
 }
 
 /// The clauses of a place with its thing. `passed` is the number of earlier places of the text where something is
 /// passed.
 fn with_thing(
-    clause: Clause,
-    (role, thing): (Role, Landmark),
-    brief: &Brief<'_>,
-    dice: Dice,
+    clause: WayClause,
+    (role, thing): (OfferRole, ChosenLandmark),
+    brief: &WritingBrief<'_>,
+    dice: TextDice,
     passed: usize,
-) -> Vec<Clause> {
-    let mut rng = clause.drawn("with", dice);
+) -> Vec<WayClause> {
+    let mut rng = clause.clause_rng("with", dice);
     match role {
-        Role::Turn => {
+        OfferRole::Turn => {
             let ahead = if thing.side == Some(Side::Ahead) { 1.8 } else { 0.0 };
-            if draw(&[(3.0, false), (ahead, true)], &mut rng) == Some(true) {
-                let to = Clause { kind: Kind::To, thing: Some(thing), ..bare(&clause) };
-                return vec![to, Clause { follows_offer: true, ..clause }];
+            if draw_option(&[(3.0, false), (ahead, true)], &mut rng) == Some(true) {
+                let to = WayClause { kind: ClauseKind::To, thing: Some(thing), ..bare_clause(&clause) };
+                return vec![to, WayClause { follows_offer: true, ..clause }];
             }
-            let turn = Clause { kind: Kind::TurnAt, side: clause.side, thing: Some(thing), ..bare(&clause) };
+            let turn =
+                WayClause { kind: ClauseKind::TurnAt, side: clause.side, thing: Some(thing), ..bare_clause(&clause) };
             vec![turn]
         }
-        Role::PassEnter => vec![Clause { kind: Kind::PassEnter, thing: Some(thing), ..clause }],
-        Role::EnterWith => vec![Clause { kind: Kind::EnterWith, thing: Some(thing), ..clause }],
-        Role::Stop(kind) => vec![Clause { kind, thing: Some(thing), ..clause }],
-        Role::Onward => {
+        OfferRole::PassEnter => vec![WayClause { kind: ClauseKind::PassEnter, thing: Some(thing), ..clause }],
+        OfferRole::EnterWith => vec![WayClause { kind: ClauseKind::EnterWith, thing: Some(thing), ..clause }],
+        OfferRole::Stop(kind) => vec![WayClause { kind, thing: Some(thing), ..clause }],
+        OfferRole::Onward => {
             let hop = clause.at..=clause.at + 1;
             let side = thing.passed.filter(|(frame, _)| hop.contains(frame)).map(|(_, side)| side);
             let tells_side = clause.offer.as_ref().is_some_and(|offer| offer.tells_side);
             let kind = match side {
-                Some(_) if tells_side => Kind::PassOnSide,
-                _ => past(&brief.profile.way, side, thing.side, dice.in_turn("past", passed)),
+                Some(_) if tells_side => ClauseKind::PassOnSide,
+                _ => passing_kind(&brief.profile.way, side, thing.side, dice.in_turn("past", passed)),
             };
-            let side = side.filter(|_| kind == Kind::PassOnSide);
-            vec![Clause { kind, side, thing: Some(thing), weight: MAIN, ..bare(&clause) }]
+            let side = side.filter(|_| kind == ClauseKind::PassOnSide);
+            vec![WayClause { kind, side, thing: Some(thing), weight: MAIN_WEIGHT, ..bare_clause(&clause) }]
         }
     }
 }

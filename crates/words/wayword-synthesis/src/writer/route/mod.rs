@@ -12,35 +12,35 @@ mod stop;
 mod turns;
 
 pub(super) use carry_out::carry_out;
-pub(super) use offer::{Offer, Role, with_stand_ins};
+pub(super) use offer::{OfferRole, ThingOffer, with_stand_ins};
 
-use super::{Brief, dice::Dice, landmarks::Landmark};
-use crate::{style::way::Kind, walk::Walk};
+use super::{WritingBrief, dice::TextDice, landmarks::ChosenLandmark};
+use crate::{style::way::ClauseKind, walk::ObservedWalk};
 use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeMap;
-use wayword_checks::memory::{Bend, Flight, Memory};
-use wayword_core::{Climb, Motion, Side, motion};
+use wayword_checks::memory::{StairFlight, WalkBend, WalkMemory};
+use wayword_core::{ClimbDirection, PathMotion, Side, motion};
 use wayword_language::lexicon::room_name;
 
 /// A planned clause.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Clause {
+pub(super) struct WayClause {
     /// Its kind.
-    pub(super) kind: Kind,
+    pub(super) kind: ClauseKind,
     /// Its frame.
     pub(super) at: usize,
     /// The side of its turn, or of its door or room.
     pub(super) side: Option<Side>,
     /// Its thing.
-    pub(super) thing: Option<Landmark>,
+    pub(super) thing: Option<ChosenLandmark>,
     /// Its room.
     pub(super) room: Option<String>,
     /// The room that it leaves.
     pub(super) from: Option<String>,
-    /// How much it matters. A clause of weight [`KEPT`] is never left out.
+    /// How much it matters. A clause of weight [`KEPT_WEIGHT`] is never left out.
     pub(super) weight: u8,
     /// The place for a thing that it offers.
-    pub(super) offer: Option<Offer>,
+    pub(super) offer: Option<ThingOffer>,
     /// Whether a clause for a thing may come right before it, so that it cannot limit an earlier "go straight".
     pub(super) follows_offer: bool,
     /// How many clauses of its kind come before it in the plan, things left out.
@@ -48,13 +48,13 @@ pub(super) struct Clause {
 }
 
 /// Weight of clauses that are never left out.
-pub(super) const KEPT: u8 = 4;
+pub(super) const KEPT_WEIGHT: u8 = 4;
 /// Weight of turns, climbs and the last room.
-const MAIN: u8 = 3;
+const MAIN_WEIGHT: u8 = 3;
 /// Weight of landmarks and of rooms on the way.
-const SIDE: u8 = 2;
+const SIDE_WEIGHT: u8 = 2;
 /// Weight of "go straight" and the like.
-const FILLER: u8 = 1;
+const FILLER_WEIGHT: u8 = 1;
 
 /// Least salience of a landmark on the way.
 const WALKED_PAST: u8 = 2;
@@ -67,25 +67,25 @@ const STRETCH_M: f64 = 2.0;
 /// The walk can stop in a doorway if the hop through it is at most this long, metres.
 const DOORWAY_M: f64 = 2.2;
 
-impl Clause {
-    fn new(kind: Kind, at: usize, weight: u8) -> Self {
+impl WayClause {
+    fn new(kind: ClauseKind, at: usize, weight: u8) -> Self {
         let (side, thing, room, from) = (None, None, None, None);
         Self { kind, at, side, thing, room, from, weight, offer: None, follows_offer: false, number: 0 }
     }
 
     /// A clause that exists only for a thing.
-    fn for_a_thing(hop: usize, offer: Offer) -> Self {
-        Self { offer: Some(offer), ..Self::new(Kind::Pass, hop, SIDE) }
+    fn for_a_thing(hop: usize, offer: ThingOffer) -> Self {
+        Self { offer: Some(offer), ..Self::new(ClauseKind::Pass, hop, SIDE_WEIGHT) }
     }
 
     /// Whether it exists only for a thing.
     pub(super) fn is_offer(&self) -> bool {
-        self.offer.as_ref().is_some_and(|offer| offer.role == Role::Onward)
+        self.offer.as_ref().is_some_and(|offer| offer.role == OfferRole::Onward)
     }
 
     /// A "go straight" clause to put before it.
     pub(super) fn straight_on(&self) -> Self {
-        Self::new(Kind::Straight, self.at, self.weight)
+        Self::new(ClauseKind::Straight, self.at, self.weight)
     }
 
     /// Lets it fall back to "go straight" if it gets no thing.
@@ -95,22 +95,22 @@ impl Clause {
         }
     }
 
-    fn offering(mut self, offer: Offer) -> Self {
+    fn with_offer(mut self, offer: ThingOffer) -> Self {
         self.offer = Some(offer);
         self
     }
 
-    fn to(mut self, side: Side) -> Self {
+    fn to_side(mut self, side: Side) -> Self {
         self.side = Some(side);
         self
     }
 
-    fn room(mut self, room: &str) -> Self {
+    fn with_room(mut self, room: &str) -> Self {
         self.room = Some(room.to_owned());
         self
     }
 
-    fn from(mut self, room: &str) -> Self {
+    fn from_room(mut self, room: &str) -> Self {
         self.from = Some(room.to_owned());
         self
     }
@@ -118,13 +118,13 @@ impl Clause {
     /// The random generator of the clause for one purpose. A clause for a thing is identified by the thing, any other
     /// by its number among those of its kind. Frames play no role, so the same way with other frames gives the same
     /// draws.
-    pub(super) fn drawn(&self, purpose: &str, dice: Dice) -> ChaCha8Rng {
+    pub(super) fn clause_rng(&self, purpose: &str, dice: TextDice) -> ChaCha8Rng {
         let kind = format!("{:?}", self.kind);
         match &self.thing {
-            Some(thing) if matches!(self.kind, Kind::Pass | Kind::PassOnSide | Kind::To) => {
-                dice.by(&[purpose, &kind, &thing.name])
+            Some(thing) if matches!(self.kind, ClauseKind::Pass | ClauseKind::PassOnSide | ClauseKind::To) => {
+                dice.named_rng(&[purpose, &kind, &thing.name])
             }
-            _ => dice.by(&[purpose, &kind, &self.number.to_string()]),
+            _ => dice.named_rng(&[purpose, &kind, &self.number.to_string()]),
         }
     }
 
@@ -135,25 +135,25 @@ impl Clause {
 }
 
 /// The clauses of a path, the stop last.
-pub(super) fn clauses(brief: &Brief<'_>, dice: Dice) -> Vec<Clause> {
+pub(super) fn plan_clauses(brief: &WritingBrief<'_>, dice: TextDice) -> Vec<WayClause> {
     let memory = brief.memory;
-    let here = memory.room(0).and_then(usable_room);
-    let rng = dice.by(&["start"]);
-    let mut planner = Planner { brief, memory, dice, rng, clauses: Vec::new(), here, along: false };
+    let here = memory.room_at(0).and_then(usable_room);
+    let rng = dice.named_rng(&["start"]);
+    let mut planner = WayPlanner { brief, memory, dice, rng, clauses: Vec::new(), here, along: false };
     if !stands_still(brief.walk) {
-        planner.way();
+        planner.plan_way();
     }
     if planner.clauses.is_empty() {
-        planner.clauses.push(Clause::new(Kind::Straight, 0, MAIN));
+        planner.clauses.push(WayClause::new(ClauseKind::Straight, 0, MAIN_WEIGHT));
     }
-    planner.rng = dice.by(&["stop"]);
-    planner.stop();
+    planner.rng = dice.named_rng(&["stop"]);
+    planner.add_stop();
     planner.clauses
 }
 
 /// Numbers the clauses of each kind.
-pub(super) fn numbered(mut plan: Vec<Clause>) -> Vec<Clause> {
-    let mut told: BTreeMap<Kind, usize> = BTreeMap::new();
+pub(super) fn number_clauses(mut plan: Vec<WayClause>) -> Vec<WayClause> {
+    let mut told: BTreeMap<ClauseKind, usize> = BTreeMap::new();
     for clause in plan.iter_mut().filter(|clause| !clause.is_offer()) {
         let number = told.entry(clause.kind).or_default();
         clause.number = *number;
@@ -162,58 +162,58 @@ pub(super) fn numbered(mut plan: Vec<Clause>) -> Vec<Clause> {
     plan
 }
 
-struct Planner<'a> {
-    brief: &'a Brief<'a>,
-    memory: &'a Memory,
-    dice: Dice,
+struct WayPlanner<'a> {
+    brief: &'a WritingBrief<'a>,
+    memory: &'a WalkMemory,
+    dice: TextDice,
     /// The random generator of the current step.
     rng: ChaCha8Rng,
-    clauses: Vec<Clause>,
+    clauses: Vec<WayClause>,
     /// The room that the walker is in according to the text so far, if it is known.
     here: Option<String>,
     /// Whether the text has already sent the walker along the current hallway.
     along: bool,
 }
 
-impl Planner<'_> {
-    fn way(&mut self) {
-        let last = self.memory.frames().saturating_sub(1);
+impl WayPlanner<'_> {
+    fn plan_way(&mut self) {
+        let last = self.memory.frame_count().saturating_sub(1);
         let mut at = self.leave_at_once().unwrap_or(0);
         while at < last {
-            self.rng = self.dice.by(&["step", &self.step(at)]);
+            self.rng = self.dice.named_rng(&["step", &self.step_name(at)]);
             let bend = self.bend_at(at);
             let opening = self.memory.openings.iter().find(|opening| opening.before == at);
             if let Some(flight) = self.memory.flights.iter().find(|flight| flight.from == at) {
                 if let Some(bend) = bend {
-                    self.turn(bend);
+                    self.add_turn(bend);
                 }
-                self.climb(*flight);
+                self.add_climb(*flight);
                 at = flight.to;
                 continue;
             }
             match (bend, opening) {
                 (Some(bend), Some(opening)) => self.turn_and_change(bend, opening),
                 (Some(bend), None) => {
-                    self.turn(bend);
-                    self.onwards(at);
+                    self.add_turn(bend);
+                    self.go_onwards(at);
                 }
-                (None, Some(opening)) => self.change(opening),
-                (None, None) => self.onwards(at),
+                (None, Some(opening)) => self.change_room(opening),
+                (None, None) => self.go_onwards(at),
             }
             at += 1;
         }
     }
 
     /// The name of a step's draws: the number of turns and doors before it, and its distance from the last of them.
-    fn step(&self, at: usize) -> String {
+    fn step_name(&self, at: usize) -> String {
         let bends = self.memory.bends.iter().filter(|bend| bend.first < at).count();
         let openings = self.memory.openings.iter().filter(|opening| opening.before < at).count();
-        format!("{bends} {openings} {}", self.stretch(at))
+        format!("{bends} {openings} {}", self.stretch_number(at))
     }
 
     /// The number of the stretch, from 0, in which a frame lies since the last turn or door. If the motion is unknown,
     /// each hop is a stretch.
-    fn stretch(&self, at: usize) -> usize {
+    fn stretch_number(&self, at: usize) -> usize {
         let bends = self.memory.bends.iter().map(|bend| bend.first).filter(|first| *first <= at);
         let doors = self.memory.openings.iter().map(|opening| opening.behind).filter(|behind| *behind <= at);
         let from = bends.chain(doors).max().unwrap_or(0);
@@ -224,45 +224,46 @@ impl Planner<'_> {
     }
 
     /// The turn to describe at a frame. A turn that begins on stairs and ends after them is described after them.
-    fn bend_at(&self, at: usize) -> Option<Bend> {
+    fn bend_at(&self, at: usize) -> Option<WalkBend> {
         let flight = self.memory.flights.iter().find(|flight| flight.to == at);
-        let begins_here = |bend: &&Bend| {
-            let on_stairs = |flight: &&Flight| (flight.from + 1..flight.to).contains(&bend.first) && bend.last >= at;
+        let begins_here = |bend: &&WalkBend| {
+            let on_stairs =
+                |flight: &&StairFlight| (flight.from + 1..flight.to).contains(&bend.first) && bend.last >= at;
             bend.first == at || flight.as_ref().is_some_and(on_stairs)
         };
         let bend = self.memory.bends.iter().find(begins_here)?;
-        Some(Bend { first: at, ..*bend })
+        Some(WalkBend { first: at, ..*bend })
     }
 
-    fn count(&self, kind: Kind) -> f64 {
-        self.brief.profile.way.count(kind)
+    fn kind_count(&self, kind: ClauseKind) -> f64 {
+        self.brief.profile.way.kind_count(kind)
     }
 
-    fn push(&mut self, clause: Clause) {
+    fn push(&mut self, clause: WayClause) {
         self.clauses.push(clause);
     }
 
     /// Records the room that the walker is in according to the text.
-    fn enter(&mut self, room: Option<&str>) {
+    fn enter_room(&mut self, room: Option<&str>) {
         self.here = room.map(str::to_owned);
         self.along = false;
     }
 
-    fn climb(&mut self, flight: Flight) {
-        let kind = if flight.climb == Climb::Up { Kind::Up } else { Kind::Down };
-        self.push(Clause::new(kind, flight.from, MAIN));
-        self.enter(None);
+    fn add_climb(&mut self, flight: StairFlight) {
+        let kind = if flight.climb == ClimbDirection::Up { ClauseKind::Up } else { ClauseKind::Down };
+        self.push(WayClause::new(kind, flight.from, MAIN_WEIGHT));
+        self.enter_room(None);
     }
 }
 
 /// Whether a path goes nowhere, as one with a single viewpoint does.
-pub(super) fn stands_still(walk: &Walk) -> bool {
+pub(super) fn stands_still(walk: &ObservedWalk) -> bool {
     !walk.path.motion.goes_anywhere(&walk.moves, walk.path.frames.len())
 }
 
 /// Which way the last flight of stairs of a path goes.
-pub(super) fn last_climb(walk: &Walk) -> Option<Climb> {
-    (0..walk.moves.len()).rev().find_map(|at| motion::flight(&walk.moves, at)).map(|(_, climb)| climb)
+pub(super) fn last_climb(walk: &ObservedWalk) -> Option<ClimbDirection> {
+    (0..walk.moves.len()).rev().find_map(|at| motion::flight_from(&walk.moves, at)).map(|(_, climb)| climb)
 }
 
 /// The name of a room, if a walker can walk into it; stairs are climbed instead.
@@ -271,7 +272,7 @@ pub(super) fn usable_room(name: &str) -> Option<String> {
 }
 
 /// Whether a shape fits a motion: if the motion is unknown, it must not contain "straight" or the like.
-pub(super) fn suits(shape: &str, motion: Motion) -> bool {
+pub(super) fn suits_motion(shape: &str, motion: PathMotion) -> bool {
     motion.is_known() || !["straight", "forward", "ahead"].iter().any(|word| shape.contains(word))
 }
 

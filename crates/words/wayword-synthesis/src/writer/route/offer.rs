@@ -1,21 +1,21 @@
 //! Places of a plan where a thing may be named.
 
-use super::{Clause, STOPPED_AT, WALKED_PAST};
+use super::{STOPPED_AT, WALKED_PAST, WayClause};
 use crate::{
-    style::way::Kind,
-    writer::landmarks::{Search, Spot, Use},
+    style::way::ClauseKind,
+    writer::landmarks::{LandmarkSearch, LandmarkSpot, LandmarkUse},
 };
-use wayword_checks::Memory;
+use wayword_checks::WalkMemory;
 
 /// A place for a thing. Its existence depends on the way alone, and never on the things that are seen there.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(in crate::writer) struct Offer {
+pub(in crate::writer) struct ThingOffer {
     /// The role of the thing.
-    pub(in crate::writer) role: Role,
+    pub(in crate::writer) role: OfferRole,
     /// The frame for which things are searched.
     pub(super) frame: usize,
     /// Which things are acceptable.
-    pub(super) things: Things,
+    pub(super) things: OfferThings,
     /// Whether the side on which the walker passes the thing is named.
     pub(in crate::writer) tells_side: bool,
     /// Whether a second thing near it is named too.
@@ -28,7 +28,7 @@ pub(in crate::writer) struct Offer {
 
 /// The role of a thing in a clause.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::writer) enum Role {
+pub(in crate::writer) enum OfferRole {
     /// The walker turns there.
     Turn,
     /// The walker passes it and enters a room.
@@ -38,12 +38,12 @@ pub(in crate::writer) enum Role {
     /// The walker goes past it or to it.
     Onward,
     /// The walker stops there; the clause is of this kind.
-    Stop(Kind),
+    Stop(ClauseKind),
 }
 
 /// Which things are acceptable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Things {
+pub(super) enum OfferThings {
     /// Landmarks.
     Fair,
     /// Poor landmarks, too.
@@ -52,13 +52,13 @@ pub(super) enum Things {
     Any,
 }
 
-impl Offer {
+impl ThingOffer {
     /// A place for a thing at a frame, with a role.
-    pub(super) fn new(role: Role, frame: usize) -> Self {
+    pub(super) fn new(role: OfferRole, frame: usize) -> Self {
         Self {
             role,
             frame,
-            things: Things::Fair,
+            things: OfferThings::Fair,
             tells_side: false,
             pair: false,
             or_straight: false,
@@ -66,33 +66,35 @@ impl Offer {
         }
     }
 
-    pub(super) fn taking(self, things: Things) -> Self {
+    pub(super) fn with_things(self, things: OfferThings) -> Self {
         Self { things, ..self }
     }
 
     /// The spot with the searches for its thing.
-    pub(super) fn spot(&self) -> Spot {
-        let at = |frame, salience, to| Search { frame, salience, to };
+    pub(super) fn landmark_spot(&self) -> LandmarkSpot {
+        let at = |frame, salience, to| LandmarkSearch { frame, salience, to };
         let frame = self.frame;
         let mut searches = match self.role {
-            Role::Turn | Role::EnterWith => vec![at(frame, WALKED_PAST, Use::Here)],
-            Role::PassEnter | Role::Onward => vec![at(frame, WALKED_PAST, Use::Onward)],
-            Role::Stop(_) => vec![at(frame, WALKED_PAST, Use::Stop), at(frame, STOPPED_AT, Use::Stop)],
+            OfferRole::Turn | OfferRole::EnterWith => vec![at(frame, WALKED_PAST, LandmarkUse::Here)],
+            OfferRole::PassEnter | OfferRole::Onward => vec![at(frame, WALKED_PAST, LandmarkUse::Onward)],
+            OfferRole::Stop(_) => {
+                vec![at(frame, WALKED_PAST, LandmarkUse::Stop), at(frame, STOPPED_AT, LandmarkUse::Stop)]
+            }
         };
-        if self.role == Role::Onward && self.things != Things::Fair {
-            searches.push(at(frame, STOPPED_AT, Use::Onward));
+        if self.role == OfferRole::Onward && self.things != OfferThings::Fair {
+            searches.push(at(frame, STOPPED_AT, LandmarkUse::Onward));
         }
-        if self.role == Role::Onward && self.things == Things::Any {
+        if self.role == OfferRole::Onward && self.things == OfferThings::Any {
             let before = frame.saturating_sub(1);
-            searches.extend([at(before, WALKED_PAST, Use::Onward), at(frame, STOPPED_AT, Use::Beside)]);
+            searches.extend([at(before, WALKED_PAST, LandmarkUse::Onward), at(frame, STOPPED_AT, LandmarkUse::Beside)]);
         }
-        Spot { searches, pair: self.pair, is_spare: self.stands_in_for.is_some() }
+        LandmarkSpot { searches, pair: self.pair, is_spare: self.stands_in_for.is_some() }
     }
 }
 
 /// Hops within a room, between the first frame and the last, that have no place for a thing yet.
-pub(super) fn free_hops(plan: &[Clause], memory: &Memory) -> Vec<usize> {
-    let last = memory.frames().saturating_sub(2);
+pub(super) fn free_hops(plan: &[WayClause], memory: &WalkMemory) -> Vec<usize> {
+    let last = memory.frame_count().saturating_sub(2);
     let is_free = |hop: &usize| {
         let on_stairs = memory.flights.iter().any(|flight| (flight.from..flight.to).contains(hop));
         let changes_room = memory.openings.iter().any(|opening| opening.before == *hop);
@@ -103,14 +105,14 @@ pub(super) fn free_hops(plan: &[Clause], memory: &Memory) -> Vec<usize> {
 }
 
 /// Inserts a clause for a thing after the other clauses of its frame: a landmark at a turn comes before it.
-pub(super) fn insert(plan: &mut Vec<Clause>, hop: usize, offer: Offer) {
+pub(super) fn insert_offer(plan: &mut Vec<WayClause>, hop: usize, offer: ThingOffer) {
     let at = plan.iter().position(|other| other.at > hop).unwrap_or(plan.len());
-    plan.insert(at, Clause::for_a_thing(hop, offer));
+    plan.insert(at, WayClause::for_a_thing(hop, offer));
 }
 
 /// Adds replacements next to each place for a thing on the way; they are used only if that place gets no thing.
-pub(in crate::writer) fn with_stand_ins(mut plan: Vec<Clause>, memory: &Memory) -> Vec<Clause> {
-    let offered: Vec<(usize, Offer)> = plan
+pub(in crate::writer) fn with_stand_ins(mut plan: Vec<WayClause>, memory: &WalkMemory) -> Vec<WayClause> {
+    let offered: Vec<(usize, ThingOffer)> = plan
         .iter()
         .filter(|clause| clause.is_offer())
         .filter_map(|clause| Some((clause.at, clause.offer.clone()?)))
@@ -119,8 +121,8 @@ pub(in crate::writer) fn with_stand_ins(mut plan: Vec<Clause>, memory: &Memory) 
     for hop in free {
         let beside = offered.iter().find(|(other, _)| other.abs_diff(hop) == 1);
         if let Some((other, offer)) = beside {
-            let own = Offer { stands_in_for: Some(*other), or_straight: false, frame: hop + 1, ..offer.clone() };
-            insert(&mut plan, hop, own);
+            let own = ThingOffer { stands_in_for: Some(*other), or_straight: false, frame: hop + 1, ..offer.clone() };
+            insert_offer(&mut plan, hop, own);
         }
     }
     plan

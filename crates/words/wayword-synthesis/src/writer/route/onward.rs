@@ -1,40 +1,42 @@
 //! Plans hops that go straight on: past things, and along hallways.
 
-use super::{Clause, FILLER, LONG_M, MAIN, Offer, Planner, Role, SIDE, usable_room};
-use crate::style::way::{Kind, Way};
+use super::{
+    FILLER_WEIGHT, LONG_M, MAIN_WEIGHT, OfferRole, SIDE_WEIGHT, ThingOffer, WayClause, WayPlanner, usable_room,
+};
+use crate::style::way::{ClauseKind, WayWording};
 use rand::Rng;
 use wayword_core::Side;
 use wayword_language::lexicon::room_name;
 
-impl Planner<'_> {
-    pub(super) fn along(&mut self, at: usize, room: &str, weight: u8) {
-        self.push(Clause::new(Kind::Along, at, weight).room(room));
+impl WayPlanner<'_> {
+    pub(super) fn go_along(&mut self, at: usize, room: &str, weight: u8) {
+        self.push(WayClause::new(ClauseKind::Along, at, weight).with_room(room));
         self.along = true;
     }
 
     /// A hop within a room: past a thing, along the hallway, or at least straight on.
-    pub(super) fn onwards(&mut self, at: usize) {
-        if at > 0 && self.stretch(at) > 0 && self.stretch(at) == self.stretch(at - 1) {
+    pub(super) fn go_onwards(&mut self, at: usize) {
+        if at > 0 && self.stretch_number(at) > 0 && self.stretch_number(at) == self.stretch_number(at - 1) {
             return;
         }
-        let is_last = at + 2 >= self.memory.frames();
+        let is_last = at + 2 >= self.memory.frame_count();
         let often = if is_last { 0.3 } else { 0.5 };
         let offers = self.rng.random_bool(often) || self.is_first_hop_of_untold_turn(at);
-        let room = self.memory.room(at + 1).and_then(usable_room);
+        let room = self.memory.room_at(at + 1).and_then(usable_room);
         let hall = room.filter(|room| room_name(room) == Some("hallway"));
         if let Some(hall) = hall.filter(|_| !self.along && self.rng.random_bool(0.5)) {
-            let left = self.memory.stay(at + 1).map_or(at, |stay| stay.left);
-            let weight = if self.brief.walk.walked_m(at, left) >= LONG_M { MAIN } else { SIDE };
-            return self.along(at, &hall, weight);
+            let left = self.memory.stay_at(at + 1).map_or(at, |stay| stay.left);
+            let weight = if self.brief.walk.walked_m(at, left) >= LONG_M { MAIN_WEIGHT } else { SIDE_WEIGHT };
+            return self.go_along(at, &hall, weight);
         }
-        let left = self.memory.stay(at).map_or(at + 1, |stay| stay.left);
+        let left = self.memory.stay_at(at).map_or(at + 1, |stay| stay.left);
         let is_long = self.brief.walk.moves.is_empty() || self.brief.walk.walked_m(at, left) >= LONG_M;
         let goes_straight = is_long && !self.along && self.rng.random_bool(0.25);
         if offers {
-            let offer = Offer { or_straight: goes_straight, ..Offer::new(Role::Onward, at + 1) };
-            self.push(Clause::for_a_thing(at, offer));
+            let offer = ThingOffer { or_straight: goes_straight, ..ThingOffer::new(OfferRole::Onward, at + 1) };
+            self.push(WayClause::for_a_thing(at, offer));
         } else if goes_straight {
-            self.push(Clause::new(Kind::Straight, at, FILLER));
+            self.push(WayClause::new(ClauseKind::Straight, at, FILLER_WEIGHT));
         }
     }
 
@@ -46,16 +48,16 @@ impl Planner<'_> {
 
 /// The kind of clause for a thing on the way: past a thing that is passed, otherwise to it. `share` from 0 to 1 selects
 /// among the possible kinds.
-pub(super) fn past(way: &Way, passed: Option<Side>, side: Option<Side>, share: f64) -> Kind {
+pub(super) fn passing_kind(way: &WayWording, passed: Option<Side>, side: Option<Side>, share: f64) -> ClauseKind {
     let mut kinds = Vec::new();
     if passed.is_some() || side.is_none() {
-        kinds.push((way.count(Kind::Pass) * 0.5, Kind::Pass));
+        kinds.push((way.kind_count(ClauseKind::Pass) * 0.5, ClauseKind::Pass));
     }
     if passed.is_some() {
-        kinds.push((way.count(Kind::PassOnSide) * 2.0, Kind::PassOnSide));
+        kinds.push((way.kind_count(ClauseKind::PassOnSide) * 2.0, ClauseKind::PassOnSide));
     }
     if matches!(side, Some(Side::Ahead) | None) {
-        kinds.push((way.count(Kind::To) * 1.5, Kind::To));
+        kinds.push((way.kind_count(ClauseKind::To) * 1.5, ClauseKind::To));
     }
     let mut left = share * kinds.iter().map(|(weight, _)| weight).sum::<f64>();
     for (weight, kind) in &kinds {
@@ -64,5 +66,5 @@ pub(super) fn past(way: &Way, passed: Option<Side>, side: Option<Side>, share: f
             return *kind;
         }
     }
-    if passed.is_some() { Kind::Pass } else { Kind::To }
+    if passed.is_some() { ClauseKind::Pass } else { ClauseKind::To }
 }

@@ -1,21 +1,21 @@
 //! Plans turns within a room, and the turn at the start.
 
-use super::{Clause, LONG_M, MAIN, Offer, Planner, Role, usable_room};
-use crate::{style::way::Kind, writer::phrases::draw};
+use super::{LONG_M, MAIN_WEIGHT, OfferRole, ThingOffer, WayClause, WayPlanner, usable_room};
+use crate::{style::way::ClauseKind, writer::phrases::draw_option};
 use rand::Rng;
-use wayword_checks::memory::Bend;
-use wayword_core::{Climb, Side, rng};
+use wayword_checks::memory::WalkBend;
+use wayword_core::{ClimbDirection, Side, seeded_rng};
 use wayword_language::lexicon::room_name;
 
-impl Planner<'_> {
+impl WayPlanner<'_> {
     /// Plans a turn within a room: at a landmark, at the stairs, in the room, or right after the previous clause.
-    pub(super) fn turn(&mut self, bend: Bend) {
+    pub(super) fn add_turn(&mut self, bend: WalkBend) {
         let (at, side) = (bend.first, bend.side());
         if at == 0 {
             return self.first_turn(bend);
         }
         if side == Side::Behind {
-            return self.push(Clause::new(Kind::TurnAround, at, MAIN));
+            return self.push(WayClause::new(ClauseKind::TurnAround, at, MAIN_WEIGHT));
         }
         if self.is_left_out(bend) {
             return;
@@ -27,34 +27,37 @@ impl Planner<'_> {
             self.go_on_to(at);
         }
         let slight = bend.is_slight() && self.rng.random_bool(0.5);
-        let bare = if slight { Kind::TurnSlightly } else { Kind::Turn };
+        let bare = if slight { ClauseKind::TurnSlightly } else { ClauseKind::Turn };
         let follows = self.follows_a_place(at);
-        let room = self.memory.room(at).and_then(usable_room);
+        let room = self.memory.room_at(at).and_then(usable_room);
         let is_hall = room.as_deref().and_then(room_name) == Some("hallway");
         let mut kinds = vec![(if follows || offers { 4.0 } else { 0.3 }, bare)];
         match flight {
-            Some(Climb::Up) => kinds.push((4.0, Kind::TurnAtTop)),
-            Some(Climb::Down) => kinds.push((4.0, Kind::TurnAtBottom)),
+            Some(ClimbDirection::Up) => kinds.push((4.0, ClauseKind::TurnAtTop)),
+            Some(ClimbDirection::Down) => kinds.push((4.0, ClauseKind::TurnAtBottom)),
             _ => {}
         }
         if is_hall && !self.along && self.walked_in(at) >= 2 {
-            kinds.push((3.0, Kind::Along));
+            kinds.push((3.0, ClauseKind::Along));
         }
         if room.is_some() {
-            kinds.push((0.4, Kind::TurnIn));
+            kinds.push((0.4, ClauseKind::TurnIn));
         }
-        let kind = draw(&kinds, &mut self.rng).unwrap_or(bare);
+        let kind = draw_option(&kinds, &mut self.rng).unwrap_or(bare);
         let room = room.unwrap_or_default();
         let turn = match kind {
-            Kind::Along => {
-                self.along(at.saturating_sub(1), &room, MAIN);
-                Clause::new(bare, at, MAIN).to(side)
+            ClauseKind::Along => {
+                self.go_along(at.saturating_sub(1), &room, MAIN_WEIGHT);
+                WayClause::new(bare, at, MAIN_WEIGHT).to_side(side)
             }
-            Kind::TurnIn => Clause::new(kind, at, MAIN).to(side).room(&room),
-            kind => Clause::new(kind, at, MAIN).to(side),
+            ClauseKind::TurnIn => WayClause::new(kind, at, MAIN_WEIGHT).to_side(side).with_room(&room),
+            kind => WayClause::new(kind, at, MAIN_WEIGHT).to_side(side),
         };
-        let offer = Offer { or_straight: straight_from && kind != Kind::Along, ..Offer::new(Role::Turn, at) };
-        self.push(if offers { turn.offering(offer) } else { turn });
+        let offer = ThingOffer {
+            or_straight: straight_from && kind != ClauseKind::Along,
+            ..ThingOffer::new(OfferRole::Turn, at)
+        };
+        self.push(if offers { turn.with_offer(offer) } else { turn });
     }
 
     /// Whether the clause before a turn makes its place clear: it is no turn itself, and not far before it.
@@ -65,12 +68,12 @@ impl Planner<'_> {
 
     /// Number of hops in the room of a frame before it.
     fn walked_in(&self, at: usize) -> usize {
-        self.memory.stay(at).map_or(0, |stay| at - stay.entered)
+        self.memory.stay_at(at).map_or(0, |stay| at - stay.entered)
     }
 
     /// Where the walker has gone a long way in a room since the last clause, its first frame and the room.
     fn walked_since(&self, at: usize) -> Option<(usize, &str)> {
-        let stay = self.memory.stay(at)?;
+        let stay = self.memory.stay_at(at)?;
         let told = self.clauses.last().map_or(0, |before| before.at + 1);
         let from = stay.entered.max(told);
         (!self.along && self.brief.walk.walked_m(from, at) >= LONG_M).then_some((from, stay.room.as_str()))
@@ -78,7 +81,7 @@ impl Planner<'_> {
 
     /// Whether a turn that gets no thing needs a "go straight" before it.
     fn straight_before(&self, at: usize) -> bool {
-        self.walked_since(at).is_some() && !self.clauses.last().is_some_and(Clause::is_offer)
+        self.walked_since(at).is_some() && !self.clauses.last().is_some_and(WayClause::is_offer)
     }
 
     /// Adds "go straight" or "go along the hallway" before a turn or a door if the walker has gone a long way since the
@@ -87,17 +90,17 @@ impl Planner<'_> {
         let Some((from, room)) = self.walked_since(at) else { return };
         let room = usable_room(room);
         match room.filter(|room| room_name(room) == Some("hallway")) {
-            Some(hall) => self.along(from, &hall, MAIN),
-            None => self.push(Clause::new(Kind::Straight, from, MAIN)),
+            Some(hall) => self.go_along(from, &hall, MAIN_WEIGHT),
+            None => self.push(WayClause::new(ClauseKind::Straight, from, MAIN_WEIGHT)),
         }
     }
 
     /// Plans the turn at the start. It is often left out, because the first landmark shows the direction too.
-    fn first_turn(&mut self, bend: Bend) {
+    fn first_turn(&mut self, bend: WalkBend) {
         let side = bend.side();
         let leaves_soon =
             self.memory.openings.first().is_some_and(|opening| opening.before <= 1) && self.here.is_some();
-        let kind = if side == Side::Behind { Kind::TurnAround } else { Kind::Turn };
+        let kind = if side == Side::Behind { ClauseKind::TurnAround } else { ClauseKind::Turn };
         let is_told = match (side, leaves_soon) {
             (Side::Behind, true) => self.rng.random_bool(0.15),
             (Side::Behind, false) => self.rng.random_bool(0.5),
@@ -105,13 +108,13 @@ impl Planner<'_> {
             (_, false) => !bend.is_slight() && self.rng.random_bool(0.4),
         };
         if is_told {
-            self.push(Clause::new(kind, 0, MAIN).to(side));
+            self.push(WayClause::new(kind, 0, MAIN_WEIGHT).to_side(side));
         }
     }
 
     /// Whether a turn is left out: people do not mention small turns that the way requires anyway. All candidates of a
     /// text leave out the same ones, and the way back the same ones as the way there.
-    pub(super) fn is_left_out(&self, bend: Bend) -> bool {
+    pub(super) fn is_left_out(&self, bend: WalkBend) -> bool {
         if bend.turn_rad.to_degrees().abs() >= HARDLY_DEG {
             return false;
         }
@@ -121,7 +124,7 @@ impl Planner<'_> {
         let place = on_the_way.iter().position(|last| *last == bend.last);
         let from_an_end = place.map_or(0, |place| 1 + place.min(on_the_way.len() - 1 - place));
         let names = ["left out", &brief.style.name, &brief.walk.path.id, &from_an_end.to_string()];
-        rng(brief.seed, &names).random_bool(LEFT_OUT)
+        seeded_rng(brief.seed, &names).random_bool(LEFT_OUT)
     }
 }
 

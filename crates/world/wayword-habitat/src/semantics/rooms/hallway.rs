@@ -1,10 +1,10 @@
 //! Recognises hallways by their shape: narrow, long, and with doors to several rooms. Few things in them show what they are.
 
-use super::{super::Thing, LEVEL_M, Part, Rooms};
+use super::{super::SemanticThing, LEVEL_M, NumberedRooms, ShellPart};
 use std::collections::BTreeMap;
 use wayword_core::DVec3;
 
-pub(super) const NAME: &str = "hallway";
+pub(super) const HALLWAY_NAME: &str = "hallway";
 
 /// Greatest width of a hallway, metres.
 const BROAD_M: f64 = 2.2;
@@ -13,9 +13,9 @@ const LONG_M: f64 = 3.0;
 /// Greatest length of a hallway, metres. A longer one is hardly a single hallway, and would take long to examine.
 const LONGEST_M: f64 = 40.0;
 /// Least length as a multiple of the width.
-const LONGER: f64 = 2.0;
+const MIN_LENGTH_FACTOR: f64 = 2.0;
 /// Least number of rooms to which a hallway leads.
-const ROOMS: usize = 3;
+const MIN_ADJACENT_ROOMS: usize = 3;
 /// Width of a door or doorway, metres.
 const DOOR_M: std::ops::RangeInclusive<f64> = 0.4..=1.8;
 /// Floors that touch along more than this belong to one open room, metres: their numbers are for parts of it.
@@ -26,9 +26,9 @@ const MOST_NEAR: usize = 1000;
 /// Distance of the places at which floors are looked up, metres: less than the thickness of a wall.
 const STEP_M: f64 = 0.05;
 
-impl Rooms {
+impl NumberedRooms {
     /// The hallways among `silent`, the rooms in which no thing suggests another name.
-    pub(super) fn hallways(&self, silent: &[u32], things: &[Thing]) -> Vec<u32> {
+    pub(super) fn find_hallways(&self, silent: &[u32], things: &[SemanticThing]) -> Vec<u32> {
         if self.shell.as_ref().is_none_or(|shell| shell.most_near() > MOST_NEAR) {
             return Vec::new();
         }
@@ -38,15 +38,15 @@ impl Rooms {
 
     /// Whether a room is a hallway: its floor is narrow and long, it has a ceiling, and it leads to three rooms or more, of
     /// which one is a bathroom or has stairs. The ceiling and the last condition keep balconies out.
-    fn is_hallway(&self, room: u32, things: &[Thing]) -> bool {
-        let bounds = |part: Part| {
+    fn is_hallway(&self, room: u32, things: &[SemanticThing]) -> bool {
+        let bounds = |part: ShellPart| {
             let of_room = things.iter().filter(|thing| thing.room == Some(room) && thing.part == Some(part));
             of_room.filter_map(|thing| thing.bounds).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
         };
-        let (Some((low, high)), Some(_)) = (bounds(Part::Floor), bounds(Part::Ceiling)) else { return false };
+        let (Some((low, high)), Some(_)) = (bounds(ShellPart::Floor), bounds(ShellPart::Ceiling)) else { return false };
         let size = high - low;
         let (broad_m, long_m) = (size.x.min(size.y), size.x.max(size.y));
-        let is_long = (LONG_M..=LONGEST_M).contains(&long_m) && long_m >= LONGER * broad_m;
+        let is_long = (LONG_M..=LONGEST_M).contains(&long_m) && long_m >= MIN_LENGTH_FACTOR * broad_m;
         broad_m <= BROAD_M && is_long && size.z <= LEVEL_M && self.leads_on(room, low, high)
     }
 
@@ -54,9 +54,11 @@ impl Rooms {
         let touching_m = self.touching_m(room, low, high);
         let is_door = |(_, metres): &(&u32, &f64)| DOOR_M.contains(metres);
         let doors: Vec<u32> = touching_m.iter().filter(is_door).map(|(other, _)| *other).collect();
-        let has_stairs = |room: &u32| self.owners.iter().flatten().any(|owner| *owner == (*room, Part::Stairs));
+        let has_stairs = |room: &u32| self.owners.iter().flatten().any(|owner| *owner == (*room, ShellPart::Stairs));
         let is_indoors = |room: &u32| self.names.get(room) == Some(&"bathroom") || has_stairs(room);
-        doors.len() >= ROOMS && doors.iter().any(is_indoors) && touching_m.values().all(|metres| *metres <= OPEN_M)
+        doors.len() >= MIN_ADJACENT_ROOMS
+            && doors.iter().any(is_indoors)
+            && touching_m.values().all(|metres| *metres <= OPEN_M)
     }
 
     /// Along how many metres the floors of other rooms touch a room's floor.
@@ -64,7 +66,8 @@ impl Rooms {
         let count = |from: f64, to: f64| ((to - from) / STEP_M) as usize + 4;
         let at = |column: usize, row: usize| {
             let place = DVec3::new(low.x + (column as f64 - 1.5) * STEP_M, low.y + (row as f64 - 1.5) * STEP_M, 0.0);
-            self.below(place.with_z(high.z + LEVEL_M / 2.0), LEVEL_M + (high.z - low.z)).map(|surface| surface.room)
+            self.floor_below(place.with_z(high.z + LEVEL_M / 2.0), LEVEL_M + (high.z - low.z))
+                .map(|surface| surface.room)
         };
         let (columns, rows) = (count(low.x, high.x), count(low.y, high.y));
         let mut touching_m = BTreeMap::new();

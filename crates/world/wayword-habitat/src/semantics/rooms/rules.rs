@@ -3,19 +3,19 @@
 //! A rule has things that decide for its room, and things that only suggest it. For example, a bed decides for a bedroom. A room gets
 //! a name only if exactly one rule decides, and nothing in it suggests another room.
 
-use super::Part;
+use super::ShellPart;
 use std::{
     collections::{BTreeMap, BTreeSet},
     sync::LazyLock,
 };
 
-const LIST: &str = include_str!("rooms.txt");
+const ROOM_RULES_TEXT: &str = include_str!("rooms.txt");
 
-static RULES: LazyLock<Rules> = LazyLock::new(|| Rules::parse(LIST));
+static ROOM_RULES: LazyLock<RoomRules> = LazyLock::new(|| RoomRules::parse(ROOM_RULES_TEXT));
 
 /// What the things in a room suggest about its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Verdict {
+pub(super) enum RoomVerdict {
     /// It has this name.
     Named(&'static str),
     /// They suggest different rooms, or no room clearly enough.
@@ -25,27 +25,27 @@ pub(super) enum Verdict {
 }
 
 /// The part of a room's shell that has this plain name.
-pub(in super::super) fn part(plain: &str) -> Option<Part> {
-    RULES.parts.get(plain).copied()
+pub(in super::super) fn shell_part(plain: &str) -> Option<ShellPart> {
+    ROOM_RULES.parts.get(plain).copied()
 }
 
 /// The verdict on a room that has things with these plain names.
-pub(super) fn verdict<'a>(names: impl Iterator<Item = &'a str>) -> Verdict {
-    RULES.verdict(&names.collect())
+pub(super) fn room_verdict<'a>(names: impl Iterator<Item = &'a str>) -> RoomVerdict {
+    ROOM_RULES.judge_names(&names.collect())
 }
 
 #[derive(Debug, Default)]
-struct Rules {
-    parts: BTreeMap<&'static str, Part>,
+struct RoomRules {
+    parts: BTreeMap<&'static str, ShellPart>,
     /// The word that the rules use instead of each of its synonyms.
     same: BTreeMap<&'static str, &'static str>,
-    rooms: Vec<Rule>,
+    rooms: Vec<RoomRule>,
     /// Lines that could not be parsed; a test checks that there are none.
     odd: Vec<&'static str>,
 }
 
 #[derive(Debug)]
-struct Rule {
+struct RoomRule {
     room: &'static str,
     /// Each group decides if all its things are in the room.
     decides: Vec<Vec<&'static str>>,
@@ -55,29 +55,29 @@ struct Rule {
 }
 
 /// The entries of a comma-separated list.
-fn entries(list: &'static str) -> impl Iterator<Item = &'static str> {
+fn list_entries(list: &'static str) -> impl Iterator<Item = &'static str> {
     list.split(',').map(str::trim).filter(|entry| !entry.is_empty())
 }
 
-impl Rules {
+impl RoomRules {
     fn parse(list: &'static str) -> Self {
         let mut rules = Self::default();
         for line in list.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#')) {
-            let mut tells = |part: Part, names| rules.parts.extend(entries(names).map(|name| (name, part)));
+            let mut tells = |part: ShellPart, names| rules.parts.extend(list_entries(names).map(|name| (name, part)));
             match line.split_once(':') {
-                Some(("floors", names)) => tells(Part::Floor, names),
-                Some(("stairs", names)) => tells(Part::Stairs, names),
-                Some(("ceilings", names)) => tells(Part::Ceiling, names),
+                Some(("floors", names)) => tells(ShellPart::Floor, names),
+                Some(("stairs", names)) => tells(ShellPart::Stairs, names),
+                Some(("ceilings", names)) => tells(ShellPart::Ceiling, names),
                 Some(("same", names)) => {
-                    let first = entries(names).next().unwrap_or_default();
-                    rules.same.extend(entries(names).skip(1).map(|name| (name, first)));
+                    let first = list_entries(names).next().unwrap_or_default();
+                    rules.same.extend(list_entries(names).skip(1).map(|name| (name, first)));
                 }
                 Some(("room", columns)) => match columns.split('|').collect::<Vec<_>>()[..] {
-                    [room, decides, speaks, also] => rules.rooms.push(Rule {
+                    [room, decides, speaks, also] => rules.rooms.push(RoomRule {
                         room: room.trim(),
-                        decides: entries(decides).map(|all| all.split('+').map(str::trim).collect()).collect(),
-                        speaks: entries(speaks).collect(),
-                        also: entries(also).collect(),
+                        decides: list_entries(decides).map(|all| all.split('+').map(str::trim).collect()).collect(),
+                        speaks: list_entries(speaks).collect(),
+                        also: list_entries(also).collect(),
                     }),
                     _ => rules.odd.push(line),
                 },
@@ -87,20 +87,21 @@ impl Rules {
         rules
     }
 
-    fn verdict(&self, names: &BTreeSet<&str>) -> Verdict {
+    fn judge_names(&self, names: &BTreeSet<&str>) -> RoomVerdict {
         let names: BTreeSet<&str> = names.iter().map(|name| self.same.get(name).copied().unwrap_or(name)).collect();
-        let decides = |rule: &&Rule| rule.decides.iter().any(|all| all.iter().all(|thing| names.contains(thing)));
-        let speaks = |rule: &&Rule| decides(rule) || rule.speaks.iter().any(|thing| names.contains(thing));
-        let spoken_for: Vec<&Rule> = self.rooms.iter().filter(speaks).collect();
+        let decides = |rule: &&RoomRule| rule.decides.iter().any(|all| all.iter().all(|thing| names.contains(thing)));
+        let speaks = |rule: &&RoomRule| decides(rule) || rule.speaks.iter().any(|thing| names.contains(thing));
+        let spoken_for: Vec<&RoomRule> = self.rooms.iter().filter(speaks).collect();
         if spoken_for.is_empty() {
-            return Verdict::Silent;
+            return RoomVerdict::Silent;
         }
-        let is_free =
-            |rule: &&Rule| spoken_for.iter().all(|other| other.room == rule.room || rule.also.contains(&other.room));
+        let is_free = |rule: &&RoomRule| {
+            spoken_for.iter().all(|other| other.room == rule.room || rule.also.contains(&other.room))
+        };
         let mut sure = spoken_for.iter().copied().filter(decides).filter(is_free);
         match (sure.next(), sure.next()) {
-            (Some(rule), None) => Verdict::Named(rule.room),
-            _ => Verdict::Doubtful,
+            (Some(rule), None) => RoomVerdict::Named(rule.room),
+            _ => RoomVerdict::Doubtful,
         }
     }
 }
@@ -108,26 +109,26 @@ impl Rules {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use wayword_world::{object_names::plain, region};
+    use wayword_world::{object_names::plain_name, region};
 
     /// The verdict on things as the annotators write them, separated by commas.
-    fn verdict_on(things: &str) -> Verdict {
-        let plain: Vec<String> = things.split(',').filter_map(plain).collect();
-        verdict(plain.iter().map(String::as_str))
+    fn verdict_on(things: &str) -> RoomVerdict {
+        let plain: Vec<String> = things.split(',').filter_map(plain_name).collect();
+        room_verdict(plain.iter().map(String::as_str))
     }
 
     #[test]
     fn every_line_is_understood_and_names_a_room_that_other_scenes_have_too() {
-        assert_eq!(RULES.odd, [""; 0]);
-        let known: BTreeSet<&str> = ('a'..='z').chain('A'..='Z').filter_map(region::room).collect();
-        for rule in &RULES.rooms {
+        assert_eq!(ROOM_RULES.odd, [""; 0]);
+        let known: BTreeSet<&str> = ('a'..='z').chain('A'..='Z').filter_map(region::room_for_letter).collect();
+        for rule in &ROOM_RULES.rooms {
             assert!(known.contains(rule.room), "{}", rule.room);
             for other in &rule.also {
-                assert!(RULES.rooms.iter().any(|rule| rule.room == *other), "{other} has no line");
+                assert!(ROOM_RULES.rooms.iter().any(|rule| rule.room == *other), "{other} has no line");
             }
             // The reader replaces synonyms, so a rule that names one would never match.
             for thing in rule.decides.iter().flatten().chain(&rule.speaks) {
-                assert!(!RULES.same.contains_key(thing), "{thing} is another name of {}", RULES.same[thing]);
+                assert!(!ROOM_RULES.same.contains_key(thing), "{thing} is another name of {}", ROOM_RULES.same[thing]);
             }
         }
     }
@@ -155,7 +156,7 @@ mod tests {
             ("front door, shoe rack", "entryway"),
             ("clothes rack, cardboard boxes", "closet"),
         ] {
-            assert_eq!(verdict_on(things), Verdict::Named(room), "{things}");
+            assert_eq!(verdict_on(things), RoomVerdict::Named(room), "{things}");
         }
     }
 
@@ -172,18 +173,18 @@ mod tests {
             "treadmill, sofa, tv",
             "clothes rack, toilet, bed",
         ] {
-            assert_eq!(verdict_on(things), Verdict::Doubtful, "{things}");
+            assert_eq!(verdict_on(things), RoomVerdict::Doubtful, "{things}");
         }
     }
 
     #[test]
     fn things_of_any_room_leave_the_verdict_silent() {
         for things in ["", "chair, picture, lamp", "sink, mirror", "desk", "toilet paper, bed sheet", "unknown, wall"] {
-            assert_eq!(verdict_on(things), Verdict::Silent, "{things}");
+            assert_eq!(verdict_on(things), RoomVerdict::Silent, "{things}");
         }
         // These speak for a room, but not alone.
         for things in ["refrigerator", "couch, coffee table", "kitchen cabinet, sink", "door mat"] {
-            assert_eq!(verdict_on(things), Verdict::Doubtful, "{things}");
+            assert_eq!(verdict_on(things), RoomVerdict::Doubtful, "{things}");
         }
     }
 }

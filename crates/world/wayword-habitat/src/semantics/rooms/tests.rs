@@ -6,27 +6,29 @@ use super::*;
 use wayword_core::ObjectId;
 
 /// A thing of a room with a level rectangle at a height: x from, x to, y from, y to.
-fn thing(number: usize, raw: &str, room: u32, [x0, x1, y0, y1]: [f64; 4], height_m: f64) -> Thing {
-    let mut thing = Thing { room: Some(room), ..Thing::new(ObjectId::new(number.to_string()).unwrap(), raw) };
-    thing.include(DVec3::new(x0, y0, height_m));
-    thing.include(DVec3::new(x1, y1, height_m));
+fn thing(number: usize, raw: &str, room: u32, [x0, x1, y0, y1]: [f64; 4], height_m: f64) -> SemanticThing {
+    let mut thing =
+        SemanticThing { room: Some(room), ..SemanticThing::new(ObjectId::new(number.to_string()).unwrap(), raw) };
+    thing.include_place(DVec3::new(x0, y0, height_m));
+    thing.include_place(DVec3::new(x1, y1, height_m));
     thing
 }
 
-fn rooms(given: &[(&str, u32, [f64; 4], f64)]) -> Rooms {
+fn rooms(given: &[(&str, u32, [f64; 4], f64)]) -> NumberedRooms {
     let numbered = given.iter().enumerate();
-    let things: Vec<Thing> = numbered.map(|(at, (raw, room, area, z))| thing(at, raw, *room, *area, *z)).collect();
+    let things: Vec<SemanticThing> =
+        numbered.map(|(at, (raw, room, area, z))| thing(at, raw, *room, *area, *z)).collect();
     let mut shell = Vec::new();
     for (at, (_, _, [x0, x1, y0, y1], z)) in given.iter().enumerate().filter(|(at, _)| things[*at].part.is_some()) {
         let corner = |x: f64, y: f64| DVec3::new(x, y, *z).as_vec3();
         let [a, b, c, d] = [corner(*x0, *y0), corner(*x1, *y0), corner(*x1, *y1), corner(*x0, *y1)];
         shell.extend([([a, b, c], at as u32), ([a, c, d], at as u32)]);
     }
-    Rooms::of(&things, shell)
+    NumberedRooms::from_things(&things, shell)
 }
 
-fn name_seen(rooms: &Rooms, x: f64, y: f64, turn_rad: f64) -> Option<&'static str> {
-    rooms.seen(DVec3::new(x, y, 1.5), Heading::new(turn_rad).unwrap())
+fn name_seen(rooms: &NumberedRooms, x: f64, y: f64, turn_rad: f64) -> Option<&'static str> {
+    rooms.room_in_view(DVec3::new(x, y, 1.5), Heading::new(turn_rad).unwrap())
 }
 
 const EAST: f64 = std::f64::consts::FRAC_PI_2;
@@ -49,7 +51,7 @@ fn the_floor_decides_in_which_room_an_eye_is() {
     assert_eq!(name_seen(&rooms, 1.0, 1.0, EAST), Some("bedroom"));
     assert_eq!(name_seen(&rooms, 6.0, 1.0, EAST), Some("bathroom"));
     // Above another storey's ceiling and far outside, the room is not known.
-    assert_eq!(rooms.seen(DVec3::new(1.0, 1.0, 4.5), Heading::NORTH), None);
+    assert_eq!(rooms.room_in_view(DVec3::new(1.0, 1.0, 4.5), Heading::NORTH), None);
     assert_eq!(name_seen(&rooms, 20.0, 1.0, EAST), None);
 }
 

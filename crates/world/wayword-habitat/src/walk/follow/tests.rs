@@ -11,24 +11,25 @@ fn place(x: f64, y: f64, z: f64) -> DVec3 {
 }
 
 /// Replays a walk, and returns the place where it ends.
-fn ends(ground: &Ground, walked: &Walked, gait: Gait) -> DVec3 {
-    let told: Vec<Stance> = replay(ground, walked.stances[0], &walked.actions, gait).map(Option::unwrap).collect();
+fn ends(ground: &NavMeshGround, walked: &ActionWalk, gait: AgentGait) -> DVec3 {
+    let told: Vec<AgentStance> =
+        replay_actions(ground, walked.stances[0], &walked.actions, gait).map(Option::unwrap).collect();
     assert_eq!(told[..walked.stances.len()], walked.stances);
     told.last().unwrap().foothold.place
 }
 
 #[test]
 fn a_walk_round_a_hole_keeps_to_its_places_and_is_not_the_shortest_way() {
-    let ground = Ground::new(&paved(&ring()));
+    let ground = NavMeshGround::new(&paved(&ring()));
     // The long way round: past three corners, though the end is near the start.
     let places =
         [place(0.5, 0.5, 0.0), place(2.5, 0.5, 0.0), place(2.5, 2.5, 0.0), place(0.5, 2.5, 0.0), place(0.5, 1.5, 0.0)];
-    let gait = Gait::default();
-    let walked = follow(&ground, &places, Heading::NORTH, gait, TOLERANCE_M).unwrap();
+    let gait = AgentGait::default();
+    let walked = follow_places(&ground, &places, Heading::NORTH, gait, TOLERANCE_M).unwrap();
     assert!(ends(&ground, &walked, gait).distance(places[4]) < 0.4, "{}", walked.off_m);
-    assert_eq!(walked.actions.last(), Some(&Action::Stop));
-    assert_eq!(walked.actions.iter().filter(|action| **action == Action::Stop).count(), 1);
-    let steps = walked.actions.iter().filter(|action| **action == Action::Forward).count();
+    assert_eq!(walked.actions.last(), Some(&AgentAction::Stop));
+    assert_eq!(walked.actions.iter().filter(|action| **action == AgentAction::Stop).count(), 1);
+    let steps = walked.actions.iter().filter(|action| **action == AgentAction::Forward).count();
     assert!((26..=34).contains(&steps), "7 m are 28 steps, not {steps}");
     assert!(walked.reached.is_sorted() && walked.reached.len() == places.len());
     for (number, at) in walked.reached.iter().enumerate() {
@@ -42,9 +43,10 @@ fn a_walk_round_a_hole_keeps_to_its_places_and_is_not_the_shortest_way() {
 
 #[test]
 fn a_walk_that_leads_back_turns_round() {
-    let ground = Ground::new(&paved(&ring()));
+    let ground = NavMeshGround::new(&paved(&ring()));
     let places = [place(0.5, 0.5, 0.0), place(2.5, 0.5, 0.0), place(0.5, 0.5, 0.0)];
-    let walked = follow(&ground, &places, Heading::new(1.5).unwrap(), Gait::default(), TOLERANCE_M).unwrap();
+    let walked =
+        follow_places(&ground, &places, Heading::new(1.5).unwrap(), AgentGait::default(), TOLERANCE_M).unwrap();
     let end = walked.stances.last().unwrap();
     assert!(end.foothold.place.distance(places[2]) < 0.3);
     assert!(walked.stances.iter().any(|stance| stance.foothold.place.x > 2.2));
@@ -52,23 +54,32 @@ fn a_walk_that_leads_back_turns_round() {
 
 #[test]
 fn a_walk_up_a_ramp_ends_a_storey_higher() {
-    let ground = Ground::new(&paved(&two_storeys()));
+    let ground = NavMeshGround::new(&paved(&two_storeys()));
     let places = [place(2.0, 0.5, 0.0), place(2.0, 0.5, 3.0)];
-    let walked = follow(&ground, &places, Heading::NORTH, Gait::default(), TOLERANCE_M).unwrap();
+    let walked = follow_places(&ground, &places, Heading::NORTH, AgentGait::default(), TOLERANCE_M).unwrap();
     let end = walked.stances.last().unwrap().foothold.place;
     assert!(end.distance(places[1]) < 0.4, "{end}");
 }
 
 #[test]
 fn follow_reports_the_place_that_blocks_a_walk() {
-    let ground = Ground::new(&paved(&ring()));
-    let nowhere = follow(&ground, &[place(0.5, 0.5, 0.0), place(40.0, 0.0, 0.0)], Heading::NORTH, Gait::default(), 0.2);
+    let ground = NavMeshGround::new(&paved(&ring()));
+    let nowhere = follow_places(
+        &ground,
+        &[place(0.5, 0.5, 0.0), place(40.0, 0.0, 0.0)],
+        Heading::NORTH,
+        AgentGait::default(),
+        0.2,
+    );
     assert!(nowhere.unwrap_err().to_string().starts_with("place 1 of the walk: there is no walkable ground"));
     // A step of 2 m fits nowhere on this ring.
-    let gait = Gait::new(1.9, 90.0).unwrap();
+    let gait = AgentGait::new(1.9, 90.0).unwrap();
     let around = [place(0.5, 0.2, 0.0), place(2.6, 0.9, 0.0), place(2.6, 2.9, 0.0)];
-    let blocked = follow(&ground, &around, Heading::NORTH, gait, 0.2).unwrap_err();
-    assert!(matches!(blocked, Astray::Blocked { .. }) && blocked.to_string().contains("m before the end"), "{blocked}");
+    let blocked = follow_places(&ground, &around, Heading::NORTH, gait, 0.2).unwrap_err();
+    assert!(
+        matches!(blocked, WalkFollowError::Blocked { .. }) && blocked.to_string().contains("m before the end"),
+        "{blocked}"
+    );
 }
 
 proptest! {
@@ -79,10 +90,10 @@ proptest! {
     ) {
         let is_hole = |(x, y): &(f64, f64)| (0.9..2.1).contains(x) && (0.9..2.1).contains(y);
         prop_assume!(!ends_at.iter().any(is_hole));
-        let ground = Ground::new(&paved(&ring()));
+        let ground = NavMeshGround::new(&paved(&ring()));
         let places: Vec<DVec3> = ends_at.iter().map(|(x, y)| place(*x, *y, 0.0)).collect();
-        let gait = Gait::new(forward, turn).unwrap();
-        if let Ok(walked) = follow(&ground, &places, Heading::new(heading).unwrap(), gait, TOLERANCE_M) {
+        let gait = AgentGait::new(forward, turn).unwrap();
+        if let Ok(walked) = follow_places(&ground, &places, Heading::new(heading).unwrap(), gait, TOLERANCE_M) {
             prop_assert!(super::tests::ends(&ground, &walked, gait).distance(*places.last().unwrap()) <= 0.5);
         }
     }

@@ -3,40 +3,40 @@
 
 mod read;
 
-use super::flat::Misread;
+use super::flat::FlatBufferError;
 pub(super) use read::id_of;
 
 /// One frame of output data. All positions and rotations are Unity's (see [`crate::unity`]).
 #[derive(Debug, Clone, PartialEq)]
-pub enum Output<'a> {
+pub enum BuildOutput<'a> {
     /// `imag`: pictures of an avatar's camera.
-    Images(Images<'a>),
+    Images(AvatarImages<'a>),
     /// `segm`: which colour each object has in the `_id` pass.
-    Segmentation(Vec<Segment<'a>>),
+    Segmentation(Vec<SegmentedObject<'a>>),
     /// `path`: a way over the navmesh.
     Path(NavMeshPath),
     /// `sreg`: boxes of the scene's rooms.
-    Regions(Vec<Region>),
+    Regions(Vec<TdwRegion>),
     /// `occu`: which cells of the floor are free.
-    Occupancy(Occupancy),
+    Occupancy(TdwOccupancyMap),
     /// `avki`: where a kinematic avatar is.
-    Avatar(Avatar<'a>),
+    Avatar(AvatarPose<'a>),
     /// `tran`: where objects are.
-    Transforms(Vec<Transform>),
+    Transforms(Vec<TdwObjectTransform>),
     /// `boun`: how large objects are.
-    Bounds(Vec<Bounds>),
+    Bounds(Vec<TdwObjectBounds>),
     /// `cate`: which colour each category has in the `_category` pass.
     Categories(Vec<(&'a str, [u8; 3])>),
     /// `cama`: matrices of a camera.
-    Camera(Camera<'a>),
+    Camera(TdwCameraMatrices<'a>),
     /// `imse`: an avatar's cameras.
-    Sensors(&'a str, Vec<Sensor<'a>>),
+    Sensors(&'a str, Vec<AvatarSensor<'a>>),
     /// `isnm`: whether a position is on the navmesh.
     OnNavMesh(OnNavMesh),
     /// `quit`: the build ends; true where it ends without an error.
     Quit(bool),
     /// `vers`: which build it is.
-    Version(Version<'a>),
+    Version(VersionOutput<'a>),
     /// `ftre`: the build did not receive the commands and asks for them again.
     FailedToReceive,
     /// Anything else, by its id.
@@ -45,7 +45,7 @@ pub enum Output<'a> {
 
 /// Pictures of one camera at one moment.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Images<'a> {
+pub struct AvatarImages<'a> {
     /// The avatar.
     pub avatar: &'a str,
     /// Its camera.
@@ -55,12 +55,12 @@ pub struct Images<'a> {
     /// Rows.
     pub height: u32,
     /// One picture for each pass.
-    pub passes: Vec<Pass<'a>>,
+    pub passes: Vec<PicturePass<'a>>,
 }
 
 /// One pass of a picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Pass<'a> {
+pub struct PicturePass<'a> {
     /// Which: 1 `_img`, 2 `_id`, 4 `_category`, 16 `_depth`.
     pub mask: i32,
     /// The file, or raw pixels for `_depth`.
@@ -71,7 +71,7 @@ pub struct Pass<'a> {
 
 /// An object in the `_id` pass.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Segment<'a> {
+pub struct SegmentedObject<'a> {
     /// The object.
     pub id: i32,
     /// Name of its model.
@@ -95,7 +95,7 @@ pub struct NavMeshPath {
 
 /// A room's box.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Region {
+pub struct TdwRegion {
     /// Its number.
     pub id: i32,
     /// Its middle.
@@ -106,7 +106,7 @@ pub struct Region {
 
 /// Free and occupied cells of the floor, row by row.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Occupancy {
+pub struct TdwOccupancyMap {
     /// Rows and columns: the build's `shape[1]` and `shape[0]`, because the client reshapes to them in this order.
     pub shape: [usize; 2],
     /// 0 free, 1 occupied, -1 outside.
@@ -117,7 +117,7 @@ pub struct Occupancy {
 
 /// Where an avatar is.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Avatar<'a> {
+pub struct AvatarPose<'a> {
     /// The avatar.
     pub id: &'a str,
     /// Its position.
@@ -130,7 +130,7 @@ pub struct Avatar<'a> {
 
 /// Where an object is.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Transform {
+pub struct TdwObjectTransform {
     /// The object.
     pub id: i32,
     /// Its position: the middle of its bottom.
@@ -143,7 +143,7 @@ pub struct Transform {
 
 /// How large an object is.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Bounds {
+pub struct TdwObjectBounds {
     /// The object.
     pub id: i32,
     /// Middles of its box's sides: front, back, right, left, top, bottom; then the box's own middle.
@@ -152,7 +152,7 @@ pub struct Bounds {
 
 /// Matrices of a camera, row by row.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Camera<'a> {
+pub struct TdwCameraMatrices<'a> {
     /// The avatar.
     pub avatar: &'a str,
     /// Its camera.
@@ -165,7 +165,7 @@ pub struct Camera<'a> {
 
 /// One of an avatar's cameras.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sensor<'a> {
+pub struct AvatarSensor<'a> {
     /// Its name.
     pub name: &'a str,
     /// Whether it takes pictures.
@@ -191,7 +191,7 @@ pub struct OnNavMesh {
 
 /// Which build it is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Version<'a> {
+pub struct VersionOutput<'a> {
     /// TDW's own version.
     pub tdw: &'a str,
     /// Unity's.
@@ -207,5 +207,5 @@ pub struct OutputError {
     /// The frame's id.
     pub id: String,
     /// Position and expected content.
-    pub source: Misread,
+    pub source: FlatBufferError,
 }

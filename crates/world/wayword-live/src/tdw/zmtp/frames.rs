@@ -3,7 +3,7 @@
 //! A message is a list of frames. A frame has one byte of flags (1: more frames follow, 2: long length, 4: a command),
 //! its length in 1 or 8 bytes, and its content.
 
-use super::{Peer, WireError};
+use super::{WireError, ZmtpPeer};
 use std::io::Write;
 
 /// Longest message that is accepted: a few pictures of 8192 x 4096 raw pixels.
@@ -14,13 +14,13 @@ const MAX_FRAMES: usize = 4096;
 const MAX_COMMANDS: usize = 64;
 
 /// The header of a frame.
-pub(super) struct Header {
+pub(super) struct FrameHeader {
     pub(super) command: bool,
     more: bool,
     length: u64,
 }
 
-impl Peer {
+impl ZmtpPeer {
     /// The next message without its envelope: everything after the empty frame that a REQ or REP socket puts first.
     ///
     /// # Errors
@@ -30,12 +30,12 @@ impl Peer {
         let mut in_envelope = true;
         let (mut left, mut commands) = (MAX_MESSAGE_BYTES, 0);
         loop {
-            let header = self.header()?;
-            let body = self.body(&header, left)?;
+            let header = self.read_header()?;
+            let body = self.read_body(&header, left)?;
             if header.command {
                 commands += 1;
                 if commands > MAX_COMMANDS {
-                    return Err(self.malformed(0, "a message", "more than 64 commands"));
+                    return Err(self.malformed_error(0, "a message", "more than 64 commands"));
                 }
                 continue;
             }
@@ -45,14 +45,14 @@ impl Peer {
                 false => frames.push(body),
             }
             if frames.len() > MAX_FRAMES {
-                return Err(self.malformed(0, "at most 4096 frames in a message", "more"));
+                return Err(self.malformed_error(0, "at most 4096 frames in a message", "more"));
             }
             if !header.more {
                 let whole = !in_envelope && !frames.is_empty();
                 return if whole {
                     Ok(frames)
                 } else {
-                    Err(self.malformed(0, "an empty frame and content", "not both"))
+                    Err(self.malformed_error(0, "an empty frame and content", "not both"))
                 };
             }
         }
@@ -78,33 +78,37 @@ impl Peer {
                 packet.extend_from_slice(frame);
                 continue;
             }
-            self.put(&packet, "sending")?;
+            self.write_bytes(&packet, "sending")?;
             packet.clear();
-            self.put(frame, "sending")?;
+            self.write_bytes(frame, "sending")?;
         }
-        self.put(&packet, "sending")?;
-        self.reader.get_mut().stream.flush().map_err(|source| WireError::of(source, "sending"))
+        self.write_bytes(&packet, "sending")?;
+        self.reader.get_mut().stream.flush().map_err(|source| WireError::from_io(source, "sending"))
     }
 
-    pub(super) fn header(&mut self) -> Result<Header, WireError> {
+    pub(super) fn read_header(&mut self) -> Result<FrameHeader, WireError> {
         let doing = "waiting for a message";
-        let [flags] = self.take(doing)?;
+        let [flags] = self.take_bytes(doing)?;
         if flags & !7 != 0 {
-            return Err(self.malformed(1, "the flags of a frame (0 to 7)", flags.to_string()));
+            return Err(self.malformed_error(1, "the flags of a frame (0 to 7)", flags.to_string()));
         }
         let length = if flags & 2 != 0 {
-            u64::from_be_bytes(self.take(doing)?)
+            u64::from_be_bytes(self.take_bytes(doing)?)
         } else {
-            let [length] = self.take(doing)?;
+            let [length] = self.take_bytes(doing)?;
             u64::from(length)
         };
-        Ok(Header { command: flags & 4 != 0, more: flags & 1 != 0, length })
+        Ok(FrameHeader { command: flags & 4 != 0, more: flags & 1 != 0, length })
     }
 
-    pub(super) fn body(&mut self, header: &Header, most: u64) -> Result<Vec<u8>, WireError> {
+    pub(super) fn read_body(&mut self, header: &FrameHeader, most: u64) -> Result<Vec<u8>, WireError> {
         if header.length > most {
             let found = format!("one of {} bytes", header.length);
-            return Err(self.malformed(8, "a frame that fits into the rest of 256 MiB (4 KiB for a command)", found));
+            return Err(self.malformed_error(
+                8,
+                "a frame that fits into the rest of 256 MiB (4 KiB for a command)",
+                found,
+            ));
         }
         self.take_long(header.length, "reading a message")
     }

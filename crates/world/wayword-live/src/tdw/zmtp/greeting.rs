@@ -1,15 +1,15 @@
 //! The greeting of two sockets: both send a signature and their revision of ZMTP, then continue in the older of the two
 //! revisions.
 
-use super::{Peer, Role, WireError};
+use super::{SocketRole, WireError, ZmtpPeer};
 
 /// As libzmq writes it, so that the oldest peers see a frame of length 1.
 const SIGNATURE: [u8; 10] = [0xff, 0, 0, 0, 0, 0, 0, 0, 1, 0x7f];
-const DOING: &str = "greeting";
+const GREETING_ACTION: &str = "greeting";
 /// Longest command that is read, bytes.
 const MAX_COMMAND_BYTES: u64 = 4096;
 
-impl Role {
+impl SocketRole {
     fn name(self) -> &'static str {
         match self {
             Self::Rep => "REP",
@@ -19,7 +19,7 @@ impl Role {
     }
 
     /// Its number in ZMTP 2.0.
-    fn number(self) -> u8 {
+    fn zmtp2_number(self) -> u8 {
         match self {
             Self::Rep => 4,
             #[cfg(feature = "stand-in")]
@@ -37,56 +37,60 @@ impl Role {
     }
 }
 
-pub(super) fn exchange(peer: &mut Peer, role: Role) -> Result<(), WireError> {
-    peer.put(&[&SIGNATURE[..], &[3]].concat(), DOING)?;
-    let theirs: [u8; 10] = peer.take(DOING)?;
+pub(super) fn exchange_greetings(peer: &mut ZmtpPeer, role: SocketRole) -> Result<(), WireError> {
+    peer.write_bytes(&[&SIGNATURE[..], &[3]].concat(), GREETING_ACTION)?;
+    let theirs: [u8; 10] = peer.take_bytes(GREETING_ACTION)?;
     if theirs[0] != 0xff || theirs[9] & 1 == 0 {
-        return Err(peer.malformed(10, "the signature of a ZeroMQ socket (ff .. 7f)", hex(&theirs)));
+        return Err(peer.malformed_error(10, "the signature of a ZeroMQ socket (ff .. 7f)", hex_text(&theirs)));
     }
-    match peer.take::<1>(DOING)? {
-        [0] => Err(peer.malformed(1, "ZMTP 2.0 or newer", "revision 0")),
-        [1 | 2] => second(peer, role),
-        _ => third(peer, role),
+    match peer.take_bytes::<1>(GREETING_ACTION)? {
+        [0] => Err(peer.malformed_error(1, "ZMTP 2.0 or newer", "revision 0")),
+        [1 | 2] => finish_zmtp2(peer, role),
+        _ => finish_zmtp3(peer, role),
     }
 }
 
 /// ZMTP 2.0: the kind of socket as a number, and an identity.
-fn second(peer: &mut Peer, role: Role) -> Result<(), WireError> {
-    peer.put(&[role.number(), 0, 0], DOING)?;
-    let [kind] = peer.take(DOING)?;
+fn finish_zmtp2(peer: &mut ZmtpPeer, role: SocketRole) -> Result<(), WireError> {
+    peer.write_bytes(&[role.zmtp2_number(), 0, 0], GREETING_ACTION)?;
+    let [kind] = peer.take_bytes(GREETING_ACTION)?;
     if role.talks_to().iter().all(|(_, number)| *number != kind) {
-        return Err(peer.malformed(1, "a socket that fits (REQ talks to REP)", format!("socket type {kind}")));
+        return Err(peer.malformed_error(1, "a socket that fits (REQ talks to REP)", format!("socket type {kind}")));
     }
-    let header = peer.header()?;
-    peer.body(&header, MAX_COMMAND_BYTES).map(drop)
+    let header = peer.read_header()?;
+    peer.read_body(&header, MAX_COMMAND_BYTES).map(drop)
 }
 
 /// ZMTP 3.0: the rest of the greeting, then READY from both.
-fn third(peer: &mut Peer, role: Role) -> Result<(), WireError> {
+fn finish_zmtp3(peer: &mut ZmtpPeer, role: SocketRole) -> Result<(), WireError> {
     let mut rest = [0; 53];
     rest[1..5].copy_from_slice(b"NULL");
-    peer.put(&rest, DOING)?;
-    let theirs: [u8; 53] = peer.take(DOING)?;
+    peer.write_bytes(&rest, GREETING_ACTION)?;
+    let theirs: [u8; 53] = peer.take_bytes(GREETING_ACTION)?;
     if theirs[1..21] != rest[1..21] {
-        return Err(peer.malformed(52, "the mechanism NULL", hex(&theirs[1..21])));
+        return Err(peer.malformed_error(52, "the mechanism NULL", hex_text(&theirs[1..21])));
     }
-    peer.put(&ready(role), DOING)?;
-    let header = peer.header()?;
+    peer.write_bytes(&ready_command(role), GREETING_ACTION)?;
+    let header = peer.read_header()?;
     if !header.command {
-        return Err(peer.malformed(1, "the command READY", "a message"));
+        return Err(peer.malformed_error(1, "the command READY", "a message"));
     }
-    let body = peer.body(&header, MAX_COMMAND_BYTES)?;
+    let body = peer.read_body(&header, MAX_COMMAND_BYTES)?;
     let kind = socket_type(&body).ok_or_else(|| {
-        peer.malformed(body.len() as u64, "the command READY with a Socket-Type", hex(&body[..body.len().min(24)]))
+        peer.malformed_error(
+            body.len() as u64,
+            "the command READY with a Socket-Type",
+            hex_text(&body[..body.len().min(24)]),
+        )
     })?;
     if role.talks_to().iter().all(|(name, _)| name.as_bytes() != kind) {
         let found = format!("a {} socket", String::from_utf8_lossy(&kind[..kind.len().min(16)]));
-        return Err(peer.malformed(body.len() as u64, "a socket that fits (REQ talks to REP)", found));
+        return Err(peer.malformed_error(body.len() as u64, "a socket that fits (REQ talks to REP)", found));
     }
     Ok(())
 }
 
-fn ready(role: Role) -> Vec<u8> {
+fn ready_command(role: SocketRole) -> Vec<u8> {
     let mut body = b"\x05READY".to_vec();
     for (name, value) in [("Socket-Type", role.name()), ("Identity", "")] {
         body.push(name.len() as u8);
@@ -112,6 +116,6 @@ fn socket_type(body: &[u8]) -> Option<&[u8]> {
     None
 }
 
-fn hex(bytes: &[u8]) -> String {
+fn hex_text(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect::<Vec<_>>().join(" ")
 }

@@ -16,7 +16,7 @@ use std::{
 
 /// Which end of the connection a socket is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Role {
+pub(crate) enum SocketRole {
     /// Answers: the controller.
     Rep,
     /// Asks: the build.
@@ -60,7 +60,7 @@ pub enum WireError {
 }
 
 impl WireError {
-    fn of(source: io::Error, doing: &'static str) -> Self {
+    fn from_io(source: io::Error, doing: &'static str) -> Self {
         match source.kind() {
             io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut => Self::Late { doing },
             io::ErrorKind::UnexpectedEof
@@ -74,54 +74,54 @@ impl WireError {
 
 /// A peer that has been greeted.
 #[derive(Debug)]
-pub(crate) struct Peer {
-    reader: BufReader<Timed>,
+pub(crate) struct ZmtpPeer {
+    reader: BufReader<DeadlineStream>,
     /// Bytes taken so far, for messages about them.
     taken: u64,
 }
 
 /// A stream that reads until a deadline, however slowly the bytes come. A plain read timeout starts anew with each byte.
 #[derive(Debug)]
-struct Timed {
+struct DeadlineStream {
     stream: TcpStream,
     deadline: Instant,
 }
 
-impl Timed {
-    fn left(&self) -> io::Result<Duration> {
+impl DeadlineStream {
+    fn time_left(&self) -> io::Result<Duration> {
         let left = self.deadline.saturating_duration_since(Instant::now());
         // For the system, a timeout of zero means "for ever".
         if left.is_zero() { Err(io::ErrorKind::TimedOut.into()) } else { Ok(left) }
     }
 }
 
-impl Read for Timed {
+impl Read for DeadlineStream {
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
-        let left = self.left()?;
+        let left = self.time_left()?;
         self.stream.set_read_timeout(Some(left))?;
         self.stream.read(into)
     }
 }
 
-impl Peer {
+impl ZmtpPeer {
     /// Exchanges greetings with the other end of a connection.
     ///
     /// # Errors
     /// When the other end is not a ZeroMQ socket of the fitting kind, or does not answer by the deadline.
-    pub(crate) fn greet(stream: TcpStream, role: Role, deadline: Instant) -> Result<Self, WireError> {
+    pub(crate) fn greet(stream: TcpStream, role: SocketRole, deadline: Instant) -> Result<Self, WireError> {
         let set_up = |stream: &TcpStream| {
             stream.set_nonblocking(false)?;
             stream.set_nodelay(true)
         };
-        set_up(&stream).map_err(|source| WireError::of(source, "setting up the connection"))?;
-        let reader = BufReader::with_capacity(64 << 10, Timed { stream, deadline });
+        set_up(&stream).map_err(|source| WireError::from_io(source, "setting up the connection"))?;
+        let reader = BufReader::with_capacity(64 << 10, DeadlineStream { stream, deadline });
         let mut peer = Self { reader, taken: 0 };
-        greeting::exchange(&mut peer, role)?;
+        greeting::exchange_greetings(&mut peer, role)?;
         Ok(peer)
     }
 
     /// Every read and write from now on ends at `deadline`.
-    pub(crate) fn until(&mut self, deadline: Instant) {
+    pub(crate) fn set_deadline(&mut self, deadline: Instant) {
         self.reader.get_mut().deadline = deadline;
     }
 
@@ -133,9 +133,9 @@ impl Peer {
             || (stream.set_read_timeout(Some(within)).is_ok() && stream.peek(&mut [0]).is_ok())
     }
 
-    fn take<const N: usize>(&mut self, doing: &'static str) -> Result<[u8; N], WireError> {
+    fn take_bytes<const N: usize>(&mut self, doing: &'static str) -> Result<[u8; N], WireError> {
         let mut bytes = [0; N];
-        self.reader.read_exact(&mut bytes).map_err(|source| WireError::of(source, doing))?;
+        self.reader.read_exact(&mut bytes).map_err(|source| WireError::from_io(source, doing))?;
         self.taken += N as u64;
         Ok(bytes)
     }
@@ -144,7 +144,7 @@ impl Peer {
     fn take_long(&mut self, length: u64, doing: &'static str) -> Result<Vec<u8>, WireError> {
         let mut bytes = Vec::with_capacity(length.min(1 << 20) as usize);
         let taken = (&mut self.reader).take(length).read_to_end(&mut bytes);
-        taken.map_err(|source| WireError::of(source, doing))?;
+        taken.map_err(|source| WireError::from_io(source, doing))?;
         self.taken += bytes.len() as u64;
         if (bytes.len() as u64) < length {
             return Err(WireError::Gone { doing });
@@ -152,16 +152,16 @@ impl Peer {
         Ok(bytes)
     }
 
-    fn put(&mut self, bytes: &[u8], doing: &'static str) -> Result<(), WireError> {
+    fn write_bytes(&mut self, bytes: &[u8], doing: &'static str) -> Result<(), WireError> {
         let timed = self.reader.get_mut();
-        let put = timed.left().and_then(|left| {
+        let put = timed.time_left().and_then(|left| {
             timed.stream.set_write_timeout(Some(left))?;
             io::Write::write_all(&mut timed.stream, bytes)
         });
-        put.map_err(|source| WireError::of(source, doing))
+        put.map_err(|source| WireError::from_io(source, doing))
     }
 
-    fn malformed(&self, back: u64, expected: &'static str, found: impl Into<String>) -> WireError {
+    fn malformed_error(&self, back: u64, expected: &'static str, found: impl Into<String>) -> WireError {
         WireError::Malformed { at: self.taken.saturating_sub(back), expected, found: found.into() }
     }
 }

@@ -12,7 +12,7 @@ const MAX_HEAD: u64 = 16 << 10;
 const MAX_BODY: u64 = 16 << 20;
 
 /// Reads a request, sends the answer, and closes the connection.
-pub(super) fn serve(stream: TcpStream, answer: impl FnOnce(&Value) -> Value) -> io::Result<()> {
+pub(super) fn serve_request(stream: TcpStream, answer: impl FnOnce(&Value) -> Value) -> io::Result<()> {
     stream.set_nonblocking(false)?;
     stream.set_read_timeout(Some(Duration::from_secs(10)))?;
     stream.set_write_timeout(Some(Duration::from_secs(10)))?;

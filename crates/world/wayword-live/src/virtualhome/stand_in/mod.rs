@@ -3,9 +3,9 @@
 mod home;
 mod http;
 
-use super::platform::homes;
-use crate::houses::{Houses, NotShown, ShownAs};
-use home::Home;
+use super::platform::home_names;
+use crate::houses::{NotShown, ShownAs, StandInHouses};
+use home::GeneratedHome;
 use serde_json::{Value, json};
 use std::{
     io,
@@ -19,43 +19,43 @@ use std::{
 };
 
 /// How often it checks whether it has to stop.
-const PAUSE: Duration = Duration::from_millis(5);
+const STOP_CHECK_INTERVAL: Duration = Duration::from_millis(5);
 
 /// A stand-in that runs in a thread of its own until it is dropped.
 #[derive(Debug)]
-pub struct StandIn {
+pub struct VirtualHomeStandIn {
     address: SocketAddr,
     stop: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
 }
 
-impl StandIn {
+impl VirtualHomeStandIn {
     /// Starts a stand-in that listens at an address; port 0 lets the system choose. Home `n` is the first generated
     /// house with one storey from seed `n + 1` on.
     ///
     /// # Errors
     /// When the port is taken.
     pub fn start(address: SocketAddr) -> io::Result<Self> {
-        Self::serve(address, Filmed::default())
+        Self::serve_homes(address, FilmedHome::default())
     }
 
     /// Starts a stand-in whose home 0 is the first of these houses, home 1 the next, and so on. It has no other homes.
     ///
     /// # Errors
     /// When the port is taken.
-    pub fn showing(address: SocketAddr, houses: Houses) -> io::Result<Self> {
-        Self::serve(address, Filmed { houses: Some(houses), ..Filmed::default() })
+    pub fn showing_houses(address: SocketAddr, houses: StandInHouses) -> io::Result<Self> {
+        Self::serve_homes(address, FilmedHome { houses: Some(houses), ..FilmedHome::default() })
     }
 
     /// Each house with the home that shows it.
     ///
     /// # Errors
     /// When there are more houses than VirtualHome has homes.
-    pub fn scenes(houses: &Houses) -> Result<Vec<ShownAs>, NotShown> {
-        houses.shown_as(homes())
+    pub fn shown_scenes(houses: &StandInHouses) -> Result<Vec<ShownAs>, NotShown> {
+        houses.shown_as(home_names())
     }
 
-    fn serve(address: SocketAddr, mut filmed: Filmed) -> io::Result<Self> {
+    fn serve_homes(address: SocketAddr, mut filmed: FilmedHome) -> io::Result<Self> {
         let listener = TcpListener::bind(address)?;
         listener.set_nonblocking(true)?;
         let address = listener.local_addr()?;
@@ -65,8 +65,8 @@ impl StandIn {
             while !stopped.load(Ordering::Relaxed) {
                 match listener.accept() {
                     // A request that breaks off gets no answer.
-                    Ok((stream, _)) => drop(http::serve(stream, |request| filmed.answer(request))),
-                    Err(_) => sleep(PAUSE),
+                    Ok((stream, _)) => drop(http::serve_request(stream, |request| filmed.answer_request(request))),
+                    Err(_) => sleep(STOP_CHECK_INTERVAL),
                 }
             }
         });
@@ -86,7 +86,7 @@ impl StandIn {
     }
 }
 
-impl Drop for StandIn {
+impl Drop for VirtualHomeStandIn {
     fn drop(&mut self) {
         self.stop.store(true, Ordering::Relaxed);
         self.thread.take().map(JoinHandle::join);
@@ -95,14 +95,14 @@ impl Drop for StandIn {
 
 /// The home that is shown, and the cameras in it.
 #[derive(Debug, Default)]
-struct Filmed {
+struct FilmedHome {
     /// The houses that it has; without them one for each number.
-    houses: Option<Houses>,
-    home: Option<Home>,
+    houses: Option<StandInHouses>,
+    home: Option<GeneratedHome>,
     cameras: Vec<Value>,
 }
 
-impl Filmed {
+impl FilmedHome {
     /// The seed of a home's house; `None` where this home does not exist.
     fn seed_of(&self, number: u64) -> Option<u64> {
         match &self.houses {
@@ -111,8 +111,8 @@ impl Filmed {
         }
     }
 
-    fn answer(&mut self, request: &Value) -> Value {
-        let done = self.act(request);
+    fn answer_request(&mut self, request: &Value) -> Value {
+        let done = self.perform_action(request);
         let (success, fields) =
             done.map_or((false, json!({ "message": "it cannot do that" })), |fields| (true, fields));
         json!({
@@ -125,7 +125,7 @@ impl Filmed {
     }
 
     /// The result of an action: a message, a value or a list; `None` where it fails.
-    fn act(&mut self, request: &Value) -> Option<Value> {
+    fn perform_action(&mut self, request: &Value) -> Option<Value> {
         let int = |n: usize| request["intParams"][n].as_u64();
         let text = || serde_json::from_str::<Value>(request["stringParams"][0].as_str()?).ok();
         match request["action"].as_str()? {
@@ -133,11 +133,11 @@ impl Filmed {
             "clear" => drop(self.home.as_ref()?),
             "idle" | "add_character" => {}
             "environment" => {
-                self.home = Some(Home::of(self.seed_of(int(0).unwrap_or(0))?));
+                self.home = Some(GeneratedHome::from_seed(self.seed_of(int(0).unwrap_or(0))?));
                 self.cameras.clear();
             }
-            "environment_graph" => return Some(json!({ "message": self.home.as_ref()?.graph().to_string() })),
-            "instance_colors" => return Some(json!({ "message": self.home.as_ref()?.colours().to_string() })),
+            "environment_graph" => return Some(json!({ "message": self.home.as_ref()?.graph_json().to_string() })),
+            "instance_colors" => return Some(json!({ "message": self.home.as_ref()?.colours_json().to_string() })),
             "camera_count" => return Some(json!({ "value": self.cameras.len() })),
             "add_camera" => self.cameras.push(text()?),
             "update_camera" => *self.cameras.get_mut(int(0)? as usize)? = text()?,
@@ -145,7 +145,7 @@ impl Filmed {
                 let camera = |index: &Value| self.cameras.get(index.as_u64()? as usize);
                 let cameras = request["intParams"].as_array()?.iter().map(camera);
                 let wanted = text()?;
-                let pictures = cameras.map(|camera| self.home.as_ref()?.picture(camera?, &wanted));
+                let pictures = cameras.map(|camera| self.home.as_ref()?.encode_picture(camera?, &wanted));
                 return Some(json!({ "message_list": pictures.collect::<Option<Vec<String>>>()? }));
             }
             _ => return None,

@@ -214,7 +214,7 @@ fn mutated(line: &str, seed: u64) -> String {
     use rand::Rng;
     let odd =
         ["null", "[]", "{}", "-1", "1e999", "\"\"", "\"../x\"", "true", "99999999999999999999", "\u{0}", "\n", "[[[[["];
-    let mut rng = wayword_core::rng(seed, &["mutation"]);
+    let mut rng = wayword_core::seeded_rng(seed, &["mutation"]);
     let mut chars: Vec<char> = line.chars().collect();
     for _ in 0..rng.random_range(1..4) {
         let at = rng.random_range(0..chars.len());

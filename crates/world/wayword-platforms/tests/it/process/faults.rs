@@ -42,7 +42,7 @@ fn a_child_that_ends_its_output_and_lives_on_is_killed() {
     let script = format!("read line; echo '{greeting}'; read line; echo tired >&2; exec >&-; sleep 1000");
     let options = ProcessOptions { arguments: vec!["-c".into(), script], ..ProcessOptions::new("sh") };
     let platform = ProcessPlatform::start(options, Arc::new(|_: &str| ())).unwrap();
-    let error = platform.scenes().unwrap_err().to_string();
+    let error = platform.list_scenes().unwrap_err().to_string();
     assert!(
         error.contains("closed its standard output, but is still running; its last error output: tired"),
         "{error}"
@@ -134,7 +134,8 @@ fn a_greeting_that_cannot_be_used_is_refused_at_once() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("world.json");
     std::fs::write(&file, r#"{"command": ["/nowhere/simulator"]}"#).unwrap();
-    let error = ProcessPlatform::start(ProcessOptions::read(&file).unwrap(), Arc::new(|_: &str| ())).err().unwrap();
+    let error =
+        ProcessPlatform::start(ProcessOptions::read_world_file(&file).unwrap(), Arc::new(|_: &str| ())).err().unwrap();
     let error = error.to_string();
     let field = ": field \"command\": the world program /nowhere/simulator cannot be started: ";
     assert!(error.starts_with(&format!("{}{field}", file.display())), "{error}");
@@ -164,5 +165,5 @@ fn broken_answers_are_errors_or_views_and_never_the_end() {
     assert!(refused > 50, "hardly anything was broken: {refused}");
     // The rest of the last child's output, still in the pipe, may make one more request fail.
     assert!((0..2).any(|_| look(&platform, "good").is_ok()));
-    assert_eq!(platform.scenes().unwrap().len(), 2);
+    assert_eq!(platform.list_scenes().unwrap().len(), 2);
 }

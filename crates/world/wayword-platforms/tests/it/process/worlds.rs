@@ -2,7 +2,7 @@
 
 use super::{actor, look, options, pid, scene, started};
 use std::{collections::BTreeSet, path::Path, sync::Arc};
-use wayword_core::{Gaze, Heading, ObjectId, PathRequest, Platform, ViewpointId};
+use wayword_core::{Heading, ObjectId, PathRequest, Platform, ViewGaze, ViewpointId};
 use wayword_platforms::ProcessPlatform;
 
 fn request() -> PathRequest {
@@ -13,17 +13,17 @@ fn request() -> PathRequest {
 fn a_world_is_listed_walked_and_seen() {
     let platform = started("behaves").unwrap();
     assert_eq!((platform.name(), platform.world().name.as_str()), ("process", "actor"));
-    assert_eq!(platform.scenes().unwrap(), [scene("bad"), scene("good")], "scenes are sorted");
+    assert_eq!(platform.list_scenes().unwrap(), [scene("bad"), scene("good")], "scenes are sorted");
     let good = scene("good");
-    let graph = platform.graph(&good).unwrap();
+    let graph = platform.graph_for_scene(&good).unwrap();
     assert_eq!((graph.len(), graph.edges().count()), (4, 3));
-    assert!(Arc::ptr_eq(&graph, &platform.graph(&good).unwrap()), "a scene's graph is asked for once");
+    assert!(Arc::ptr_eq(&graph, &platform.graph_for_scene(&good).unwrap()), "a scene's graph is asked for once");
     let path = platform.sample_path(&good, &request(), 3).unwrap();
     assert_eq!(path, platform.sample_path(&good, &request(), 3).unwrap());
     assert!(request().allows_length_of(&path));
     let view = look(&platform, "good").unwrap();
     let image = view.image.as_ref().unwrap();
-    assert_eq!((image.width_px(), image.height_px(), &image.rgb()[..3]), (32, 24, &[10, 200, 30][..]));
+    assert_eq!((image.width_px(), image.height_px(), &image.rgb_bytes()[..3]), (32, 24, &[10, 200, 30][..]));
     let labels = &view.ground_truth().unwrap().labels;
     assert_eq!((labels.len(), labels[0].name.as_str()), (1, "lamp"));
     assert!((labels[0].heading.rad() - libm::atan2(actor::LAMP[0], actor::LAMP[1])).abs() < 1e-12);
@@ -33,13 +33,13 @@ fn a_world_is_listed_walked_and_seen() {
 fn objects_are_named_and_found_by_labels_if_the_world_offers_neither() {
     let platform = started("behaves").unwrap();
     let (good, lamp) = (scene("good"), ObjectId::new("7").unwrap());
-    let graph = platform.graph(&good).unwrap();
-    let frame = graph.walk(&[ViewpointId::new("a").unwrap()], None).unwrap().remove(0);
+    let graph = platform.graph_for_scene(&good).unwrap();
+    let frame = graph.path_frames(&[ViewpointId::new("a").unwrap()], None).unwrap().remove(0);
     assert_eq!(platform.object_name(&good, &frame, &lamp).unwrap().as_deref(), Some("lamp"));
     assert_eq!(platform.object_name(&good, &frame, &ObjectId::new("8").unwrap()).unwrap(), None);
     let everywhere: BTreeSet<ViewpointId> = graph.viewpoints().cloned().collect();
     assert_eq!(platform.visible_from(&good, &lamp).unwrap(), Some(everywhere));
-    let view = platform.look_without_picture(&good, &frame, Gaze::quarter(Heading::NORTH)).unwrap();
+    let view = platform.look_without_picture(&good, &frame, ViewGaze::quarter_view(Heading::NORTH)).unwrap();
     assert!(view.image.is_none() && view.ground_truth().is_some());
 }
 

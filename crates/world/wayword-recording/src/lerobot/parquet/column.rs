@@ -1,6 +1,6 @@
 //! The values of a column in a row group, some rows at a time.
 
-use super::pages::Pages;
+use super::pages::ColumnPages;
 use parquet::{
     column::reader::{ColumnReader, ColumnReaderImpl, get_column_reader},
     data_type::{ByteArray, DataType},
@@ -13,10 +13,10 @@ use std::{
         atomic::{AtomicU64, Ordering::Relaxed},
     },
 };
-use wayword_core::contain::decoded;
+use wayword_core::contain::run_decoder;
 
 /// A column in a row group, with the position up to which it was read.
-pub(super) struct Column {
+pub(super) struct ParquetColumn {
     reader: ColumnReader,
     /// Number of values that pages announced since the last request.
     announced: Arc<AtomicU64>,
@@ -24,9 +24,9 @@ pub(super) struct Column {
 }
 
 /// Some rows of a column: whether each value begins a row, and the value, if there is one.
-pub(super) type Cells<T> = Box<dyn Iterator<Item = (bool, Option<T>)>>;
+pub(super) type ColumnCells<T> = Box<dyn Iterator<Item = (bool, Option<T>)>>;
 
-impl Column {
+impl ParquetColumn {
     /// Begins to read a column.
     ///
     /// # Errors
@@ -34,8 +34,8 @@ impl Column {
     pub(super) fn new(file: File, group: &RowGroupMetaData, leaf: usize) -> Result<Self, String> {
         let chunk = group.column(leaf);
         let announced = Arc::<AtomicU64>::default();
-        let pages = Pages::new(file, chunk, announced.clone())?;
-        let reader = decoded(|| Ok(get_column_reader(chunk.column_descr_ptr(), Box::new(pages))))?;
+        let pages = ColumnPages::new(file, chunk, announced.clone())?;
+        let reader = run_decoder(|| Ok(get_column_reader(chunk.column_descr_ptr(), Box::new(pages))))?;
         Ok(Self { reader, announced, max_definition: chunk.column_descr().max_def_level() })
     }
 
@@ -43,14 +43,14 @@ impl Column {
     ///
     /// # Errors
     /// When the file is broken.
-    pub(super) fn numbers(&mut self, rows: u64) -> Result<Cells<f64>, String> {
+    pub(super) fn next_numbers(&mut self, rows: u64) -> Result<ColumnCells<f64>, String> {
         self.announced.store(0, Relaxed);
         let max = self.max_definition;
         match &mut self.reader {
-            ColumnReader::Int32ColumnReader(reader) => cells(reader, rows, max, f64::from),
-            ColumnReader::Int64ColumnReader(reader) => cells(reader, rows, max, |value| value as f64),
-            ColumnReader::FloatColumnReader(reader) => cells(reader, rows, max, f64::from),
-            ColumnReader::DoubleColumnReader(reader) => cells(reader, rows, max, |value| value),
+            ColumnReader::Int32ColumnReader(reader) => read_cells(reader, rows, max, f64::from),
+            ColumnReader::Int64ColumnReader(reader) => read_cells(reader, rows, max, |value| value as f64),
+            ColumnReader::FloatColumnReader(reader) => read_cells(reader, rows, max, f64::from),
+            ColumnReader::DoubleColumnReader(reader) => read_cells(reader, rows, max, |value| value),
             _ => Err("holds no numbers".to_owned()),
         }
     }
@@ -59,12 +59,12 @@ impl Column {
     ///
     /// # Errors
     /// When the file is broken.
-    pub(super) fn bytes(&mut self) -> Result<Option<Option<ByteArray>>, String> {
+    pub(super) fn next_bytes(&mut self) -> Result<Option<Option<ByteArray>>, String> {
         self.announced.store(0, Relaxed);
         let ColumnReader::ByteArrayColumnReader(reader) = &mut self.reader else {
             return Err("holds no bytes".to_owned());
         };
-        let mut cells = cells(reader, 1, self.max_definition, |value| value)?;
+        let mut cells = read_cells(reader, 1, self.max_definition, |value| value)?;
         Ok(cells.next().map(|(_, value)| value))
     }
 
@@ -72,10 +72,10 @@ impl Column {
     ///
     /// # Errors
     /// When the file is broken.
-    pub(super) fn pass(&mut self, rows: u64) -> Result<(), String> {
+    pub(super) fn skip_rows(&mut self, rows: u64) -> Result<(), String> {
         self.announced.store(0, Relaxed);
         let rows = usize::try_from(rows).map_err(|error| error.to_string())?;
-        let passed = decoded(|| {
+        let passed = run_decoder(|| {
             let passed = match &mut self.reader {
                 ColumnReader::Int32ColumnReader(reader) => reader.skip_records(rows),
                 ColumnReader::Int64ColumnReader(reader) => reader.skip_records(rows),
@@ -90,15 +90,15 @@ impl Column {
     }
 }
 
-fn cells<T: DataType, V: 'static>(
+fn read_cells<T: DataType, V: 'static>(
     reader: &mut ColumnReaderImpl<T>,
     rows: u64,
     max_definition: i16,
     value: impl Fn(T::T) -> V + 'static,
-) -> Result<Cells<V>, String> {
+) -> Result<ColumnCells<V>, String> {
     let rows = usize::try_from(rows).map_err(|error| error.to_string())?;
     let (mut definitions, mut repetitions, mut values) = (Vec::new(), Vec::new(), Vec::new());
-    decoded(|| {
+    run_decoder(|| {
         let read = reader.read_records(rows, Some(&mut definitions), Some(&mut repetitions), &mut values);
         read.map_err(|error| error.to_string())
     })?;

@@ -6,7 +6,7 @@
 
 use super::{
     pages,
-    thrift::{self, Thrift},
+    thrift::{self, ThriftReader},
 };
 use parquet::{
     basic::{Repetition, Type as Physical},
@@ -18,9 +18,9 @@ use std::{
     io::{Read, Seek, SeekFrom},
     sync::Arc,
 };
-use wayword_core::contain::decoded;
+use wayword_core::contain::run_decoder;
 
-const MAGIC: &[u8; 4] = b"PAR1";
+const PARQUET_MAGIC: &[u8; 4] = b"PAR1";
 const MAX_FOOTER_BYTES: u64 = 64 << 20;
 /// Most nodes of a schema (columns and their groups), and deepest nesting.
 const MAX_COLUMNS: u64 = 100_000;
@@ -33,7 +33,7 @@ const MAX_ROWS_PER_BYTE: u64 = 16;
 ///
 /// # Errors
 /// When it is not a Parquet file, or contradicts itself or its length.
-pub(super) fn read(mut file: &File) -> Result<ParquetMetaData, String> {
+pub(super) fn read_footer(mut file: &File) -> Result<ParquetMetaData, String> {
     let wrong = |error: std::io::Error| error.to_string();
     let length = file.metadata().map_err(wrong)?.len();
     let end = length.checked_sub(8).ok_or("is too short for a Parquet file")?;
@@ -41,7 +41,7 @@ pub(super) fn read(mut file: &File) -> Result<ParquetMetaData, String> {
     let mut tail = [0; 8];
     file.read_exact(&mut tail).map_err(wrong)?;
     let [a, b, c, d, magic @ ..] = tail;
-    if magic != *MAGIC {
+    if magic != *PARQUET_MAGIC {
         return Err(format!("byte {}: is not a Parquet file, or only part of one: it does not end in PAR1", end + 4));
     }
     let size = u64::from(u32::from_le_bytes([a, b, c, d]));
@@ -51,12 +51,12 @@ pub(super) fn read(mut file: &File) -> Result<ParquetMetaData, String> {
     file.seek(SeekFrom::Start(start)).map_err(wrong)?;
     let mut bytes = Vec::new();
     file.take(size).read_to_end(&mut bytes).map_err(wrong)?;
-    decode(&bytes, length).map_err(|reason| format!("footer at byte {start}: {reason}"))
+    decode_footer(&bytes, length).map_err(|reason| format!("footer at byte {start}: {reason}"))
 }
 
-fn decode(footer: &[u8], file_bytes: u64) -> Result<ParquetMetaData, String> {
-    let root = schema(footer)?;
-    let about = decoded(|| {
+fn decode_footer(footer: &[u8], file_bytes: u64) -> Result<ParquetMetaData, String> {
+    let root = read_schema(footer)?;
+    let about = run_decoder(|| {
         let options = ParquetMetaDataOptions::new()
             .with_schema(Arc::new(SchemaDescriptor::new(Arc::new(root))))
             .with_column_stats_policy(ParquetStatisticsPolicy::SkipAll)
@@ -65,12 +65,12 @@ fn decode(footer: &[u8], file_bytes: u64) -> Result<ParquetMetaData, String> {
         let about = ParquetMetaDataReader::decode_metadata_with_options(footer, Some(&options));
         about.map_err(|error| error.to_string())
     })?;
-    check(&about, file_bytes)?;
+    check_lengths(&about, file_bytes)?;
     Ok(about)
 }
 
 /// Returns an error if the footer announces more than a file of this length can hold.
-fn check(about: &ParquetMetaData, file_bytes: u64) -> Result<(), String> {
+fn check_lengths(about: &ParquetMetaData, file_bytes: u64) -> Result<(), String> {
     let (mut rows, mut bytes) = (0_u64, 0_u64);
     for group in about.row_groups() {
         let more = u64::try_from(group.num_rows()).map_err(|_| "a row group has no valid number of rows")?;
@@ -80,7 +80,7 @@ fn check(about: &ParquetMetaData, file_bytes: u64) -> Result<(), String> {
             if chunk.file_path().is_some() {
                 return Err(wrong("lies in another file"));
             }
-            let place = pages::place(chunk).filter(|place| place.end <= file_bytes);
+            let place = pages::column_place(chunk).filter(|place| place.end <= file_bytes);
             let place = place.ok_or_else(|| wrong("lies outside the file"))?;
             bytes = bytes.saturating_add(place.end - place.start);
         }
@@ -96,20 +96,20 @@ fn check(about: &ParquetMetaData, file_bytes: u64) -> Result<(), String> {
 }
 
 /// The root of a footer's schema. All other fields are skipped, to check that the footer is well-formed up to its end.
-fn schema(footer: &[u8]) -> Result<Type, String> {
-    let mut thrift = Thrift::new(footer);
+fn read_schema(footer: &[u8]) -> Result<Type, String> {
+    let mut thrift = ThriftReader::new(footer);
     let (mut number, mut root) = (0, None);
-    while let Some(kind) = thrift.field(&mut number)? {
-        if (number, kind) != (2, thrift::LIST) {
-            thrift.pass(kind)?;
+    while let Some(kind) = thrift.next_field(&mut number)? {
+        if (number, kind) != (2, thrift::KIND_LIST) {
+            thrift.skip_value(kind)?;
             continue;
         }
-        let (elements, _) = thrift.list()?;
+        let (elements, _) = thrift.read_list()?;
         if elements > MAX_COLUMNS {
             return Err(format!("has more than {MAX_COLUMNS} columns"));
         }
-        let mut tree = Tree { thrift: &mut thrift, elements, names_bytes: 0 };
-        root = Some(tree.node(0, 0)?);
+        let mut tree = SchemaTree { thrift: &mut thrift, elements, names_bytes: 0 };
+        root = Some(tree.read_node(0, 0)?);
         if tree.elements > 0 {
             return Err("the schema has more columns than it says".to_owned());
         }
@@ -118,32 +118,32 @@ fn schema(footer: &[u8]) -> Result<Type, String> {
 }
 
 /// A schema that is being read.
-struct Tree<'t, 'a> {
-    thrift: &'t mut Thrift<'a>,
+struct SchemaTree<'t, 'a> {
+    thrift: &'t mut ThriftReader<'a>,
     /// Nodes that are still to be read.
     elements: u64,
     /// Bytes of all names from the root on, summed over the columns: each descriptor keeps its own copy of them.
     names_bytes: u64,
 }
 
-impl Tree<'_, '_> {
+impl SchemaTree<'_, '_> {
     /// The next node with everything below it. `depth` nodes are above it, and their names have `above_bytes` bytes.
-    fn node(&mut self, depth: usize, above_bytes: u64) -> Result<Type, String> {
+    fn read_node(&mut self, depth: usize, above_bytes: u64) -> Result<Type, String> {
         if depth > MAX_NESTING {
             return Err(format!("columns are nested more than {MAX_NESTING} deep"));
         }
         self.elements = self.elements.checked_sub(1).ok_or("the schema has fewer columns than it says")?;
         let (mut name, mut physical, mut repetition, mut children) = ("", None, Repetition::REQUIRED, 0);
         let mut number = 0;
-        while let Some(kind) = self.thrift.field(&mut number)? {
+        while let Some(kind) = self.thrift.next_field(&mut number)? {
             match (number, kind) {
-                (1, thrift::I32) => physical = Some(physical_of(self.thrift.number()?)?),
-                (3, thrift::I32) => repetition = repetition_of(self.thrift.number()?)?,
-                (4, thrift::BYTES) => {
-                    name = std::str::from_utf8(self.thrift.bytes()?).map_err(|_| "a column's name is not text")?;
+                (1, thrift::KIND_I32) => physical = Some(physical_of(self.thrift.read_number()?)?),
+                (3, thrift::KIND_I32) => repetition = repetition_of(self.thrift.read_number()?)?,
+                (4, thrift::KIND_BYTES) => {
+                    name = std::str::from_utf8(self.thrift.read_bytes()?).map_err(|_| "a column's name is not text")?;
                 }
-                (5, thrift::I32) => children = self.thrift.number()?,
-                _ => self.thrift.pass(kind)?,
+                (5, thrift::KIND_I32) => children = self.thrift.read_number()?,
+                _ => self.thrift.skip_value(kind)?,
             }
         }
         let names_bytes = above_bytes + name.len() as u64;
@@ -156,7 +156,7 @@ impl Tree<'_, '_> {
             let leaf = Type::primitive_type_builder(name, physical).with_repetition(repetition).with_length(0);
             return leaf.build().map_err(|error| error.to_string());
         }
-        let fields = (0..children).map(|_| self.node(depth + 1, names_bytes).map(Arc::new));
+        let fields = (0..children).map(|_| self.read_node(depth + 1, names_bytes).map(Arc::new));
         let fields = fields.collect::<Result<_, _>>()?;
         let group = Type::group_type_builder(name).with_fields(fields);
         let group = if depth > 0 { group.with_repetition(repetition) } else { group };

@@ -4,7 +4,7 @@
 //! decompresses gzip to any length. Five bytes of a broken header can keep it busy for minutes if they announce a long
 //! list in a field that it skips. So headers are read and pages are decompressed here, before the crate decodes them.
 
-use super::thrift::{self, Thrift};
+use super::thrift::{self, ThriftReader};
 use parquet::{
     basic::{CompressionCodec, Encoding},
     column::page::{Page, PageMetadata, PageReader},
@@ -36,7 +36,7 @@ const MAX_VALUES_PER_BYTE: u64 = 64;
 const MOST_VALUES: u64 = 64 << 20;
 
 /// The byte range of a column in its file; `None` if the numbers are impossible.
-pub(super) fn place(chunk: &ColumnChunkMetaData) -> Option<Range<u64>> {
+pub(super) fn column_place(chunk: &ColumnChunkMetaData) -> Option<Range<u64>> {
     let data = chunk.data_page_offset();
     // Some writers write 0 where there is no dictionary.
     let start = chunk.dictionary_page_offset().filter(|at| (1..data).contains(at)).unwrap_or(data);
@@ -45,7 +45,7 @@ pub(super) fn place(chunk: &ColumnChunkMetaData) -> Option<Range<u64>> {
 }
 
 /// The header of a page.
-struct Header {
+struct PageHeader {
     /// 0 is a page of values in the layout of version 1, 3 one of version 2; 2 is a dictionary.
     kind: i64,
     /// Length of the page in the file, bytes.
@@ -55,46 +55,46 @@ struct Header {
     folded: bool,
 }
 
-impl Header {
+impl PageHeader {
     /// Reads a header; also returns its length.
     fn read(bytes: &[u8]) -> Result<(Self, u64), String> {
-        let mut thrift = Thrift::new(bytes);
+        let mut thrift = ThriftReader::new(bytes);
         let mut header = Self { kind: -1, stored: 0, numbers: [-1; 6], folded: true };
         let mut number = 0;
-        while let Some(kind) = thrift.field(&mut number)? {
+        while let Some(kind) = thrift.next_field(&mut number)? {
             match (number, kind) {
-                (1, thrift::I32) => header.kind = thrift.number()?,
-                (3, thrift::I32) => {
-                    header.stored = u64::try_from(thrift.number()?).map_err(|_| "a page has no valid length")?;
+                (1, thrift::KIND_I32) => header.kind = thrift.read_number()?,
+                (3, thrift::KIND_I32) => {
+                    header.stored = u64::try_from(thrift.read_number()?).map_err(|_| "a page has no valid length")?;
                 }
-                (5 | 7 | 8, thrift::STRUCT) => header.read_numbers(&mut thrift)?,
-                _ => thrift.pass(kind)?,
+                (5 | 7 | 8, thrift::KIND_STRUCT) => header.read_numbers(&mut thrift)?,
+                _ => thrift.skip_value(kind)?,
             }
         }
-        Ok((header, (bytes.len() - thrift.rest().len()) as u64))
+        Ok((header, (bytes.len() - thrift.remaining_bytes().len()) as u64))
     }
 
-    fn read_numbers(&mut self, thrift: &mut Thrift<'_>) -> Result<(), String> {
+    fn read_numbers(&mut self, thrift: &mut ThriftReader<'_>) -> Result<(), String> {
         let mut number = 0;
-        while let Some(kind) = thrift.field(&mut number)? {
+        while let Some(kind) = thrift.next_field(&mut number)? {
             match (number, kind) {
-                (1..=6, thrift::I32) => self.numbers[number as usize - 1] = thrift.number()?,
-                (7, thrift::TRUE | thrift::FALSE) => self.folded = kind == thrift::TRUE,
-                _ => thrift.pass(kind)?,
+                (1..=6, thrift::KIND_I32) => self.numbers[number as usize - 1] = thrift.read_number()?,
+                (7, thrift::KIND_TRUE | thrift::KIND_FALSE) => self.folded = kind == thrift::KIND_TRUE,
+                _ => thrift.skip_value(kind)?,
             }
         }
         Ok(())
     }
 
     /// A field that is a count or a length.
-    fn count(&self, field: usize) -> Result<u32, String> {
+    fn count_at(&self, field: usize) -> Result<u32, String> {
         let number = self.numbers[field - 1];
         u32::try_from(number).map_err(|_| format!("a page has the invalid count {number}"))
     }
 
     /// The encoding of values. Delta encodings of texts are refused, because the crate reserves memory for any number of
     /// texts that a page announces.
-    fn encoding(&self, field: usize) -> Result<Encoding, String> {
+    fn encoding_at(&self, field: usize) -> Result<Encoding, String> {
         match self.numbers[field - 1] {
             0 => Ok(Encoding::PLAIN),
             2 => Ok(Encoding::PLAIN_DICTIONARY),
@@ -107,40 +107,40 @@ impl Header {
 }
 
 /// The pages of a column in a row group.
-pub(super) struct Pages {
+pub(super) struct ColumnPages {
     file: File,
     /// The bytes of the column that have not been read.
     place: Range<u64>,
     /// The header of the next page, if it has already been read.
-    header: Option<Header>,
+    header: Option<PageHeader>,
     codec: CompressionCodec,
     /// Number of values of the pages that were read since the counter was last 0.
     announced: Arc<AtomicU64>,
     max_announced: u64,
 }
 
-impl Pages {
+impl ColumnPages {
     /// The pages of a column. The numbers of values that they announce are added to `announced`.
     ///
     /// # Errors
     /// When the column has no valid place, or the file cannot be read.
     pub(super) fn new(file: File, chunk: &ColumnChunkMetaData, announced: Arc<AtomicU64>) -> Result<Self, String> {
-        let place = place(chunk).ok_or("has no valid place in the file")?;
+        let place = column_place(chunk).ok_or("has no valid place in the file")?;
         let length = file.metadata().map_err(|error| error.to_string())?.len();
         let max_announced = length.saturating_mul(MAX_VALUES_PER_BYTE).clamp(USUAL_VALUES, MOST_VALUES);
         Ok(Self { file, place, header: None, codec: chunk.compression_codec(), announced, max_announced })
     }
 
     /// Reads the next page's header and moves past it; `None` after the last page.
-    fn next_header(&mut self) -> Result<Option<Header>, String> {
+    fn next_header(&mut self) -> Result<Option<PageHeader>, String> {
         if let Some(header) = self.header.take() {
             return Ok(Some(header));
         }
         while !self.place.is_empty() {
             let wrong = |reason: String| format!("byte {}: not a page header: {reason}", self.place.start);
             let left = self.place.end - self.place.start;
-            let short = Header::read(&self.bytes(left.min(HEADER_BYTES[0]))?);
-            let read = short.or_else(|_| Header::read(&self.bytes(left.min(HEADER_BYTES[1]))?));
+            let short = PageHeader::read(&self.peek_bytes(left.min(HEADER_BYTES[0]))?);
+            let read = short.or_else(|_| PageHeader::read(&self.peek_bytes(left.min(HEADER_BYTES[1]))?));
             let (header, length) = read.map_err(wrong)?;
             if header.stored > left - length {
                 return Err(wrong(format!(
@@ -160,7 +160,7 @@ impl Pages {
     }
 
     /// The next bytes of the column.
-    fn bytes(&self, count: u64) -> Result<Vec<u8>, String> {
+    fn peek_bytes(&self, count: u64) -> Result<Vec<u8>, String> {
         let wrong = |error: std::io::Error| format!("byte {}: {error}", self.place.start);
         let mut file = &self.file;
         file.seek(SeekFrom::Start(self.place.start)).map_err(wrong)?;
@@ -173,17 +173,17 @@ impl Pages {
     }
 
     /// Reads the page after its header.
-    fn page(&mut self, header: &Header) -> Result<Page, String> {
-        let stored = self.bytes(header.stored)?;
+    fn read_page(&mut self, header: &PageHeader) -> Result<Page, String> {
+        let stored = self.peek_bytes(header.stored)?;
         self.place.start += header.stored;
-        let num_values = header.count(1)?;
+        let num_values = header.count_at(1)?;
         if header.kind == 2 {
-            let buf = unfolded(self.codec, stored, 0)?;
+            let buf = decompress_page(self.codec, stored, 0)?;
             // An entry takes at least four bytes in every type of column that is read here.
             if num_values as usize > buf.len() / 4 {
                 return Err(format!("a dictionary of {num_values} entries in {} bytes", buf.len()));
             }
-            let encoding = header.encoding(2)?;
+            let encoding = header.encoding_at(2)?;
             return Ok(Page::DictionaryPage { buf: buf.into(), num_values, encoding, is_sorted: false });
         }
         let values = u64::from(num_values);
@@ -193,24 +193,24 @@ impl Pages {
         }
         if header.kind == 0 {
             return Ok(Page::DataPage {
-                buf: unfolded(self.codec, stored, 0)?.into(),
+                buf: decompress_page(self.codec, stored, 0)?.into(),
                 num_values,
-                encoding: header.encoding(2)?,
+                encoding: header.encoding_at(2)?,
                 def_level_encoding: Encoding::RLE,
                 rep_level_encoding: Encoding::RLE,
                 statistics: None,
             });
         }
-        let (def_levels_byte_len, rep_levels_byte_len) = (header.count(5)?, header.count(6)?);
+        let (def_levels_byte_len, rep_levels_byte_len) = (header.count_at(5)?, header.count_at(6)?);
         // In version 2, levels are not compressed.
         let levels = usize::try_from(u64::from(def_levels_byte_len) + u64::from(rep_levels_byte_len));
         let levels = levels.ok().filter(|levels| *levels <= stored.len()).ok_or("levels are longer than their page")?;
         Ok(Page::DataPageV2 {
-            buf: if header.folded { unfolded(self.codec, stored, levels)? } else { stored }.into(),
+            buf: if header.folded { decompress_page(self.codec, stored, levels)? } else { stored }.into(),
             num_values,
-            encoding: header.encoding(4)?,
-            num_nulls: header.count(2)?,
-            num_rows: header.count(3)?,
+            encoding: header.encoding_at(4)?,
+            num_nulls: header.count_at(2)?,
+            num_rows: header.count_at(3)?,
             def_levels_byte_len,
             rep_levels_byte_len,
             is_compressed: false,
@@ -219,7 +219,7 @@ impl Pages {
     }
 }
 
-impl Iterator for Pages {
+impl Iterator for ColumnPages {
     type Item = Result<Page, ParquetError>;
 
     fn next(&mut self) -> Option<Self::Item> {
@@ -227,18 +227,18 @@ impl Iterator for Pages {
     }
 }
 
-impl PageReader for Pages {
+impl PageReader for ColumnPages {
     fn get_next_page(&mut self) -> Result<Option<Page>, ParquetError> {
         let header = self.next_header().map_err(ParquetError::General)?;
         let start = self.place.start;
-        let page = header.map(|header| self.page(&header)).transpose();
+        let page = header.map(|header| self.read_page(&header)).transpose();
         page.map_err(|reason| ParquetError::General(format!("page at byte {start}: {reason}")))
     }
 
     fn peek_next_page(&mut self) -> Result<Option<PageMetadata>, ParquetError> {
         self.header = self.next_header().map_err(ParquetError::General)?;
-        let about = |header: &Header| {
-            let values = header.count(1)? as usize;
+        let about = |header: &PageHeader| {
+            let values = header.count_at(1)? as usize;
             // Rows are only skipped in columns that do not repeat. There a page has as many rows as values, whatever
             // its header claims.
             let num_rows = (header.kind == 3).then_some(values);
@@ -256,7 +256,7 @@ impl PageReader for Pages {
 }
 
 /// A page's decompressed bytes. The first `front` bytes are not compressed.
-fn unfolded(codec: CompressionCodec, stored: Vec<u8>, front: usize) -> Result<Vec<u8>, String> {
+fn decompress_page(codec: CompressionCodec, stored: Vec<u8>, front: usize) -> Result<Vec<u8>, String> {
     if codec == CompressionCodec::UNCOMPRESSED {
         return Ok(stored);
     }

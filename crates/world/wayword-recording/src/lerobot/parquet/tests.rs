@@ -21,18 +21,18 @@ fn fixture(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/parquet").join(name).with_extension("parquet")
 }
 
-fn numbers(table: &Table, name: &str, rows: Range<u64>) -> Result<Vec<f64>, String> {
+fn numbers(table: &ParquetTable, name: &str, rows: Range<u64>) -> Result<Vec<f64>, String> {
     let mut numbers = Vec::new();
-    let read = table.numbers(name, rows, &mut |_, number| {
+    let read = table.read_numbers(name, rows, &mut |_, number| {
         numbers.push(number);
         Ok(())
     });
     read.map(|()| numbers).map_err(|error| error.to_string())
 }
 
-fn pictures(table: &Table, wanted: &[u64]) -> Result<Vec<(u64, Option<String>)>, String> {
+fn pictures(table: &ParquetTable, wanted: &[u64]) -> Result<Vec<(u64, Option<String>)>, String> {
     let mut pictures = Vec::new();
-    let read = table.bytes("picture", wanted, &mut |row, bytes| {
+    let read = table.read_bytes("picture", wanted, &mut |row, bytes| {
         pictures.push((row, bytes.map(|bytes| String::from_utf8_lossy(bytes).into_owned())));
         Ok(())
     });
@@ -50,8 +50,8 @@ fn expected(rows: Range<u64>, of: impl Fn(f64) -> f64) -> Vec<f64> {
 #[test]
 fn numbers_are_read_from_files_of_every_program() {
     for name in FILES {
-        let table = Table::open(&fixture(name)).unwrap();
-        assert_eq!(table.rows(), ROWS, "{name}");
+        let table = ParquetTable::open(&fixture(name)).unwrap();
+        assert_eq!(table.row_count(), ROWS, "{name}");
         for rows in [0..40, 0..1, 39..40, 7..33, 24..26, 12..12] {
             let read = |column| numbers(&table, column, rows.clone()).unwrap();
             assert_eq!(read("index"), expected(rows.clone(), |row| row), "{name}");
@@ -65,9 +65,9 @@ fn numbers_are_read_from_files_of_every_program() {
 #[test]
 fn lists_and_pictures_are_read_from_files_of_every_program() {
     for name in &FILES[..6] {
-        let table = Table::open(&fixture(name)).unwrap();
+        let table = ParquetTable::open(&fixture(name)).unwrap();
         for rows in [0..40, 0..1, 39..40, 7..33, 24..26] {
-            let read = table.lists("state", rows.clone(), 3, &[2, 1]).unwrap();
+            let read = table.read_lists("state", rows.clone(), 3, &[2, 1]).unwrap();
             let expected: Vec<f64> = rows.flat_map(|row| [row as f64 / 2.0, -(row as f64)]).collect();
             assert_eq!(read, expected, "{name}");
         }
@@ -80,13 +80,13 @@ fn lists_and_pictures_are_read_from_files_of_every_program() {
 
 #[test]
 fn columns_that_are_not_there_or_other_are_named() {
-    let table = Table::open(&fixture("pyarrow_none")).unwrap();
+    let table = ParquetTable::open(&fixture("pyarrow_none")).unwrap();
     assert!(numbers(&table, "nothing", 0..1).unwrap_err().contains("has no column \"nothing\""));
     assert!(numbers(&table, "state", 0..1).unwrap_err().contains("\"state\" is not of the expected type"));
-    assert!(table.lists("index", 0..1, 3, &[0]).unwrap_err().to_string().contains("expected type"));
-    let error = table.lists("state", 5..7, 2, &[0]).unwrap_err().to_string();
+    assert!(table.read_lists("index", 0..1, 3, &[0]).unwrap_err().to_string().contains("expected type"));
+    let error = table.read_lists("state", 5..7, 2, &[0]).unwrap_err().to_string();
     assert!(error.contains("row 0 is not a list of 2 numbers"), "{error}");
-    let error = table.lists("state", 5..7, 4, &[0]).unwrap_err().to_string();
+    let error = table.read_lists("state", 5..7, 4, &[0]).unwrap_err().to_string();
     assert!(error.contains("row 0 is not a list of 4 numbers"), "{error}");
 }
 
@@ -96,7 +96,7 @@ fn open_refuses_files_that_are_no_parquet() {
     let file = folder.path().join("x.parquet");
     let open = |bytes: &[u8]| {
         fs::write(&file, bytes).unwrap();
-        Table::open(&file).map(|table| table.rows()).map_err(|error| error.to_string())
+        ParquetTable::open(&file).map(|table| table.row_count()).map_err(|error| error.to_string())
     };
     assert!(open(b"PAR1").unwrap_err().contains("too short"));
     assert!(open(b"version https://git-lfs.github.com/spec/v1").unwrap_err().contains("does not end in PAR1"));
@@ -150,11 +150,11 @@ fn read_x(bytes: &[u8]) -> Result<Vec<f64>, String> {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("x.parquet");
     fs::write(&file, bytes).unwrap();
-    let table = Table::open(&file).map_err(|error| error.to_string())?;
-    let rows = 0..table.rows();
-    match table.leaves()[0].max_rep_level() {
+    let table = ParquetTable::open(&file).map_err(|error| error.to_string())?;
+    let rows = 0..table.row_count();
+    match table.leaf_columns()[0].max_rep_level() {
         0 => numbers(&table, "x", rows),
-        _ => table.lists("x", rows, 3, &[0]).map_err(|error| error.to_string()),
+        _ => table.read_lists("x", rows, 3, &[0]).map_err(|error| error.to_string()),
     }
 }
 
@@ -231,11 +231,11 @@ fn pages_may_not_announce_more_than_they_hold() {
 
 /// Everything that is read of a file.
 fn read_all(path: &Path) -> Result<u64, String> {
-    let table = Table::open(path).map_err(|error| error.to_string())?;
-    let rows = table.rows();
+    let table = ParquetTable::open(path).map_err(|error| error.to_string())?;
+    let rows = table.row_count();
     let read = [
         ["index", "same", "timestamp", "score"].map(|name| numbers(&table, name, 0..rows).map(|_| ())).to_vec(),
-        vec![table.lists("state", 3..rows, 3, &[0]).map(|_| ()).map_err(|error| error.to_string())],
+        vec![table.read_lists("state", 3..rows, 3, &[0]).map(|_| ()).map_err(|error| error.to_string())],
         vec![pictures(&table, &(0..rows.min(50)).collect::<Vec<_>>()).map(|_| ())],
     ];
     read.concat().into_iter().collect::<Result<(), String>>().map(|()| rows)

@@ -1,32 +1,32 @@
 //! Reads Thrift's compact protocol, the format of Parquet's metadata. Skipped values take no memory.
 
 /// Kinds of values, as numbers of the protocol.
-pub(super) const TRUE: u8 = 1;
-pub(super) const FALSE: u8 = 2;
-pub(super) const I32: u8 = 5;
-pub(super) const BYTES: u8 = 8;
-pub(super) const LIST: u8 = 9;
-pub(super) const STRUCT: u8 = 12;
+pub(super) const KIND_TRUE: u8 = 1;
+pub(super) const KIND_FALSE: u8 = 2;
+pub(super) const KIND_I32: u8 = 5;
+pub(super) const KIND_BYTES: u8 = 8;
+pub(super) const KIND_LIST: u8 = 9;
+pub(super) const KIND_STRUCT: u8 = 12;
 
 /// Deepest nesting: a footer's is 6 deep.
 const MAX_DEPTH: usize = 16;
 
 /// Bytes that are read one value after another.
-pub(super) struct Thrift<'a> {
+pub(super) struct ThriftReader<'a> {
     rest: &'a [u8],
 }
 
-impl<'a> Thrift<'a> {
+impl<'a> ThriftReader<'a> {
     pub(super) const fn new(bytes: &'a [u8]) -> Self {
         Self { rest: bytes }
     }
 
     /// The bytes that have not been read.
-    pub(super) const fn rest(&self) -> &'a [u8] {
+    pub(super) const fn remaining_bytes(&self) -> &'a [u8] {
         self.rest
     }
 
-    fn take(&mut self, count: u64) -> Result<&'a [u8], String> {
+    fn take_bytes(&mut self, count: u64) -> Result<&'a [u8], String> {
         let taken = usize::try_from(count).ok().and_then(|count| self.rest.split_at_checked(count));
         let (taken, rest) =
             taken.ok_or_else(|| format!("{count} bytes should follow, but only {} do", self.rest.len()))?;
@@ -34,14 +34,14 @@ impl<'a> Thrift<'a> {
         Ok(taken)
     }
 
-    fn byte(&mut self) -> Result<u8, String> {
-        Ok(self.take(1)?[0])
+    fn read_byte(&mut self) -> Result<u8, String> {
+        Ok(self.take_bytes(1)?[0])
     }
 
-    fn varint(&mut self) -> Result<u64, String> {
+    fn read_varint(&mut self) -> Result<u64, String> {
         let mut value = 0_u64;
         for shift in (0..64).step_by(7) {
-            let byte = self.byte()?;
+            let byte = self.read_byte()?;
             value |= u64::from(byte & 0x7f) << shift;
             if byte & 0x80 == 0 {
                 return Ok(value);
@@ -51,21 +51,21 @@ impl<'a> Thrift<'a> {
     }
 
     /// A whole number in zigzag form: its lowest bit is the sign.
-    pub(super) fn number(&mut self) -> Result<i64, String> {
-        let value = self.varint()?;
+    pub(super) fn read_number(&mut self) -> Result<i64, String> {
+        let value = self.read_varint()?;
         Ok((value >> 1) as i64 ^ -((value & 1) as i64))
     }
 
     /// Bytes or a text.
-    pub(super) fn bytes(&mut self) -> Result<&'a [u8], String> {
-        let length = self.varint()?;
-        self.take(length)
+    pub(super) fn read_bytes(&mut self) -> Result<&'a [u8], String> {
+        let length = self.read_varint()?;
+        self.take_bytes(length)
     }
 
     /// The beginning of a list: the number of its elements, and their kind. Each element takes at least a byte.
-    pub(super) fn list(&mut self) -> Result<(u64, u8), String> {
-        let header = self.byte()?;
-        let count = if header >> 4 == 15 { self.varint()? } else { u64::from(header >> 4) };
+    pub(super) fn read_list(&mut self) -> Result<(u64, u8), String> {
+        let header = self.read_byte()?;
+        let count = if header >> 4 == 15 { self.read_varint()? } else { u64::from(header >> 4) };
         if count > self.rest.len() as u64 {
             return Err(format!("{count} elements should follow in {} bytes", self.rest.len()));
         }
@@ -74,40 +74,40 @@ impl<'a> Thrift<'a> {
 
     /// The kind of the next field of a struct; `None` after the last. `number` is that of the last field and becomes
     /// that of this one.
-    pub(super) fn field(&mut self, number: &mut i16) -> Result<Option<u8>, String> {
-        let header = self.byte()?;
+    pub(super) fn next_field(&mut self, number: &mut i16) -> Result<Option<u8>, String> {
+        let header = self.read_byte()?;
         if header & 0x0f == 0 {
             return Ok(None);
         }
         *number = match header >> 4 {
-            0 => i16::try_from(self.number()?).map_err(|_| "a field has no valid number")?,
+            0 => i16::try_from(self.read_number()?).map_err(|_| "a field has no valid number")?,
             step => number.saturating_add(i16::from(step)),
         };
         Ok(Some(header & 0x0f))
     }
 
     /// Skips a field's value.
-    pub(super) fn pass(&mut self, kind: u8) -> Result<(), String> {
+    pub(super) fn skip_value(&mut self, kind: u8) -> Result<(), String> {
         self.pass_within(kind, 0)
     }
 
     fn pass_within(&mut self, kind: u8, depth: usize) -> Result<(), String> {
         match kind {
             // The value of a boolean field is in the kind itself.
-            TRUE | FALSE => Ok(()),
-            3 => self.byte().map(drop),
-            4..=6 => self.varint().map(drop),
-            7 => self.take(8).map(drop),
-            BYTES => self.bytes().map(drop),
-            LIST | 10 if depth < MAX_DEPTH => {
-                let (count, kind) = self.list()?;
+            KIND_TRUE | KIND_FALSE => Ok(()),
+            3 => self.read_byte().map(drop),
+            4..=6 => self.read_varint().map(drop),
+            7 => self.take_bytes(8).map(drop),
+            KIND_BYTES => self.read_bytes().map(drop),
+            KIND_LIST | 10 if depth < MAX_DEPTH => {
+                let (count, kind) = self.read_list()?;
                 // In a list a boolean is a byte.
-                let kind = if matches!(kind, TRUE | FALSE) { 3 } else { kind };
+                let kind = if matches!(kind, KIND_TRUE | KIND_FALSE) { 3 } else { kind };
                 (0..count).try_for_each(|_| self.pass_within(kind, depth + 1))
             }
-            STRUCT if depth < MAX_DEPTH => {
+            KIND_STRUCT if depth < MAX_DEPTH => {
                 let mut number = 0;
-                while let Some(kind) = self.field(&mut number)? {
+                while let Some(kind) = self.next_field(&mut number)? {
                     self.pass_within(kind, depth + 1)?;
                 }
                 Ok(())

@@ -1,11 +1,11 @@
 //! Measures how well the names agree with the plans of generated houses. The houses are saved with numbered rooms and
 //! read back. `WAYWORD_ROOM_HOUSES=40` measures more houses, and `--nocapture` prints the figures.
 
-use super::super::super::{SemanticFiles, Semantics, load};
-use crate::scene::Stage;
+use super::super::super::{SceneSemantics, SemanticFiles, load_semantics};
+use crate::scene::HabitatStage;
 use std::collections::BTreeMap;
-use wayword_core::{DVec3, Frame, Gaze, Heading, Platform, Pose};
-use wayword_house::{EYE_M, Ground, HouseOptions, HousePlatform, generate, save, viewpoint_graph};
+use wayword_core::{DVec3, Frame, Heading, Platform, Pose, ViewGaze};
+use wayword_house::{EYE_M, HouseGround, HouseOptions, HousePlatform, generate_house, save_house, viewpoint_graph};
 
 /// Distance of the places at which rooms are compared, metres.
 const APART_M: f64 = 0.6;
@@ -20,20 +20,20 @@ struct Count {
     wrong_inside: usize,
 }
 
-fn read_back(seed: u64) -> Semantics {
+fn read_back(seed: u64) -> SceneSemantics {
     let folder = tempfile::tempdir().unwrap();
-    let saved = save(&generate(seed), folder.path(), None).unwrap();
+    let saved = save_house(&generate_house(seed), folder.path(), None).unwrap();
     let [mesh, text] = saved.semantics;
     let files = SemanticFiles { painted: Some((mesh, text)), numbered: None };
-    load(&files, Stage::of(&saved.stage).unwrap().habitat_from_asset).unwrap().unwrap()
+    load_semantics(&files, HabitatStage::from_file(&saved.stage).unwrap().habitat_from_asset).unwrap().unwrap()
 }
 
 /// Eyes at the viewpoints of a house, and at regular places over the ground of all storeys.
 fn eyes(seed: u64) -> Vec<DVec3> {
-    let house = generate(seed);
-    let ground = Ground::of(&house);
+    let house = generate_house(seed);
+    let ground = HouseGround::for_house(&house);
     let graph = viewpoint_graph(&house, &ground).unwrap();
-    let mut eyes: Vec<DVec3> = graph.viewpoints().filter_map(|id| graph.position(id)).collect();
+    let mut eyes: Vec<DVec3> = graph.viewpoints().filter_map(|id| graph.position_of(id)).collect();
     for room in &house.rooms {
         let area = room.outline;
         let [x0, y0, x1, y1, z] = [area.x0, area.y0, area.x1, area.y1, room.base_cm()].map(|cm| f64::from(cm) / 100.0);
@@ -54,8 +54,8 @@ fn counted(seeds: std::ops::Range<u64>) -> BTreeMap<String, Count> {
         for eye in eyes(seed) {
             let headings = [0.0, 0.5, 1.0, 1.5].map(|turns| Heading::new(turns * std::f64::consts::PI).unwrap());
             let told = headings.map(|heading| {
-                let frame = Frame { pose: Pose::level(eye, heading), viewpoint: None, level: None };
-                let view = platform.look_without_picture(&scene, &frame, Gaze::quarter(heading)).unwrap();
+                let frame = Frame { pose: Pose::looking_level(eye, heading), viewpoint: None, level: None };
+                let view = platform.look_without_picture(&scene, &frame, ViewGaze::quarter_view(heading)).unwrap();
                 let room = view.ground_truth().unwrap().room.clone().unwrap();
                 // The house has another word for the same thing.
                 if room == "staircase" { "stairs".to_owned() } else { room }
@@ -63,7 +63,7 @@ fn counted(seeds: std::ops::Range<u64>) -> BTreeMap<String, Count> {
             // In an opening the house names the room ahead.
             let is_inside = told.iter().all(|room| *room == told[0]);
             for (heading, room) in headings.into_iter().zip(told) {
-                let (named, count) = (semantics.room(eye, heading), counts.entry(room.clone()).or_default());
+                let (named, count) = (semantics.room_at(eye, heading), counts.entry(room.clone()).or_default());
                 let is_right = named == Some(room.as_str());
                 count.all += 1;
                 count.named += usize::from(named.is_some());
