@@ -12,7 +12,7 @@ use std::{
     collections::BTreeSet,
     sync::{Arc, Mutex, PoisonError, atomic::AtomicBool},
 };
-use wayword_core::contain::is_contained;
+use wayword_core::contain_panics::is_contained;
 
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;

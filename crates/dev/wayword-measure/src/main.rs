@@ -4,8 +4,9 @@ use clap::{Parser, Subcommand};
 use std::{path::PathBuf, process::ExitCode};
 use wayword_fit::{fit_evidence, fit_follower};
 use wayword_quality::{
-    budget, claims, corrupt_people, corruptions, coverage, critics, detector, doubts, eye, found, house_views, judged,
-    people, reader_figures, reuse, sample, skeleton, stage, steps, study_coverage, sweep, tell_apart, texts, walker,
+    budget, checked_texts, claims, corrupt_people, corruption_findings, corruptions, coverage, critics, detector,
+    doubts, eye, house_views, people, reader_figures, reuse, sample, skeleton, stage, steps, study_coverage, sweep,
+    tell_apart, texts, walker,
 };
 use wayword_run::{error::CommandError, output::CommandOutput};
 
@@ -124,14 +125,14 @@ enum Measurement {
     #[command(mut_arg("file", |file| file.help("File of labelled texts, in HEAR's format")))]
     #[command(mut_arg("show", |show| show.help("Show at most this many findings about words that people called right")))]
     #[command(after_long_help = "")]
-    People(judged::JudgingArgs),
+    People(checked_texts::JudgingArgs),
     /// Make people's own texts wrong, without the words of the program's reader: a file of texts and its key.
     CorruptPeople(corrupt_people::CorruptPeopleArgs),
     /// Compare the findings of `wayword check` with the key of a corrupted file: corruptions found, and false alarms.
     #[command(mut_arg("file", |file| file.help("File of corrupted texts")))]
     #[command(mut_arg("show", |show| show.help("Show at most this many corruptions that were not found")))]
     #[command(after_long_help = "")]
-    Found(found::CorruptionFindingArgs),
+    Found(corruption_findings::CorruptionFindingArgs),
     /// Measure how far the follower can be believed: its calibration, wrong turns, other paths' texts, ambiguity.
     ReaderFigures(reader_figures::ReaderFiguresArgs),
     /// Count the words of people's texts that the follower would doubt, because a change would fit the walk better, by kind of change.
@@ -197,7 +198,7 @@ fn run_measurement(what: Measurement, output: &CommandOutput) -> Result<(), Comm
         Measurement::Steps(flags) => steps::replay_steps(&flags, output),
         Measurement::People(flags) => people::measure_people(flags, output),
         Measurement::CorruptPeople(flags) => corrupt_people::write_corruptions(&flags, output),
-        Measurement::Found(flags) => found::measure_corruption_findings(flags, output),
+        Measurement::Found(flags) => corruption_findings::measure_corruption_findings(flags, output),
         Measurement::ReaderFigures(flags) => reader_figures::measure_reader_figures(&flags, output),
         Measurement::Doubts(flags) => doubts::measure_doubts(&flags, output),
         Measurement::Sweep(flags) => sweep::sweep_settings(&flags, output),

@@ -51,7 +51,7 @@ fn budget_figures(stage: &MeasurementStage, paths: usize, max_usd: f64) -> Resul
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::made_up::TestBuildingFolder;
+    use crate::test_data::TestBuildingFolder;
 
     /// The cost of the calls in the ledger at 10 dollars per million tokens in and 20 out, in US dollars.
     fn worked_out(stage: &MeasurementStage) -> f64 {

@@ -3,11 +3,11 @@
 //! The claims are checked twice: against the platform's labels, and against captions. The captions come from a scripted model that
 //! hallucinates some objects and doubts others, so the truth about each claim is known.
 
-mod made;
+mod seeded;
 
 use crate::stage::{MeasuredWorldArgs, MeasurementStage};
-use made::{ClaimedPath, SeededClaim, SeededClaimKind};
 use rayon::prelude::*;
+use seeded::{ClaimedPath, SeededClaim, SeededClaimKind};
 use std::{collections::BTreeMap, path::PathBuf};
 use wayword_checks::{CheckSubject, Evidence, check_text};
 use wayword_core::{CheckKind, FrameObservation, InstructionStyle, Verdict, seeded_rng};
@@ -112,14 +112,14 @@ fn claims_job(stage: &MeasurementStage, flags: &ClaimsArgs) -> Result<RunJob, Co
 }
 
 fn count_verdicts(known: &[ClaimedPath], flags: &ClaimsArgs) -> (SeededClaimCounts, Vec<String>) {
-    let names = made::ClaimNamePool::from_paths(known);
+    let names = seeded::ClaimNamePool::from_paths(known);
     let style = InstructionStyle { name: "claims".to_owned(), ..InstructionStyle::default() };
     let mut counts = SeededClaimCounts::new();
     let mut shown: BTreeMap<(&str, SeededClaimKind), usize> = BTreeMap::new();
     let mut wrong = Vec::new();
     for one in known {
         let mut rng = seeded_rng(flags.world.seed, &["claims", &one.walk.path.id]);
-        for SeededClaim { kind, text } in made::make_claims(one, &names, flags.claims, &mut rng) {
+        for SeededClaim { kind, text } in seeded::make_claims(one, &names, flags.claims, &mut rng) {
             for (source, evidence) in [("labels", &one.labels), ("captions", &one.captions)] {
                 let checked = check_text(&text, CheckSubject::closed_world(evidence, &style, None));
                 let places = |check| matches!(check, CheckKind::Landmarks | CheckKind::Order | CheckKind::Turns);

@@ -128,7 +128,7 @@ impl LabelledRun {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::made_up::{test_instruction, test_path, test_record};
+    use crate::test_data::{test_instruction, test_path, test_record};
     use MentionKind::{Landmark, Room as InRoom, Turn};
     use wayword_checks::{EvidenceSource, FrameEvidence, SeenThing};
     use wayword_core::MentionKind;

@@ -10,13 +10,13 @@ use crate::{
 };
 use rand::seq::SliceRandom;
 use std::{collections::BTreeSet, sync::Arc};
-use wayword_checks::{CheckSubject, Evidence, check_text, detected::DetectorFigures};
+use wayword_checks::{CheckSubject, Evidence, check_text, detection::DetectorFigures};
 use wayword_core::{CheckKind, InstructionStyle, Path, Verdict, seeded_rng};
 use wayword_experiments::perceive::measure_detector;
 use wayword_language::lexicon::{find_thing, names_agree, normalise_name};
 use wayword_run::{
     error::CommandError,
-    looking_for::DetectorLookout,
+    lookout::DetectorLookout,
     output::CommandOutput,
     pipeline::{item_path, path_panoramas},
     plan::RunPlan,

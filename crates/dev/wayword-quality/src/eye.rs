@@ -105,7 +105,7 @@ impl NamedObjectCounts {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::made_up::{TestBuildingFolder, test_instruction};
+    use crate::test_data::{TestBuildingFolder, test_instruction};
     use wayword_run::{item::run_items, platforms};
     use wayword_synthesis::walk::ObservedWalk;
 

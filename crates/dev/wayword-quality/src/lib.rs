@@ -2,21 +2,19 @@
 //! and studies can be believed. `wayword-measure` is their command line.
 
 pub mod budget;
+pub mod checked_texts;
 pub mod claims;
 pub mod corrupt;
 pub mod corrupt_people;
+pub mod corruption_findings;
 pub mod corruptions;
 pub mod coverage;
 pub mod critics;
 pub mod detector;
 pub mod doubts;
 pub mod eye;
-pub mod found;
 pub mod house_views;
-pub mod judged;
 pub mod key;
-#[cfg(test)]
-mod made_up;
 pub mod people;
 pub mod reader_figures;
 pub mod reuse;
@@ -28,5 +26,7 @@ pub mod steps;
 pub mod study_coverage;
 pub mod sweep;
 pub mod tell_apart;
+#[cfg(test)]
+mod test_data;
 pub mod texts;
 pub mod walker;

@@ -56,7 +56,7 @@ impl ReuseFigures {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::made_up::TestBuildingFolder;
+    use crate::test_data::TestBuildingFolder;
     use wayword_run::item::run_items;
 
     #[test]

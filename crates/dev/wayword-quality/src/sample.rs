@@ -41,7 +41,7 @@ fn sample_lines(records: Vec<InstructionRecord>, originals: &OriginalTexts, coun
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::made_up::{test_instruction, test_record};
+    use crate::test_data::{test_instruction, test_record};
     use std::collections::BTreeSet;
 
     fn made(count: usize) -> Vec<InstructionRecord> {

@@ -63,7 +63,7 @@ fn skeletons_of(instruction: &Instruction) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::made_up::test_instruction;
+    use crate::test_data::test_instruction;
     use MentionKind::{Floor, Landmark, Room, Target, Turn};
 
     /// Six sentences: three with one skeleton, two with another, one with a third.

@@ -9,7 +9,7 @@ use wayword_run::{
     calls::CallSpending,
     error::CommandError,
     follow::KnownScenes,
-    looking_for::DetectorLookout,
+    lookout::DetectorLookout,
     output::CommandOutput,
     pipeline::{MadeItem, RunPlatform, make_item},
     plan::RunPlan,

@@ -191,7 +191,7 @@ fn settings_table(name: &str, tried: &[SweptSetting], items: usize, show: usize)
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::made_up::TestBuildingFolder;
+    use crate::test_data::TestBuildingFolder;
     use wayword_testkit::{SCAN, viewpoint_id};
 
     #[test]

@@ -1,7 +1,7 @@
 //! Runs `wayword compare` with an agent that uses a scripted language model. The model walks the shortest way, at random, or it breaks, so
 //! the right figures are known beforehand and the tools, the bounds and the table can be verified.
 
-use crate::judged::{text_item, write_items};
+use crate::checked_texts::{text_item, write_items};
 use std::{collections::BTreeMap, str::FromStr};
 use wayword_core::Heading;
 use wayword_experiments::{

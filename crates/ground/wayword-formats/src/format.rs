@@ -1,6 +1,6 @@
 //! The dataset formats, and how the format of a file is recognised.
 
-use crate::{Episode, FormatError, input, jsonl, r2r, reverie, rxr, strict::StrictJson, vlnce};
+use crate::{Episode, FormatError, input, jsonl, r2r, reverie, rxr, strict_json::StrictJson, vlnce};
 use serde::de::{Deserializer, IgnoredAny, MapAccess, SeqAccess, Visitor};
 use serde_json::{Map, Value};
 use std::{cell::RefCell, fmt, path::Path, str::FromStr};

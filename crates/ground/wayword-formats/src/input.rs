@@ -1,7 +1,9 @@
 //! Opens dataset files and reads them item by item. The files are untrusted: sizes and counts are bounded, and gzip is
 //! unpacked under the same bounds.
 
-use crate::{DatasetItem, FormatError, ItemPlace, WrongItem, limits, strict::StrictJson, tokens::BoundedTokenReader};
+use crate::{
+    DatasetItem, FormatError, ItemPlace, WrongItem, bounded_tokens::BoundedTokenReader, limits, strict_json::StrictJson,
+};
 use flate2::bufread::MultiGzDecoder;
 use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use serde_json::{Map, Value, de::IoRead};

@@ -4,7 +4,7 @@
 //! core instruction: `text`, `style`, `mentions`, `verdict`, `findings`, `provenance`, and `ambiguity` where it is
 //! known. `path_id` names the path in its dataset, where several items may share it. Unknown fields are kept.
 
-use crate::{DatasetItem, Episode, FormatError, input, item, limits, output, tally::ReadTally};
+use crate::{DatasetItem, Episode, FormatError, input, item, limits, output, read_tally::ReadTally};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use serde_json::{Map, Value};
 use std::{

@@ -6,11 +6,12 @@
 //!
 //! Architecture invariant: this crate depends on no platform, model or network.
 
+mod bounded_tokens;
 mod episode;
 mod error;
 mod format;
 pub mod habitat;
-pub mod hear;
+pub mod hear_annotations;
 mod input;
 mod item;
 pub mod jsonl;
@@ -19,15 +20,14 @@ mod matterport;
 mod official;
 mod output;
 pub mod r2r;
+mod read_tally;
 pub mod reverie;
 pub mod rxr;
 mod splits;
-mod strict;
+mod strict_json;
 pub mod submission;
 #[cfg(feature = "parquet")]
 pub mod table;
-mod tally;
-mod tokens;
 pub mod trajectories;
 pub mod vlnce;
 pub mod vlnce_actions;

@@ -2,7 +2,7 @@
 //!
 //! Fields: `distance`, `scan`, `path_id`, `path`, `heading`, `instructions`. `distance` is kept as unknown fields are.
 
-use crate::{Episode, FormatError, input, matterport, output, tally::ReadTally};
+use crate::{Episode, FormatError, input, matterport, output, read_tally::ReadTally};
 use matterport::PathNumbers;
 use serde_json::{Map, Value};
 use std::{collections::BTreeMap, path::Path};

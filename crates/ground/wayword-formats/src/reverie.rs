@@ -3,7 +3,7 @@
 //! Fields: `id` ("path_objId"), `scan`, `path_id`, `path`, `objId`, `heading`, `instructions`. The first release adds
 //! `distance`, `ix` and `instructions_l` (R2R's text); they are kept as unknown fields are.
 
-use crate::{Episode, FormatError, input, item, matterport, output, tally::ReadTally};
+use crate::{Episode, FormatError, input, item, matterport, output, read_tally::ReadTally};
 use matterport::PathNumbers;
 use serde_json::{Map, Value};
 use std::path::Path;

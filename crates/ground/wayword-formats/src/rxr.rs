@@ -3,7 +3,7 @@
 //! Fields: `split`, `instruction_id`, `annotator_id`, `language`, `path_id`, `scan`, `path`, `heading`, `instruction`,
 //! `timed_instruction` (`word`, and where known `start_time`, `end_time`), `edit_distance`.
 
-use crate::{DatasetItem, Episode, FormatError, input, limits, matterport, output, tally::ReadTally};
+use crate::{DatasetItem, Episode, FormatError, input, limits, matterport, output, read_tally::ReadTally};
 use matterport::{FreeNumbers, PathNumbers, number_of};
 use serde_json::{Map, Value, json};
 use std::{collections::BTreeSet, path::Path};

@@ -14,7 +14,7 @@ use crate::{
     DatasetItem, Episode, FormatError,
     habitat::{habitat_from_heading, habitat_from_wayword, heading_from_habitat, wayword_from_habitat},
     input, limits, output,
-    tally::ReadTally,
+    read_tally::ReadTally,
     vocabulary::TokenVocabulary,
 };
 use serde_json::{Map, Value, json};

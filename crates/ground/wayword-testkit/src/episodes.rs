@@ -1,7 +1,7 @@
 //! Ten episodes in the made-up building: paths with instructions in the style of REVERIE and R2R, and the two JSON files that
 //! hold them.
 
-use crate::plan::{SCAN, viewpoint_id};
+use crate::test_house::{SCAN, viewpoint_id};
 use serde_json::{Value, json};
 
 struct TestHouseEpisode {

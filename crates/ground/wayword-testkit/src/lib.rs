@@ -6,23 +6,23 @@
 //! way that real services fail; [`PlayedDetector`] detects things by script; [`PostgresServer`] starts a PostgreSQL server.
 //! [`documents`] extracts the commands that the repository's documents ask their readers to type.
 
-mod boxes;
 pub mod documents;
 mod episodes;
 mod house_file;
-mod pictures;
-mod plan;
 mod played_detector;
 mod postgres;
 pub mod provider;
 pub mod resources;
+mod reverie_boxes;
+mod skyboxes;
+mod test_house;
 
 use serde_json::{Value, json};
 use std::{fs, io, path::Path};
 
-pub use plan::{SCAN, viewpoint_id};
 pub use played_detector::PlayedDetector;
 pub use postgres::PostgresServer;
+pub use test_house::{SCAN, viewpoint_id};
 
 /// Writes the building below `data`, laid out as a user's Matterport3D and REVERIE folders are:
 /// `matterport/connectivity`, `matterport/v1/scans`, `reverie` (boxes, `objpos.json`, `REVERIE_val_seen.json`) and
@@ -38,9 +38,9 @@ pub fn write_building(data: &Path) -> io::Result<()> {
     write_file(&segmentations, "panorama_to_region.txt", panorama_to_region())?;
     write_file(&segmentations, &format!("{SCAN}.house"), house_file::house_file_text())?;
     let reverie = data.join("reverie");
-    for (index, _) in plan::VIEWPOINTS.iter().enumerate() {
+    for (index, _) in test_house::VIEWPOINTS.iter().enumerate() {
         let file = format!("{SCAN}_{}.json", viewpoint_id(index));
-        write_file(&reverie.join("BBox"), &file, boxes::box_file(index).to_string())?;
+        write_file(&reverie.join("BBox"), &file, reverie_boxes::box_file(index).to_string())?;
     }
     write_file(&reverie, "objpos.json", object_positions().to_string())?;
     write_file(&reverie, "REVERIE_val_seen.json", episodes::reverie_file().to_string())?;
@@ -67,13 +67,13 @@ pub fn write_distinct_skyboxes(data: &Path) -> io::Result<()> {
 
 fn write_skyboxes_marked(data: &Path, mark: impl Fn(usize) -> u8) -> io::Result<()> {
     let folder = data.join(format!("matterport/v1/scans/{SCAN}/matterport_skybox_images"));
-    for (index, _) in plan::VIEWPOINTS.iter().enumerate() {
-        write_file(&folder, &format!("{}_skybox_small.jpg", viewpoint_id(index)), pictures::skybox_jpeg(mark(index))?)?;
+    for (index, _) in test_house::VIEWPOINTS.iter().enumerate() {
+        write_file(&folder, &format!("{}_skybox_small.jpg", viewpoint_id(index)), skyboxes::skybox_jpeg(mark(index))?)?;
     }
     Ok(())
 }
 
-pub use pictures::wall_colour;
+pub use skyboxes::wall_colour;
 
 fn write_file(folder: &Path, name: &str, contents: impl AsRef<[u8]>) -> io::Result<()> {
     fs::create_dir_all(folder)?;
@@ -81,11 +81,13 @@ fn write_file(folder: &Path, name: &str, contents: impl AsRef<[u8]>) -> io::Resu
 }
 
 fn connectivity_file() -> Value {
-    let count = plan::VIEWPOINTS.len() + 1;
-    let mut items: Vec<Value> = plan::VIEWPOINTS
+    let count = test_house::VIEWPOINTS.len() + 1;
+    let mut items: Vec<Value> = test_house::VIEWPOINTS
         .iter()
         .enumerate()
-        .map(|(index, viewpoint)| connectivity_item(index, plan::camera_position(viewpoint).to_array(), true, count))
+        .map(|(index, viewpoint)| {
+            connectivity_item(index, test_house::camera_position(viewpoint).to_array(), true, count)
+        })
         .collect();
     // A viewpoint that is not included: every real file has some.
     items.push(connectivity_item(count - 1, [5.0, 4.0, 1.5], false, count));
@@ -93,7 +95,7 @@ fn connectivity_file() -> Value {
 }
 
 fn connectivity_item(index: usize, [x, y, z]: [f64; 3], included: bool, count: usize) -> Value {
-    let open: Vec<bool> = (0..count).map(|other| plan::are_joined(index, other)).collect();
+    let open: Vec<bool> = (0..count).map(|other| test_house::are_joined(index, other)).collect();
     json!({
         "image_id": viewpoint_id(index),
         // The skybox's axes: x east, y down, z north.
@@ -101,22 +103,22 @@ fn connectivity_item(index: usize, [x, y, z]: [f64; 3], included: bool, count: u
         "included": included,
         "visible": open,
         "unobstructed": open,
-        "height": plan::CAMERA_HEIGHT_M,
+        "height": test_house::CAMERA_HEIGHT_M,
     })
 }
 
 fn panorama_to_region() -> String {
-    let line = |(index, viewpoint): (usize, &plan::TestHouseViewpoint)| {
-        format!("{index} {} {} {}\n", viewpoint_id(index), viewpoint.room, plan::ROOMS[viewpoint.room].letter)
+    let line = |(index, viewpoint): (usize, &test_house::TestHouseViewpoint)| {
+        format!("{index} {} {} {}\n", viewpoint_id(index), viewpoint.room, test_house::ROOMS[viewpoint.room].letter)
     };
-    plan::VIEWPOINTS.iter().enumerate().map(line).collect()
+    test_house::VIEWPOINTS.iter().enumerate().map(line).collect()
 }
 
 fn object_positions() -> Value {
-    let centres = plan::OBJECTS
+    let centres = test_house::OBJECTS
         .iter()
         .enumerate()
-        .map(|(id, object)| (id.to_string(), json!(plan::object_centre(object).to_array())));
+        .map(|(id, object)| (id.to_string(), json!(test_house::object_centre(object).to_array())));
     let centres: serde_json::Map<String, Value> = centres.collect();
     json!({ SCAN: centres })
 }

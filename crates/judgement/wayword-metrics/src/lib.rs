@@ -7,15 +7,16 @@
 mod bootstrap;
 pub mod captions;
 mod correlation;
+mod hashed_words;
 mod mcnemar;
-pub mod pictures;
+pub mod picture_scores;
 mod similarity;
 mod study;
 mod trajectory;
-mod words;
 
 pub use bootstrap::{MeanEstimate, clustered_interval, clustered_interval_of, percentile_interval};
 pub use correlation::{kendall_tau_b, pearson_correlation, spearman_correlation};
+pub use hashed_words::HashedWordEncoder;
 pub use mcnemar::McNemar;
 pub use similarity::{ItemVectors, ResamplingOptions, SetSimilarity, compare_sets};
 pub use study::{
@@ -28,4 +29,3 @@ pub use trajectory::{
     AgentTrajectory, DistanceAtlas, EpisodeDemand, EpisodeScorer, SceneDistances, SuccessOutcome, TargetGrounding,
     TrajectoryError, TrajectoryMetric, TrajectoryScore, TrajectorySuccessRule, find_problems, score_trajectory,
 };
-pub use words::HashedWordEncoder;

@@ -6,7 +6,7 @@
 //! Architecture invariants: an async runtime lives in the folder `site` alone, and no page contains the name of a goal, a path, a scene
 //! or a condition, because a participant could guess from it which text is expected to be the better one.
 
-mod office;
+mod commands;
 pub mod results;
 mod site;
 mod store;

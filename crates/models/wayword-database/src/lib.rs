@@ -7,15 +7,15 @@
 //! Statements may be sent twice: a connection can be lost after the server has carried one out. So callers write
 //! idempotent statements: the second time, they change no row.
 
+mod database_name;
 mod error;
-mod name;
 mod password;
 mod pool;
 mod tables;
 mod tls;
 
+pub use database_name::PostgresDatabase;
 pub use error::DatabaseError;
-pub use name::PostgresDatabase;
 pub use pool::{ConnectionPool, PooledConnection};
 pub use postgres;
 pub use tables::{SchemaTables, prepare_tables};

@@ -15,14 +15,14 @@
 
 mod budget;
 mod call;
+mod call_context;
 mod checksum;
 mod claim;
 mod disk;
 mod error;
 mod flight;
 mod ledger;
-mod occasion;
-mod place;
+mod location;
 mod queries;
 mod rate;
 mod recording;
@@ -33,11 +33,11 @@ mod store;
 
 pub use budget::{RequestRefusedError, RunLimits};
 pub use call::{CallAnswer, CallKey, LedgerEntry, ModelCall};
+pub use call_context::CallContext;
 pub use disk::network_at;
 pub use error::LedgerError;
 pub use ledger::Ledger;
-pub use occasion::CallContext;
-pub use place::LedgerLocation;
+pub use location::LedgerLocation;
 pub use queries::{CostGrouping, CostLine, LedgerFilter, RunSpending};
 pub use rate::ProviderRates;
 pub use run::{CallAttempts, LedgerRun, OnceError, RunTotals};

@@ -1,9 +1,9 @@
 //! Turns instructions into the token ids that navigation agents were trained on. The data loaders of VLN-DUET and
 //! VLN-HAMT read instructions in this form.
 
-use crate::{LocalError, text::TextTokenizer};
+use crate::{LocalError, tokenizer::TextTokenizer};
 use std::path::Path;
-use wayword_core::contain::run_decoder;
+use wayword_core::contain_panics::run_decoder;
 
 /// The most ids of an instruction that these agents read, with the first and the last token.
 const MAX_INSTRUCTION_IDS: usize = 512;

@@ -4,12 +4,12 @@ use crate::{
     LocalError, ModelDevice, WeightPrecision,
     blip::{BlipCaptioner, BlipVqa},
     blip2::Blip2Model,
+    call_ledger::LocalModel,
     detectors::{DetectorCheckpoint, LocalDetector},
-    eyes::{Blip2Eye, BlipEye, PictureModel},
     hub::{DownloadProgress, ModelFolder, ModelHub, ModelName, NeededFiles},
     json,
-    kept::LocalModel,
     memory::{self, MemoryBudget},
+    picture_models::{Blip2Eye, BlipEye, PictureModel},
 };
 use serde::Deserialize;
 use std::{

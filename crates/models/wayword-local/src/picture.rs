@@ -4,10 +4,10 @@
 //! gives other answers to slightly different pixels.
 
 mod config;
-mod edges;
+mod padded;
 pub(crate) mod resample;
 
-pub(crate) use edges::PaddedPictureProcessor;
+pub(crate) use padded::PaddedPictureProcessor;
 
 use crate::{LocalError, ModelDevice};
 use candle_core::Tensor;

@@ -6,8 +6,8 @@
 
 use crate::{
     QueueError,
-    done::{from_file, to_bytes},
     folder::remove_if_there,
+    marks::{from_file, to_bytes},
     put_new, put_whole,
 };
 use serde::{Deserialize, Serialize};

@@ -10,26 +10,26 @@
 mod board;
 #[cfg(feature = "cloud")]
 pub mod cloud;
-mod done;
 mod error;
 mod folder;
 mod heartbeat;
 pub mod launch;
+mod marks;
 mod plan;
 mod protocol;
 #[cfg(feature = "postgres")]
 mod queue;
 mod shard;
-mod work;
+mod worker_loop;
 
 pub use board::{ChunkBoard, ChunkClaim, RemainingChunks};
-pub use done::{ChunkRecord, chunk_folder, dead_of, dead_path, done_of, done_path, failing_chunks, reopen_chunks};
 pub use error::QueueError;
 pub use folder::{put_new, put_whole, sync_tree};
 pub use heartbeat::{HEARTBEAT_LEASE, HeartbeatEntry, HeartbeatThread, WorkerHeartbeat, read_heartbeats, worker_name};
+pub use marks::{ChunkRecord, chunk_folder, dead_of, dead_path, done_of, done_path, failing_chunks, reopen_chunks};
 pub use plan::{ChunkPlan, PLAN_FILE as PLAN, WORKERS_FILE};
 pub use protocol::{ChunkRow, ChunkState, MAX_CHUNK_TRIES};
 #[cfg(feature = "postgres")]
 pub use queue::{ChunkQueue, QUEUE_TABLES, QueueStatus, QueueWorker};
 pub use shard::{ShardBoard, ShardPart};
-pub use work::{ChunkOutcome, WorkSummary, work_chunks};
+pub use worker_loop::{ChunkOutcome, WorkSummary, work_chunks};

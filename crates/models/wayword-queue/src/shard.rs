@@ -2,7 +2,7 @@
 
 use crate::{
     ChunkBoard, ChunkClaim, ChunkPlan, ChunkRecord, HeartbeatThread, MAX_CHUNK_TRIES, QueueError, RemainingChunks,
-    done::{chunk_folder, dead_path, done_path, from_file, to_bytes},
+    marks::{chunk_folder, dead_path, done_path, from_file, to_bytes},
     put_new, put_whole,
 };
 use serde::{Deserialize, Serialize};

@@ -14,4 +14,4 @@ pub mod similarity;
 #[cfg(feature = "study")]
 pub mod study;
 pub mod study_args;
-pub mod texts;
+pub mod text_sets;

@@ -6,7 +6,7 @@ use wayword_checks::{CheckWorld, TextFindings};
 use wayword_core::{TextAmbiguity, TextDoubt, doubt::apart_in};
 use wayword_follower::{
     FeatureWeights,
-    doubt::{DoubtBounds, find_doubts as by_changes, is_too_long, said},
+    doubt::{DoubtBounds, find_doubts as by_changes, from_checks, is_too_long},
     route::UnfollowedReason,
 };
 
@@ -29,14 +29,14 @@ pub(crate) fn find_doubts(
 ) -> TextDoubts {
     let followed =
         followed.map_or(Err("the texts were not to be followed"), |followed| followed.as_ref().map_err(|why| *why));
-    let by_checks = || said::doubts_from_findings(&checked.findings);
+    let by_checks = || from_checks::doubts_from_findings(&checked.findings);
     let read = followed.and_then(|followed| Ok((followed, read_followable(text, tag)?)));
     let (doubts, unfollowed) = match read {
         Ok((followed, (guide, reading))) => {
             let found = (&DoubtBounds::default(), &checked.findings[..]);
             let changes = || by_changes(text, &guide, followed.known_path(), FeatureWeights::fitted(), found);
             let mut doubts = if checked.world == CheckWorld::Open { changes() } else { by_checks() };
-            let of_ambiguity = |told| said::doubts_from_ambiguity(text, &guide, &reading, told);
+            let of_ambiguity = |told| from_checks::doubts_from_ambiguity(text, &guide, &reading, told);
             doubts.extend(ambiguity.into_iter().flat_map(of_ambiguity));
             (doubts, is_too_long(&guide).then(|| UnfollowedReason::TooManySteps.reason_words()))
         }

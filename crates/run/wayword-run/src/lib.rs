@@ -3,7 +3,6 @@
 //!
 //! The command line, the reports, the experiments and the Python package are built on this crate.
 
-pub mod at_once;
 pub mod calibrate;
 pub mod calibration;
 pub mod calls;
@@ -15,23 +14,24 @@ pub mod doubts;
 #[cfg(feature = "local")]
 pub mod download_bar;
 pub mod error;
-pub mod explained;
+pub mod error_parts;
 pub mod follow;
 pub mod generate;
 pub mod in_order;
 pub mod interrupt;
 pub mod item;
-pub mod looking_for;
+pub mod lookout;
 pub mod losses;
-pub mod meant;
 pub mod output;
 pub mod own_format;
+pub mod parallel;
 pub mod people;
 pub mod pictures;
 pub mod pipeline;
 pub mod plan;
 pub mod platforms;
 pub mod run_folder;
+pub mod scene_selection;
 pub mod settings;
 pub mod settings_file;
 pub mod similar;
@@ -40,5 +40,5 @@ pub mod styles;
 pub mod team;
 pub mod terms;
 pub mod text_file;
-pub mod usable;
+pub mod walk_ranking;
 pub mod watch;

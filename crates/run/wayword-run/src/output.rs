@@ -11,7 +11,7 @@ use std::{
     sync::Arc,
     time::Duration,
 };
-use wayword_world::said::is_unseen;
+use wayword_world::output_lines::is_unseen;
 
 /// How the program prints.
 #[derive(Clone)]

@@ -5,7 +5,7 @@
 use crate::settings::RunSettings;
 use serde::de::DeserializeOwned;
 use toml::{Table, Value};
-use wayword_checks::{detected::DetectorFigures, open::Calibration};
+use wayword_checks::{detection::DetectorFigures, open::Calibration};
 
 /// The key of the format.
 const FORMAT_KEY: &str = "format";

@@ -1,11 +1,11 @@
 //! Makes one item: looks along its path, describes the views, writes a text in each style, checks it, and repairs or rejects it.
 
 use crate::{
-    at_once::at_once,
     error::CommandError,
     follow::{FollowedPath, FollowerFindings, GOES_UNKNOWN, KnownScenes, ambiguity_rejection},
     item::RunItem,
-    looking_for::DetectorLookout,
+    lookout::DetectorLookout,
+    parallel::at_once,
     pictures::{self, FrameJpeg},
     platforms::RememberingPlatform,
     run_folder::WorldData,

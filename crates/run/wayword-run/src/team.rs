@@ -5,7 +5,7 @@ use crate::{
     calibration,
     calls::ModelCalls,
     error::CommandError,
-    looking_for::DetectorLookout,
+    lookout::DetectorLookout,
     settings::{FailureFinish, LABELS_ROLE, RunSettings, is_model},
     text_file,
 };

@@ -9,8 +9,8 @@ use std::{collections::BTreeMap, path::PathBuf};
 use wayword_core::{Heading, Platform, SceneId, ViewpointId};
 use wayword_run::{
     follow::KnownScenes,
-    meant::MeantWalk,
     platforms::{self, PlatformPlace},
+    walk_ranking::MeantWalk,
 };
 
 /// The scenes of a platform, each surveyed when it is first asked for.

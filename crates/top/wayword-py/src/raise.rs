@@ -1,7 +1,7 @@
 //! Turns errors into Python exceptions. Their classes are in `wayword/errors.py`.
 
 use pyo3::prelude::*;
-use wayword_run::{error::CommandError, explained::ErrorParts};
+use wayword_run::{error::CommandError, error_parts::ErrorParts};
 
 /// The exception of an error.
 pub(crate) fn exception_for(py: Python<'_>, error: CommandError) -> PyErr {

@@ -60,7 +60,7 @@ pub fn main(arguments: Vec<OsString>) -> u8 {
 pub fn leave_contained_panics_to_errors() {
     let report = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |panic| {
-        if !wayword_core::contain::is_contained() {
+        if !wayword_core::contain_panics::is_contained() {
             report(panic);
         }
     }));

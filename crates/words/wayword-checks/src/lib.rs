@@ -8,22 +8,22 @@
 
 mod align;
 mod coverage;
-pub mod detected;
+pub mod detection;
 mod evidence;
 mod floors;
 mod form;
 mod goal;
 mod landmarks;
 mod leak;
-mod made_up;
 pub mod memory;
 pub mod open;
 mod order;
 mod sides;
 mod task;
+mod testimony;
 #[cfg(test)]
 mod tests;
-mod witnesses;
+mod unknown_motion;
 mod world;
 
 use std::collections::BTreeSet;
@@ -39,7 +39,7 @@ pub use evidence::{
 };
 pub use leak::{FORMULA_REFERENCES, LONG_RUN, ReferenceRuns, SHARED_RUN, TextTopic};
 pub use memory::WalkMemory;
-pub use witnesses::{Testimony, lift_confirmed};
+pub use testimony::{Testimony, lift_confirmed};
 pub use world::{CheckWorld, TurnJudge, WorldReach};
 
 /// A text's evidence, style and world: everything that it is checked against.
@@ -168,7 +168,7 @@ pub fn check_own(text: &str, subject: CheckSubject<'_>) -> TextFindings {
     if subject.evidence.motion.is_known() {
         return checked;
     }
-    let made_up = made_up::find_made_up(text, &known_names(subject.evidence));
+    let made_up = unknown_motion::find_made_up(text, &known_names(subject.evidence));
     let replaced: BTreeSet<_> = made_up.iter().flat_map(|by| [(by.check, None), (by.check, by.span)]).collect();
     checked
         .findings

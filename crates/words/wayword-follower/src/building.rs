@@ -1,6 +1,6 @@
 //! The follower's knowledge of a building: all of it from a survey, or the part that was seen on the way.
 
-use crate::near::{PlaceNearness, PlaceQuery};
+use crate::nearness::{PlaceNearness, PlaceQuery};
 use std::{
     cmp::Reverse,
     collections::BTreeMap,

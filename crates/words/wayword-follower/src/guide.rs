@@ -2,7 +2,7 @@
 //! building.
 
 use crate::building::KnownBuilding;
-use crate::near::{PlaceNearness, PlaceQuery};
+use crate::nearness::{PlaceNearness, PlaceQuery};
 use std::{collections::BTreeSet, sync::Arc};
 use wayword_core::Side;
 use wayword_language::{

@@ -14,7 +14,7 @@ mod features;
 mod fit;
 mod guide;
 pub mod learn;
-mod near;
+mod nearness;
 mod one_walk;
 pub mod online;
 mod posterior;

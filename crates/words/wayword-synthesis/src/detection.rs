@@ -5,17 +5,17 @@
 //! becomes doubtful or is denied, depending on how often the detector misses real things ([`DetectorFigures`]). A name
 //! that was only proposed and not found leaves no trace.
 
-mod finds;
+mod corrections;
 mod nouns;
-mod testimony;
+mod spots;
 
 pub use nouns::{parse_noun_list, usual_nouns};
 
 use crate::observe::{ObserveError, gazes_around};
-use finds::{LookPicture, PlatformPath, look_views};
+use corrections::{DetectionPurpose, apply_detections};
+use spots::{LookPicture, PlatformPath, look_views};
 use std::collections::{BTreeMap, BTreeSet};
-use testimony::{DetectionPurpose, apply_detections};
-use wayword_checks::detected::DetectorFigures;
+use wayword_checks::detection::DetectorFigures;
 use wayword_core::{
     Caption, CaptionedView, FrameObservation, ObjectDetector, ObjectSighting, Path, Platform, View, ViewGaze,
     WitnessAnswer,

@@ -14,5 +14,5 @@ pub mod repair;
 pub mod seeing;
 pub mod style;
 pub mod walk;
-mod weighed;
+mod weighted_draw;
 pub mod writer;

@@ -5,7 +5,7 @@
 use std::collections::BTreeSet;
 use wayword_checks::{
     Evidence,
-    detected::{DetectorFigures, DetectorRates},
+    detection::{DetectorFigures, DetectorRates},
 };
 use wayword_core::{
     DetectedBox, DetectorScoring, ModelError, ObjectDetector, ObjectLabel, Path, PathRequest, Platform, View,

@@ -4,16 +4,16 @@
 
 pub mod axes;
 pub mod bake;
-mod columns;
-mod fault;
+mod file_error;
 pub mod ground;
 pub mod navmesh;
 pub mod platform;
 pub mod scene;
 mod semantics;
+mod triangle_columns;
 pub mod walk;
 
-pub use fault::FileError;
+pub use file_error::FileError;
 pub use ground::{Foothold, GeodesicError, GroundStride, NavMeshGround};
 pub use navmesh::{NavMesh, NavMeshError, NavMeshSettings};
 pub use platform::{HabitatOptions, HabitatPlatform};

@@ -11,7 +11,6 @@ mod drawing;
 mod furnish;
 mod graph;
 mod ground;
-mod home;
 mod labels;
 mod layout;
 mod leaf;
@@ -21,6 +20,7 @@ mod names;
 mod objects;
 mod outlook;
 mod platform;
+mod prepared_house;
 mod rect;
 mod sample;
 mod save;
@@ -36,11 +36,11 @@ pub use colour::Colour;
 pub use drawing::build_surfaces;
 pub use graph::{EYE_M, viewpoint_graph};
 pub use ground::{GroundRouteError, HouseGround, HouseRoute, RADIUS_CM};
-pub use home::generate_house;
 pub use model::House;
 pub use names::{scene_name, seed_of};
 pub use objects::{NumberedObject, ObjectRole};
 pub use platform::{HouseOptions, HousePlatform};
+pub use prepared_house::generate_house;
 pub use rect::{RectCm, SpanCm, WallSide};
 pub use save::{
     HouseFiles, SaveError, encode_glb, gltf_from_wayword, navigation_json, save_house, semantic_glb, semantic_txt,

@@ -2,8 +2,8 @@
 
 use super::{
     graph::EYE_M,
-    home::{PreparedHouse, unknown_scene_error},
     names::scene_name,
+    prepared_house::{PreparedHouse, unknown_scene_error},
     sample,
 };
 use std::{collections::BTreeSet, sync::Arc};

@@ -1,12 +1,12 @@
 //! Draws random paths through a house: a shortest way between two viewpoints, with frames along it and a target at its
 //! end.
 
-use super::{dice::HouseDice, graph::EYE_M, ground::HouseRoute, home::PreparedHouse, objects::ObjectRole};
+use super::{dice::HouseDice, graph::EYE_M, ground::HouseRoute, objects::ObjectRole, prepared_house::PreparedHouse};
 use wayword_core::{
     DVec3, Frame, ObjectLabel, Path, PathRequest, PathTarget, PlatformError, Pose, SceneId, path::PathStop,
     seed::derive_seed,
 };
-use wayword_world::wander::{OpenGroundScene, no_such_walk, sample_open_path};
+use wayword_world::open_ground::{OpenGroundScene, no_such_walk, sample_open_path};
 
 /// A corner nearer than this to the frame before it gets no frame of its own, metres.
 const CROWDED_M: f64 = 0.4;

@@ -7,13 +7,13 @@
 mod decode;
 #[cfg(feature = "stand-in")]
 mod houses;
+mod labels;
 mod live;
+mod path_sampling;
 mod raster;
-mod sight;
 pub mod tdw;
 pub mod unity;
 pub mod virtualhome;
-mod walk;
 
 #[cfg(feature = "stand-in")]
 pub use houses::{NotShown, ShownAs, StandInHouses};

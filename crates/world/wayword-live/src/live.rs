@@ -4,9 +4,9 @@
 //! (objects, floor, rooms) and keeps the survey; later questions about the graph or an object's name need no simulator.
 
 use crate::{
+    labels::{self, ObjectPalette},
+    path_sampling::{self, WalkableScene},
     raster::FloorRaster,
-    sight::{self, ObjectPalette},
-    walk::{self, WalkableScene},
 };
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -19,7 +19,7 @@ use wayword_core::{
     PlatformError, Pose, SceneId, View, ViewGaze, ViewpointGraph, ViewpointId,
 };
 use wayword_render::{PinholeCamera, to_flat_gaze};
-use wayword_world::{said::OutputListener, seen_from};
+use wayword_world::{output_lines::OutputListener, seen_from};
 
 /// How far ahead of a doorway the room lies into which one looks, metres.
 const AHEAD_M: f64 = 0.5;
@@ -253,7 +253,7 @@ impl<S: Simulator> LivePlatform<S> {
         let camera = self.camera_at(eye, gaze);
         self.with_scene(scene, |simulator, known| {
             let SimulatorShot { rgb, ids } = simulator.take_picture(&camera, wanted)?;
-            let labels = sight::labels_in_gaze(&camera, gaze, ids, &known.survey.palette);
+            let labels = labels::labels_in_gaze(&camera, gaze, ids, &known.survey.palette);
             let (lists_objects, room) = (!known.survey.palette.is_empty(), known.survey.room_facing(eye, gaze.heading));
             let is_known = lists_objects || !known.survey.rooms.is_empty();
             Ok((rgb, is_known.then_some(GroundTruth { labels, lists_objects, room })))
@@ -267,7 +267,7 @@ impl<S: Simulator> LivePlatform<S> {
         gaze: ViewGaze,
         wanted: SimulatorShotKind,
     ) -> Result<View, PlatformError> {
-        walk::check_frame(scene, from)?;
+        path_sampling::check_frame(scene, from)?;
         let gaze = to_flat_gaze(gaze);
         let (rgb, truth) = self.picture_and_truth(scene, (from.pose.position, gaze), wanted)?;
         // The decoder has checked the picture's size.
@@ -315,7 +315,7 @@ impl SimulatorSurvey {
 /// A scene to walk through.
 struct LiveSceneWalker<'a, S>(&'a LivePlatform<S>, &'a SceneId);
 
-impl<S: Simulator> walk::WalkableScene for LiveSceneWalker<'_, S> {
+impl<S: Simulator> path_sampling::WalkableScene for LiveSceneWalker<'_, S> {
     fn shortest_way(&mut self, from: DVec3, to: DVec3) -> Result<Option<Vec<DVec3>>, PlatformError> {
         self.0.with_scene(self.1, |simulator, known| simulator.shortest_way(&known.survey, from, to))
     }
@@ -345,7 +345,7 @@ impl<S: Simulator> Platform for LivePlatform<S> {
     fn sample_path(&self, scene: &SceneId, request: &PathRequest, seed: u64) -> Result<Path, PlatformError> {
         let graph = self.graph_for_scene(scene)?;
         let eyes: Vec<DVec3> = graph.viewpoints().filter_map(|id| graph.position_of(id)).collect();
-        walk::sample_live_path(
+        path_sampling::sample_live_path(
             &mut LiveSceneWalker(self, scene),
             (scene, &eyes),
             request,

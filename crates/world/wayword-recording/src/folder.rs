@@ -2,7 +2,7 @@
 
 use crate::{
     describe::{self, DESCRIPTION_HINT, RecordingDescription},
-    kind::RecordedFileKind,
+    file_kind::RecordedFileKind,
     names::{plain_files, scene_of, sorted_entries, unknown_scene},
     poses,
     reel::{PictureReel, Recording, RecordingSource, TakePicture},

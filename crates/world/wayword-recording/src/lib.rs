@@ -7,21 +7,21 @@
 mod axes;
 mod choose;
 mod describe;
+mod file_kind;
 mod folder;
-mod kind;
 #[cfg(feature = "lerobot")]
 mod lerobot;
 #[cfg(feature = "mcap")]
 mod mcap;
 mod names;
 mod open;
+#[cfg(any(feature = "mcap", feature = "video"))]
+mod picture_size;
 mod platform;
-mod plausible;
+mod pose_plausibility;
 mod poses;
 mod reel;
 mod shelf;
-#[cfg(any(feature = "mcap", feature = "video"))]
-mod size;
 mod track;
 #[cfg(feature = "video")]
 mod video;

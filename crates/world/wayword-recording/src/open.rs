@@ -3,8 +3,8 @@
 #[cfg(any(feature = "lerobot", feature = "mcap", feature = "video"))]
 use crate::describe::RecordingDescription;
 use crate::{
+    file_kind::{self, RecordedFileKind, UnreadRecordings},
     folder::{PICTURE_FOLDERS, PictureFolder, is_unread_picture},
-    kind::{self, RecordedFileKind, UnreadRecordings},
     names::{scene_of, sorted_entries},
     reel::RecordingSource,
     shelf::{RecordingShelf, UnopenedRecording},
@@ -37,7 +37,7 @@ pub(crate) fn open_source(path: &Path, hear: &dyn Fn(&str)) -> Result<Box<dyn Re
         if let Some((_, error)) = broken.into_iter().next() {
             return Err(error);
         }
-        return Err(match kind::find_unread(path, &PICTURE_FOLDERS)? {
+        return Err(match file_kind::find_unread(path, &PICTURE_FOLDERS)? {
             Some(UnreadRecordings { what, hint }) => {
                 files::file_error(path, format!("holds no recording that can be read: {what}"), hint)
             }
@@ -46,7 +46,7 @@ pub(crate) fn open_source(path: &Path, hear: &dyn Fn(&str)) -> Result<Box<dyn Re
     }
     for entry in passed_over {
         let file = path.join(&entry);
-        if let Some(UnreadRecordings { what, hint }) = kind::find_unread(&file, &PICTURE_FOLDERS)? {
+        if let Some(UnreadRecordings { what, hint }) = file_kind::find_unread(&file, &PICTURE_FOLDERS)? {
             let why = if file.is_dir() { what } else { format!("it is {what}") };
             hear(&format!("{entry} is skipped: {why}, which cannot be read as it is; {hint}"));
         }

@@ -18,7 +18,7 @@ use wayword_core::{
     DVec3, Frame, Heading, Image, ObjectId, Path, PathMotion, PathRequest, Platform, PlatformError, Pose, RecentCache,
     SceneId, View, ViewGaze, ViewpointGraph, ViewpointId, path::PathStop, seeded_rng,
 };
-use wayword_world::{files, said::OutputListener};
+use wayword_world::{files, output_lines::OutputListener};
 
 /// Most recordings that stay open.
 const MAX_OPEN_RECORDINGS: usize = 8;

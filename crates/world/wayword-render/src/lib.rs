@@ -47,11 +47,11 @@ mod picture;
 mod raster;
 mod render;
 mod scene;
-mod setup;
 mod shade;
 mod storey;
 mod texture;
 mod top_down;
+mod triangle_setup;
 mod view;
 mod visibility;
 

@@ -5,7 +5,7 @@
 //! or a left one (the top-left rule of GPUs).
 
 use crate::cluster::SceneTriangle;
-use crate::setup::{ScreenTriangle, TriangleBatch, centres_between};
+use crate::triangle_setup::{ScreenTriangle, TriangleBatch, centres_between};
 use crate::view::SUBPIXEL_STEPS;
 
 /// A triangle of the batches: the batch and its place there.

@@ -5,8 +5,8 @@ use crate::camera::PinholeCamera;
 use crate::picture::{RenderError, RenderedPicture};
 use crate::raster::{BatchTriangleIndex, PictureBand};
 use crate::scene::RenderScene;
-use crate::setup::{TriangleBatch, visible_batches};
 use crate::shade::TriangleShader;
+use crate::triangle_setup::{TriangleBatch, visible_batches};
 use crate::view::ViewProjection;
 use rayon::prelude::*;
 

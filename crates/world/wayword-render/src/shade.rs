@@ -6,7 +6,7 @@
 use crate::mesh::MeshMaterial;
 use crate::raster::BatchTriangleIndex;
 use crate::scene::RenderScene;
-use crate::setup::TriangleBatch;
+use crate::triangle_setup::TriangleBatch;
 use crate::view::{SUBPIXEL_STEPS, ViewProjection};
 use glam::{Vec2, Vec3};
 

@@ -5,7 +5,7 @@
 
 use crate::{
     files::{file_error, json_if_there},
-    levels, values,
+    json_values, levels,
 };
 use serde_json::Value;
 use std::path::Path;
@@ -113,16 +113,18 @@ fn parse_connectivity(bytes: &[u8]) -> Result<ConnectivityGraph, String> {
 
 /// One item of the list; `None` if it is not included in the graph.
 fn parse_viewpoint(item: &Value) -> Result<Option<PanoramaViewpoint>, String> {
-    let id = ViewpointId::new(values::text_field(item, "image_id")?)
+    let id = ViewpointId::new(json_values::text_field(item, "image_id")?)
         .map_err(|error| format!("field `image_id`: {error}"))?;
     let named = |reason| format!("{id}: {reason}");
-    if !values::read_flag(values::required_field(item, "included").map_err(named)?, "included").map_err(named)? {
+    if !json_values::read_flag(json_values::required_field(item, "included").map_err(named)?, "included")
+        .map_err(named)?
+    {
         // The pose of a viewpoint that is not included is not used, and it may not consist of numbers.
         return Ok(None);
     }
     let pose = parse_pose(item).map_err(named)?;
-    let height_m =
-        values::read_coordinate(values::required_field(item, "height").map_err(named)?, "height").map_err(named)?;
+    let height_m = json_values::read_coordinate(json_values::required_field(item, "height").map_err(named)?, "height")
+        .map_err(named)?;
     Ok(Some(PanoramaViewpoint {
         position: DVec3::new(pose[3], pose[7], pose[11]),
         height_m,
@@ -134,26 +136,26 @@ fn parse_viewpoint(item: &Value) -> Result<Option<PanoramaViewpoint>, String> {
 }
 
 fn parse_pose(item: &Value) -> Result<[f64; 16], String> {
-    let numbers = values::list_field(item, "pose")?;
+    let numbers = json_values::list_field(item, "pose")?;
     if numbers.len() != 16 {
         return Err(format!("field `pose` has {} numbers, expected 16", numbers.len()));
     }
     let mut pose = [0.0; 16];
     for (place, value) in pose.iter_mut().zip(numbers) {
-        *place = values::read_coordinate(value, "pose")?;
+        *place = json_values::read_coordinate(value, "pose")?;
     }
     Ok(pose)
 }
 
 /// The indices of the viewpoints to which one can walk straight from this item, among all `count` items of the file.
 fn parse_neighbours(item: &Value, count: usize) -> Result<Vec<usize>, String> {
-    let flags = values::list_field(item, "unobstructed")?;
+    let flags = json_values::list_field(item, "unobstructed")?;
     if flags.len() != count {
         return Err(format!("field `unobstructed` has length {}, but the list of viewpoints has {count}", flags.len()));
     }
     let mut open = Vec::new();
     for (other, value) in flags.iter().enumerate() {
-        if values::read_flag(value, "unobstructed")? {
+        if json_values::read_flag(value, "unobstructed")? {
             open.push(other);
         }
     }

@@ -107,7 +107,7 @@ pub(super) fn nearest_m(some: &[DVec3], others: &[DVec3]) -> Option<f64> {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use crate::made_up;
+    use crate::test_data;
     use wayword_core::SceneId;
     use wayword_run::platforms;
     use wayword_testkit::{SCAN, viewpoint_id};
@@ -116,7 +116,7 @@ pub(super) mod tests {
     /// The test kit's building: entryway 0, hallway 1, living room 2 and 3, kitchen 4 and 5, stairs 6 and 7, and above
     /// them the hallway 8 and 9, bedroom 10 and 11, bathroom 12, office 13.
     pub(in super::super) fn made_up_building() -> LabelledBuilding {
-        let building = made_up::TestBuildingFolder::new();
+        let building = test_data::TestBuildingFolder::new();
         let platform = platforms::open_named("matterport", Some(&building.data_folder()), None, None).unwrap();
         LabelledBuilding::new(&survey_scene(platform.as_ref(), &SceneId::new(SCAN).unwrap()).unwrap())
     }

@@ -1,9 +1,9 @@
 //! The kinds of corruption.
 
 use super::{
-    moved,
-    replaced::{self, ReplacementDistance},
-    told::CorruptibleText,
+    corruptible_text::CorruptibleText,
+    repeats_and_swaps,
+    replacements::{self, ReplacementDistance},
     turns,
 };
 use crate::key::WordEdit;
@@ -74,15 +74,15 @@ impl PeopleCorruptionKind {
         match self {
             Self::TurnFlipped => one(turns::flipped_turns(told.text, &told.words), rng),
             Self::ClimbFlipped => one(turns::flipped_climbs(told.text, &told.words), rng),
-            Self::SentenceTwice => moved::repeat_sentence(told, rng),
-            Self::RoomLacking => replaced::replace_room(told, ReplacementDistance::Lacking, rng),
-            Self::RoomElsewhere => replaced::replace_room(told, ReplacementDistance::Far, rng),
-            Self::ObjectLacking => replaced::replace_object(told, ReplacementDistance::Lacking, rng),
-            Self::ObjectFar => replaced::replace_object(told, ReplacementDistance::Far, rng),
-            Self::ObjectNear => replaced::replace_object(told, ReplacementDistance::Near, rng),
-            Self::LandmarksSwapped => moved::swap_mentions(told, rng),
-            Self::StopElsewhere => replaced::replace_stop(told, rng),
-            Self::OtherPath => moved::other_path(told, rng),
+            Self::SentenceTwice => repeats_and_swaps::repeat_sentence(told, rng),
+            Self::RoomLacking => replacements::replace_room(told, ReplacementDistance::Lacking, rng),
+            Self::RoomElsewhere => replacements::replace_room(told, ReplacementDistance::Far, rng),
+            Self::ObjectLacking => replacements::replace_object(told, ReplacementDistance::Lacking, rng),
+            Self::ObjectFar => replacements::replace_object(told, ReplacementDistance::Far, rng),
+            Self::ObjectNear => replacements::replace_object(told, ReplacementDistance::Near, rng),
+            Self::LandmarksSwapped => repeats_and_swaps::swap_mentions(told, rng),
+            Self::StopElsewhere => replacements::replace_stop(told, rng),
+            Self::OtherPath => repeats_and_swaps::other_path(told, rng),
         }
     }
 }

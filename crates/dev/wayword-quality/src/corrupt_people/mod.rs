@@ -4,21 +4,22 @@
 //! that the reader does not know, or the measurement would flatter it.
 
 mod building;
+mod corruptible_text;
 mod kind;
 mod lists;
-mod moved;
 mod names;
-mod replaced;
+mod repeats_and_swaps;
+mod replacements;
 mod text;
-mod told;
 mod turns;
 
 use crate::{
-    judged::{text_item, write_items},
+    checked_texts::{text_item, write_items},
     key::{CorruptionKey, TextCorruption, apply_edits},
 };
 use building::{LabelledBuilding, nearest_m};
 use clap::{Args, builder::PossibleValuesParser};
+use corruptible_text::CorruptibleText;
 use kind::PeopleCorruptionKind;
 use rand::{
     Rng,
@@ -30,7 +31,6 @@ use std::{
     path::PathBuf,
 };
 use text::split_words;
-use told::CorruptibleText;
 use wayword_core::{Platform, SceneId, seeded_rng};
 use wayword_experiments::episodes::{episode_path_name, read_episodes};
 use wayword_formats::Episode;

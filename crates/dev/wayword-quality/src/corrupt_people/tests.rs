@@ -1,5 +1,5 @@
 use super::*;
-use crate::{key::undo_changes, made_up};
+use crate::{key::undo_changes, test_data};
 use clap::Parser;
 use wayword_testkit::SCAN;
 
@@ -10,7 +10,7 @@ struct Line {
 }
 
 /// The corrupted texts of the test kit's building, with their key.
-fn written(building: &made_up::TestBuildingFolder, more: &[&str]) -> (Vec<Episode>, CorruptionKey) {
+fn written(building: &test_data::TestBuildingFolder, more: &[&str]) -> (Vec<Episode>, CorruptionKey) {
     let out = write_for(building, more).unwrap();
     (
         wayword_formats::read_any_format(&out).unwrap(),
@@ -18,7 +18,7 @@ fn written(building: &made_up::TestBuildingFolder, more: &[&str]) -> (Vec<Episod
     )
 }
 
-fn write_for(building: &made_up::TestBuildingFolder, more: &[&str]) -> Result<PathBuf, CommandError> {
+fn write_for(building: &test_data::TestBuildingFolder, more: &[&str]) -> Result<PathBuf, CommandError> {
     let out = building.data_folder().join("corrupted.json");
     let (data, episodes) = (building.data_folder(), building.data_folder().join("r2r/R2R_val_seen.json"));
     let mut words = vec!["corrupt-people".into(), "--data".into(), data, "--episodes".into(), episodes];
@@ -29,7 +29,7 @@ fn write_for(building: &made_up::TestBuildingFolder, more: &[&str]) -> Result<Pa
 
 #[test]
 fn the_key_turns_every_corrupted_text_back_into_its_original() {
-    let building = made_up::TestBuildingFolder::new();
+    let building = test_data::TestBuildingFolder::new();
     let (items, key) = written(&building, &["--count", "6"]);
     let originals = wayword_formats::read_any_format(&building.data_folder().join("r2r/R2R_val_seen.json")).unwrap();
     assert_eq!(items.len(), key.corruptions.len());
@@ -48,7 +48,7 @@ fn the_key_turns_every_corrupted_text_back_into_its_original() {
 
 #[test]
 fn a_kind_has_the_same_texts_whichever_other_kinds_are_asked_for() {
-    let building = made_up::TestBuildingFolder::new();
+    let building = test_data::TestBuildingFolder::new();
     let texts = |more: &[&str]| -> Vec<String> {
         let (items, key) = written(&building, more);
         let of_kind =
@@ -63,7 +63,7 @@ fn a_kind_has_the_same_texts_whichever_other_kinds_are_asked_for() {
 
 #[test]
 fn a_file_without_texts_is_not_written() {
-    let building = made_up::TestBuildingFolder::new();
+    let building = test_data::TestBuildingFolder::new();
     let refusal = write_for(&building, &["--scan", "otherHouse"]).unwrap_err().to_string();
     assert!(refusal.contains("no text of these buildings"), "{refusal}");
     assert!(!building.data_folder().join("corrupted.json").exists());

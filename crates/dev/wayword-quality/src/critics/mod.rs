@@ -1,7 +1,7 @@
 //! Correlates critics of texts (automatic scores such as BLEU-4 or the agreement with pictures) with outcomes of the same texts: whether
 //! agents or people reached the goal by them, and how people rated them.
 
-mod compared;
+mod comparison;
 mod correlate;
 mod figures;
 mod study;
@@ -136,8 +136,8 @@ fn find_correlations(flags: &CriticsArgs, output: &CommandOutput) -> Result<Vec<
 fn read_material(flags: &CriticsArgs) -> Result<CriticMaterial, CommandError> {
     let folder = &flags.folder;
     let has = |name: &str| folder.join(name).is_file();
-    if has(compared::FOLLOWED_FILE) {
-        compared::read_comparison(folder)
+    if has(comparison::FOLLOWED_FILE) {
+        comparison::read_comparison(folder)
     } else if has(study::RESULTS_FILE) {
         study::read_results(folder, flags.finished)
     } else if has("plan.json") && has("items.jsonl") {

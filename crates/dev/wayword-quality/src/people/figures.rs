@@ -1,10 +1,10 @@
 //! Recall, false alarms and precision of the findings of `check`, by spans that people labelled.
 
 use super::kinds::SpanTopic;
-use crate::{judged::is_about, share::ClusteredShare};
+use crate::{checked_texts::is_about, share::ClusteredShare};
 use serde::Serialize;
 use wayword_core::{CheckFinding, CheckKind, Verdict};
-use wayword_formats::hear::{LabelledSpan, LabelledText};
+use wayword_formats::hear_annotations::{LabelledSpan, LabelledText};
 
 /// A labelled text with the findings of `check`.
 pub(super) struct LabelledFindings<'a> {

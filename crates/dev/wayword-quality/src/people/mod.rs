@@ -1,19 +1,19 @@
 //! Compares the findings of `wayword check` with spans of texts that people labelled right or wrong (HEAR's file).
 
-mod doubted;
+mod doubt_figures;
 mod figures;
 mod kinds;
 
 use crate::{
-    judged::{CheckedTexts, JudgingArgs, check_in_memory, is_about, report_words},
+    checked_texts::{CheckedTexts, JudgingArgs, check_in_memory, is_about, report_words},
     share::{aligned_table, share_cell},
 };
-use doubted::{LabelledDoubts, doubt_rows};
+use doubt_figures::{LabelledDoubts, doubt_rows};
 use figures::{CheckedSpanRow, LabelledFindings, SpanFigures, is_fail, span_figures};
 use serde_json::json;
 use std::path::Path;
 use wayword_core::{Platform, PlatformError};
-use wayword_formats::hear::{self, LabelledText};
+use wayword_formats::hear_annotations::{self, LabelledText};
 use wayword_run::{error::CommandError, output::CommandOutput, platforms, settings::AskedSettings};
 use wayword_world::path_of;
 
@@ -32,7 +32,7 @@ pub fn measure_people(flags: JudgingArgs, output: &CommandOutput) -> Result<(), 
     let shown = format!(
         "{}\n\n{}",
         figures_table(&figures, texts.len(), &report_words(&report)),
-        doubted::doubt_table(&doubted)
+        doubt_figures::doubt_table(&doubted)
     );
     output
         .print_result(&json!({ "texts": texts.len(), "figures": figures, "doubts": doubted, "check": report }), shown);
@@ -45,7 +45,7 @@ fn check_labelled_texts(
     output: &CommandOutput,
 ) -> Result<(Vec<LabelledText>, CheckedTexts), CommandError> {
     flags.check.doubts = flags.check.run.is_none();
-    let texts = hear::read_hear_file(&flags.check.file)?;
+    let texts = hear_annotations::read_hear_file(&flags.check.file)?;
     let platform = platforms::open_platform(&AskedSettings::from(flags.check.platform.clone()).resolve()?)?;
     refuse_unknown_paths(&texts, &flags.check.file, platform.as_ref())?;
     let asked: Vec<_> = texts.iter().map(|text| (&text.episode, text.text.as_str())).collect();

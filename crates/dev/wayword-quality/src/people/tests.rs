@@ -1,5 +1,5 @@
 use super::*;
-use crate::made_up::TestBuildingFolder;
+use crate::test_data::TestBuildingFolder;
 use clap::Parser;
 use serde_json::Value;
 use std::path::PathBuf;
@@ -92,7 +92,7 @@ fn by_hand(findings: &[(CheckKind, Verdict, &str)]) -> SpanFigures {
     let file = folder.path().join("hear.json");
     let item = labelled(&[0], text, &json!({"0-1": 1, "3": 1, "4-6": 0, "9": 1}));
     std::fs::write(&file, json!({ "a": item }).to_string()).unwrap();
-    let texts = hear::read_hear_file(&file).unwrap();
+    let texts = hear_annotations::read_hear_file(&file).unwrap();
     let findings = findings.iter().map(|(check, verdict, words)| CheckFinding {
         check: *check,
         verdict: *verdict,

@@ -1,6 +1,6 @@
 //! The figures of a study that are simulated: their true values, and the intervals that one simulated study gives.
 
-use super::assigned::{EffectSize, SimulatedDesign, assign_slots};
+use super::assignment::{EffectSize, SimulatedDesign, assign_slots};
 use super::{choices, ratings, walks};
 use rand::Rng;
 use serde::Serialize;

@@ -1,12 +1,12 @@
 //! Simulates studies with known truth, and counts how often the 95 % intervals of their figures cover it. An interval is honest if that is
 //! close to 95 %.
 
-mod assigned;
+mod assignment;
 mod choices;
+mod coverage_table;
 mod figure;
 mod logits;
 mod ratings;
-mod tried;
 mod walks;
 
 use crate::share::aligned_table;
@@ -33,7 +33,7 @@ pub struct StudyCoverageArgs {
 }
 
 pub fn measure_study_coverage(flags: &StudyCoverageArgs, output: &CommandOutput) -> Result<(), CommandError> {
-    let cells = tried::simulate_all(flags.studies, flags.seed);
-    output.print_result(&cells, aligned_table(&tried::coverage_rows(&cells)));
+    let cells = coverage_table::simulate_all(flags.studies, flags.seed);
+    output.print_result(&cells, aligned_table(&coverage_table::coverage_rows(&cells)));
     Ok(())
 }

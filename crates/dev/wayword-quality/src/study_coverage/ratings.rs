@@ -1,6 +1,6 @@
 //! Simulates ratings on five levels, and the interval of Krippendorff's alpha, which measures how far persons agree.
 
-use super::assigned::{AnswerSlot, STUDY_ITEM_COUNT};
+use super::assignment::{AnswerSlot, STUDY_ITEM_COUNT};
 use super::figure::CONFIDENCE_LEVEL;
 use super::logits::{draw_normals, expit, mean_over_normal};
 use rand::Rng;

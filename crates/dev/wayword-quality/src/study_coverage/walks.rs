@@ -1,6 +1,6 @@
 //! Simulates walks in two conditions: whether a person reaches the goal, and how good the way is.
 
-use super::assigned::{AnswerSlot, STUDY_ITEM_COUNT};
+use super::assignment::{AnswerSlot, STUDY_ITEM_COUNT};
 use super::logits::{centre_for_share, draw_normal, expit, mean_over_normal};
 use rand::Rng;
 use std::f64::consts::SQRT_2;

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use std::path::Path;
 use wayword_formats::{
     FormatError,
-    hear::{self, LabelledText},
+    hear_annotations::{self, LabelledText},
 };
 
 /// Two texts of ours.
@@ -31,7 +31,7 @@ fn read(value: &str) -> Result<Vec<LabelledText>, FormatError> {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("hear.json");
     std::fs::write(&file, value).unwrap();
-    hear::read_hear_file(&file)
+    hear_annotations::read_hear_file(&file)
 }
 
 /// The refusal of the file with one field of its first text changed.
@@ -150,7 +150,7 @@ fn the_real_file_is_read_whole() {
         println!("skipped: there is no {}; set WAYWORD_DATA to the folder that has it", file.display());
         return;
     }
-    let texts = hear::read_hear_file(&file).unwrap();
+    let texts = hear_annotations::read_hear_file(&file).unwrap();
     let spans: Vec<_> = texts.iter().flat_map(|text| &text.spans).collect();
     let wrong = spans.iter().filter(|span| !span.is_right).count();
     assert_eq!((texts.len(), spans.len(), wrong), (40, 376, 70));

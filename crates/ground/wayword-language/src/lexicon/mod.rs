@@ -2,7 +2,7 @@
 
 mod colours;
 mod forms;
-mod normal;
+mod normal_spelling;
 mod rooms;
 mod things;
 
@@ -10,6 +10,6 @@ pub use colours::same_colour;
 pub use forms::{
     COUNT_WORDS, counted_name, is_plural, says_several, to_plural, to_singular, with_article, without_article,
 };
-pub use normal::{normal_word, normalise_name};
+pub use normal_spelling::{normal_word, normalise_name};
 pub use rooms::{is_room, room_name, same_room};
 pub use things::{LexiconThing, ThingClass, find_thing, is_fabric, is_thing, kinds_of, longest_name, names_agree};

@@ -11,16 +11,17 @@ mod compass;
 mod coverage;
 mod denial;
 mod distances;
+mod events;
 #[cfg(test)]
-mod growth;
+mod growth_tests;
 mod links;
 pub mod motion_words;
 mod numbers;
 mod onward;
+mod place_motion;
 mod places;
 pub mod role_words;
 mod roles;
-mod said;
 mod sides;
 mod stems;
 pub mod steps;
@@ -29,18 +30,17 @@ mod task;
 mod tokens;
 mod turns;
 pub mod vocabulary;
-mod ways;
 
 use crate::{
     language::language_of,
     text::{self, TextToken},
 };
-pub use numbers::{cardinal_number, ordinal_word};
-pub use roles::{ReadWord, TextClause, WordRole};
-pub use said::{
+pub use events::{
     ClosingTask, CompassDirection, EventContent, PlaceLink, PlaceMention, PlaceMotion, PlaceOrdinal, StoreyMention,
     TextEvent, TextReading,
 };
+pub use numbers::{cardinal_number, ordinal_word};
+pub use roles::{ReadWord, TextClause, WordRole};
 use std::collections::BTreeSet;
 use tokens::TokenSlice;
 

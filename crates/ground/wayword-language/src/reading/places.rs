@@ -2,7 +2,7 @@
 
 use super::{
     EventContent, PlaceMention, TextEvent, colours::PlaceColours, distances::is_unit, links::link_before,
-    numbers::PlaceNumbers, sides, task, tokens::TokenSlice, vocabulary as v, ways::motion_by_place,
+    numbers::PlaceNumbers, place_motion::motion_by_place, sides, task, tokens::TokenSlice, vocabulary as v,
 };
 use crate::lexicon::{ThingClass, find_thing, is_room, is_thing, longest_name, normal_word, room_name, says_several};
 use std::collections::BTreeSet;

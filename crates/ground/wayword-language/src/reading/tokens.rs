@@ -21,7 +21,7 @@ impl<'a> TokenSlice<'a> {
     /// The token at an index; `None` after the end.
     pub(super) fn get(self, at: usize) -> Option<&'a TextToken> {
         #[cfg(test)]
-        super::growth::count_look();
+        super::growth_tests::count_look();
         self.0.get(at)
     }
 

@@ -3,29 +3,29 @@
 //! and the requests that get it are drawn from a seed.
 
 pub mod barcode;
+mod barcode_platform;
 mod behaviour;
+mod breakable_connection;
 mod dialect;
+mod fault_response;
 mod faults;
 mod gallery;
-mod log;
-mod misdeed;
-mod pictured;
-mod rate;
+mod request_log;
+mod request_rate;
 mod retry_after;
 pub mod scripts;
 mod server;
-mod wire;
 
 use std::{io, net::SocketAddr, time::Duration};
 use tokio::runtime::Runtime;
 
+pub use barcode_platform::BarcodePlatform;
 pub use behaviour::{ModelScript, ProviderBehaviour, ScriptRequest};
 pub use dialect::ProviderDialect;
 pub use faults::{FaultSchedule, ServiceFault};
 pub use gallery::{GalleryThing, PictureGallery, PictureScenery};
-pub use log::{ProviderLog, RequestCounts};
-pub use pictured::BarcodePlatform;
-pub use rate::ProviderRequestRate;
+pub use request_log::{ProviderLog, RequestCounts};
+pub use request_rate::ProviderRequestRate;
 pub use retry_after::RetryAfter;
 
 /// Threads that serve. They are named `provider`, so that a measurement can leave out their work.

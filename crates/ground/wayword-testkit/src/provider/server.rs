@@ -3,10 +3,10 @@
 
 use super::{
     ProviderBehaviour, ProviderDialect, ProviderLog, ScriptRequest,
+    breakable_connection::{BreakSwitch, BreakableListener},
     dialect::{ReplyEnding, ScriptReply, ServiceErrorKind, with_calls},
-    misdeed::{self, FaultResponder, key_of},
-    rate::ProviderTokenBucket,
-    wire::{BreakSwitch, BreakableListener},
+    fault_response::{self, FaultResponder, key_of},
+    request_rate::ProviderTokenBucket,
 };
 use axum::{
     Router,
@@ -97,7 +97,7 @@ async fn show_model(State(shared): State<Arc<ProviderState>>, body: Bytes) -> Re
     }
     let capabilities =
         if shared.behaviour.blind.contains(model) { vec!["completion"] } else { vec!["completion", "vision"] };
-    misdeed::json_response(&json!({ "capabilities": capabilities }))
+    fault_response::json_response(&json!({ "capabilities": capabilities }))
 }
 
 fn list_route(dialect: ProviderDialect) -> MethodRouter<Arc<ProviderState>> {
@@ -108,7 +108,7 @@ fn list_route(dialect: ProviderDialect) -> MethodRouter<Arc<ProviderState>> {
             return dialect.error_response(ServiceErrorKind::Key, "The API key is not valid.");
         }
         let names: Vec<&str> = shared.behaviour.scripts.keys().map(String::as_str).collect();
-        misdeed::json_response(&dialect.model_list(&names))
+        fault_response::json_response(&dialect.model_list(&names))
     })
 }
 
@@ -148,7 +148,7 @@ impl ProviderState {
         match self.behaviour.faults.for_request(self.behaviour.seed, index, request, nth) {
             None => {
                 self.lock_log().count_answer(request);
-                misdeed::json_response(&arrival.dialect.reply_body(&said))
+                fault_response::json_response(&arrival.dialect.reply_body(&said))
             }
             Some(fault) => {
                 *self.lock_log().faults.entry(fault).or_default() += 1;

@@ -1,7 +1,7 @@
 //! BLEU-1 to BLEU-4 as `pycocoevalcap`'s `bleu_scorer.py` computes them: the share of a text's n-grams that a reference has too,
 //! over the whole corpus, less if the text is shorter than the reference closest in length.
 
-use super::text::{GRAM_ORDER_COUNT, NumberedText};
+use super::numbered_text::{GRAM_ORDER_COUNT, NumberedText};
 use std::ops::{Add, AddAssign};
 
 /// Added to denominators so that none is zero, as `pycocoevalcap` does.

@@ -1,7 +1,7 @@
 //! CIDEr-D as `pycocoevalcap`'s `cider_scorer.py` computes it (under the name CIDEr): the cosine of two texts' n-gram counts,
 //! with weights that make n-grams count more if few items' references have them.
 
-use super::text::{CountedGram, GRAM_ORDER_COUNT, NumberedText};
+use super::numbered_text::{CountedGram, GRAM_ORDER_COUNT, NumberedText};
 use std::{
     collections::HashMap,
     hash::{BuildHasherDefault, Hasher},

@@ -2,8 +2,8 @@
 
 use super::{
     bleu::BleuCounts,
+    numbered_text::{GRAM_ORDER_COUNT, NumberedText, gram_order},
     rouge::rouge_l,
-    text::{GRAM_ORDER_COUNT, NumberedText, gram_order},
 };
 use rand::Rng;
 use serde::Serialize;

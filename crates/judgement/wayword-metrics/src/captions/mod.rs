@@ -4,25 +4,25 @@
 //! All figures equal those of `pycocoevalcap` to the last digit that it prints. A figure can only be compared with others of
 //! the same protocol: the tokens ([`ptb_tokens`] or [`split_tokens`]), the references, and whether texts were cut off.
 
+mod anchored;
 mod bleu;
 mod cider;
-mod compared;
 mod diversity;
+mod numbered_text;
 mod ptb;
 mod rouge;
-mod split;
-mod text;
+mod split_tokens;
 
-pub use bleu::BleuCounts;
-pub use cider::cider_d;
-pub use compared::{
+pub use anchored::{
     AnchoredCaptionFigures, CaptionFigures, CaptionItem, CaptionRowSets, anchored_caption_figures, draw_other_paths,
 };
+pub use bleu::BleuCounts;
+pub use cider::cider_d;
 pub use diversity::{TextDiversity, measure_diversity};
+pub use numbered_text::{CaptionVocabulary, NumberedText};
 pub use ptb::ptb_tokens;
 pub use rouge::rouge_l;
-pub use split::split_tokens;
-pub use text::{CaptionVocabulary, NumberedText};
+pub use split_tokens::split_tokens;
 
 /// A text and the references that it is compared with.
 #[derive(Debug, Clone)]

@@ -1,6 +1,6 @@
 //! ROUGE-L as `pycocoevalcap`'s `rouge.py` computes it: how long a common subsequence of words a text has with a reference.
 
-use super::text::NumberedText;
+use super::numbered_text::NumberedText;
 
 /// How much more recall counts than precision.
 const ROUGE_BETA: f64 = 1.2;

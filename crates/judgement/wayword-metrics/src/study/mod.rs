@@ -9,7 +9,7 @@ mod crossed;
 mod logit_normal;
 mod power;
 mod quantile;
-mod share;
+mod wilson;
 
 pub use agreement::{AnswerScale, RaterAgreement, krippendorff_alpha};
 pub use bradley_terry::{
@@ -21,7 +21,7 @@ pub use crossed::{
 pub use logit_normal::mean_share;
 pub use power::{DetectableShareDifference, PowerPlan, detectable_difference};
 use serde::{Deserialize, Serialize};
-pub use share::wilson_interval;
+pub use wilson::wilson_interval;
 
 /// One person's answer to one item.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

@@ -1,6 +1,6 @@
 //! All shortest distances between the viewpoints of a scene.
 
-use super::places::NumberedViewpoints;
+use super::numbered_viewpoints::NumberedViewpoints;
 use std::{cmp::Ordering, collections::BinaryHeap};
 use wayword_core::{ViewpointGraph, ViewpointId};
 

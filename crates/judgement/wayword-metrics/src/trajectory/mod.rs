@@ -1,23 +1,23 @@
 //! The figures of vision-and-language navigation (success, SPL, nDTW and others): how well an agent's trajectory over a viewpoint
 //! graph meets the demand of its episode.
 
-mod atlas;
-mod course;
+mod distance_atlas;
 mod distances;
+mod episode_scorer;
 mod fidelity;
-mod invalid;
-mod places;
+mod numbered_viewpoints;
 mod score;
 #[cfg(test)]
 mod testing;
 #[cfg(test)]
 mod tests;
+mod trajectory_error;
 
-pub use atlas::DistanceAtlas;
-pub use course::EpisodeScorer;
+pub use distance_atlas::DistanceAtlas;
 pub use distances::SceneDistances;
-pub use invalid::{TrajectoryError, find_problems};
+pub use episode_scorer::EpisodeScorer;
 pub use score::score_trajectory;
+pub use trajectory_error::{TrajectoryError, find_problems};
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;

@@ -3,7 +3,7 @@
 mod baselines;
 mod map_reader;
 mod parameters;
-mod phrases;
+mod phrase_walker;
 mod policy;
 mod reader;
 mod tools;
@@ -11,7 +11,7 @@ mod tools;
 pub use baselines::{last_room_in, nearest_room, walk_randomly, walk_shortest_path, walk_straight};
 pub use map_reader::{MapReader, MappedScene};
 pub use parameters::{BacktrackParameters, PhraseWalkParameters};
-pub use phrases::walk_by_phrases;
+pub use phrase_walker::walk_by_phrases;
 pub use reader::walk_by_reading;
 pub use tools::{
     MOST_TEXT_CHARS, ModelWalker, ToolAgentSight, ToolWalkLimits, ViewDescriber, prompt_wording, rehearse_route,

@@ -1,11 +1,11 @@
 //! Compares sets of instructions by how well agents walk by them: the table of the paper (arXiv 2403.11487), with intervals, lower
 //! and upper bounds, and swap tests that show whether an agent uses the text at all.
 
-mod efforts;
+mod effort_summary;
 mod results;
 mod table;
 
-pub use efforts::EffortSummary;
+pub use effort_summary::EffortSummary;
 pub use results::WalkScores;
 pub use table::{ComparedAgent, EMPTY, UNREAD_SET_NAME, compare_agents, empty_set, swapped_set};
 

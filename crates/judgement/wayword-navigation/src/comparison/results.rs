@@ -1,6 +1,6 @@
 //! Collects the scores and the efforts of walks by agent, set, item and text, for the table to average.
 
-use super::efforts::OfWalk;
+use super::effort_summary::OfWalk;
 use std::collections::{BTreeMap, BTreeSet};
 use wayword_metrics::{TrajectoryMetric, TrajectoryScore, TrajectorySuccessRule};
 

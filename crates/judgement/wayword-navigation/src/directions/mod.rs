@@ -2,8 +2,8 @@
 //! place of arrival). There are two splitters: by rules, and by a language model.
 
 mod clauses;
+mod instruction_pieces;
 mod model;
-mod pieces;
 pub mod places;
 mod reply;
 mod rules;

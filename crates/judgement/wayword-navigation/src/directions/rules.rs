@@ -1,7 +1,8 @@
 //! Splits instructions by rules, offline, with the same language reader that the checks use.
 
 use super::{
-    InstructionSplitter, MOST_PHRASES, SplitInstruction, pieces::InstructionPieces, readable_part, shorten_phrase,
+    InstructionSplitter, MOST_PHRASES, SplitInstruction, instruction_pieces::InstructionPieces, readable_part,
+    shorten_phrase,
 };
 use wayword_core::ModelError;
 

@@ -1,13 +1,13 @@
 //! Grounders that score phrases by ground-truth labels instead of pictures. Their names begin with `labels`, so that no reader takes
 //! their figures for those of perception.
 
-mod labels_of;
-mod lexical;
-mod similar;
+mod encoder_grounder;
+mod lexical_grounder;
+mod view_labels;
 
-pub(crate) use labels_of::labels_of;
-pub use lexical::LexicalGrounder;
-pub use similar::EncoderGrounder;
+pub use encoder_grounder::EncoderGrounder;
+pub use lexical_grounder::LexicalGrounder;
+pub(crate) use view_labels::labels_of;
 
 /// The part of a view that a phrase is compared with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

@@ -2,15 +2,15 @@
 //! not use that information.
 
 mod casing;
-mod elsewhere;
 mod landmarks;
+mod other_path;
 mod sentences;
 mod sides;
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-pub use elsewhere::{SwapCandidate, other_path};
+pub use other_path::{SwapCandidate, other_path};
 
 /// A way to make instructions wrong.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]

@@ -3,12 +3,12 @@
 mod dose;
 mod parse;
 mod refusal;
-mod whole;
+mod without_dose;
 
 pub use dose::DoseKind;
 pub use parse::ChangeError;
 pub use refusal::{ChangeSetting, OtherPlatform, SightSource};
-pub use whole::WholeChange;
+pub use without_dose::WholeChange;
 
 use serde::{Deserialize, Serialize};
 use std::{fmt, str::FromStr};

@@ -4,13 +4,13 @@
 //! places and every other word must be the same. Each expectation is exact. If it does not hold, a sentence explains the difference.
 
 mod clauses;
+mod reversal;
 mod space;
 mod things;
-mod way;
 
+pub use reversal::check_reversed_path;
 pub use space::{check_mirrored_world, check_turned_world};
 pub use things::{ChangedThing, check_added_thing, check_changed_material, check_removed_thing};
-pub use way::check_reversed_path;
 
 use wayword_core::TextMention;
 

@@ -1,6 +1,6 @@
 //! Mirrored and turned worlds.
 
-use super::{WorldAlteration, altered::AlteredLook};
+use super::{WorldAlteration, altered_platform::AlteredLook};
 use std::{f64::consts::FRAC_PI_2, sync::Arc};
 use wayword_core::{DVec3, DepthImage, GroundTruth, Heading, Image, ObjectLabel, PlatformError, Pose, View};
 

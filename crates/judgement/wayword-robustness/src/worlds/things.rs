@@ -1,7 +1,7 @@
 //! Worlds with a thing removed, added or recoloured, in their labels only. Pictures stay as they are, so these changes affect only
 //! observers that read labels.
 
-use super::{WorldAlteration, altered::AlteredLook, labels::with_labels};
+use super::{WorldAlteration, altered_platform::AlteredLook, labels::with_labels};
 use std::collections::BTreeSet;
 use wayword_core::{Frame, Heading, ObjectId, ObjectLabel, PlatformError, SceneId, View};
 

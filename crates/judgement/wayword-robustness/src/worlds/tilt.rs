@@ -2,7 +2,7 @@
 
 mod resample;
 
-use super::{WorldAlteration, altered::AlteredLook};
+use super::{WorldAlteration, altered_platform::AlteredLook};
 use resample::{TiltWarp, UNREACHED_GREY_LEVEL};
 use std::sync::Arc;
 use wayword_core::{

@@ -2,10 +2,9 @@
 
 use super::{
     ConditionDifference, MeasureUnit, ResultVersion, StudyMeasure, StudyReport,
-    inert::{self, escape_latex as escaped},
-    notes,
+    escape::{self, escape_latex as escaped},
+    notes, number_format,
     tables::{self, ResultTable},
-    words,
 };
 use crate::ConditionKind;
 use std::{collections::BTreeMap, fmt::Write};
@@ -54,7 +53,7 @@ struct LatexColumn<'a> {
 
 fn add_figure_tables(page: &mut String, results: &StudyReport, version: &ResultVersion) {
     let columns = version.rows.iter().map(|row| LatexColumn {
-        heads: [inert::to_table_name(&row.condition), control_label(row.kind).to_owned()],
+        heads: [escape::to_table_name(&row.condition), control_label(row.kind).to_owned()],
         figures: row
             .figures
             .iter()
@@ -62,7 +61,7 @@ fn add_figure_tables(page: &mut String, results: &StudyReport, version: &ResultV
             .collect(),
         counts: Some([row.answers, row.persons, row.items]),
     });
-    let caption = format!("{} {}", inert::to_table_name(&results.title), version.rule);
+    let caption = format!("{} {}", escape::to_table_name(&results.title), version.rule);
     add_compact_tables(page, results, &columns.collect::<Vec<_>>(), &caption);
 }
 
@@ -72,7 +71,7 @@ fn add_difference_tables(page: &mut String, results: &StudyReport, version: &Res
         version.rows.iter().find(|row| row.condition == less.condition).map_or("", |row| control_label(row.kind))
     };
     let columns = version.differences.iter().map(|less| LatexColumn {
-        heads: [inert::to_table_name(&less.condition), kind_of(less).to_owned()],
+        heads: [escape::to_table_name(&less.condition), kind_of(less).to_owned()],
         figures: less
             .figures
             .iter()
@@ -82,8 +81,8 @@ fn add_difference_tables(page: &mut String, results: &StudyReport, version: &Res
     });
     let caption = format!(
         "{} Minus {}. {}",
-        inert::to_table_name(&results.title),
-        inert::to_table_name(&first.minus),
+        escape::to_table_name(&results.title),
+        escape::to_table_name(&first.minus),
         version.rule
     );
     add_compact_tables(page, results, &columns.collect::<Vec<_>>(), &caption);
@@ -103,9 +102,9 @@ fn figure_cell(measure: &StudyMeasure, figure: Option<&(f64, Option<&ConfidenceI
     figure.map_or_else(
         || "--".to_owned(),
         |(value, interval, method)| {
-            let value = escaped(&words::format_value(measure, *value));
-            let ends = escaped(&words::format_interval(measure, *interval)).replace('–', "--");
-            format!("{value} {{\\scriptsize {ends}\\textsuperscript{{{}}}}}", words::method_letter(*method))
+            let value = escaped(&number_format::format_value(measure, *value));
+            let ends = escaped(&number_format::format_interval(measure, *interval)).replace('–', "--");
+            format!("{value} {{\\scriptsize {ends}\\textsuperscript{{{}}}}}", number_format::method_letter(*method))
         },
     )
 }
@@ -147,10 +146,10 @@ fn add_compact_tables(page: &mut String, results: &StudyReport, columns: &[Latex
             }
         }
         let figures = || columns.iter().flat_map(|column| column.figures.values());
-        let legend: Vec<String> = words::ALL_METHODS
+        let legend: Vec<String> = number_format::ALL_METHODS
             .into_iter()
             .filter(|method| *method != IntervalMethod::None && figures().any(|(_, _, used)| used == method))
-            .map(|method| format!("{}: {}", words::method_letter(method), words::method_name(method)))
+            .map(|method| format!("{}: {}", number_format::method_letter(method), number_format::method_name(method)))
             .collect();
         let legend =
             if legend.is_empty() { String::new() } else { format!(" Intervals of 95 %; {}.", legend.join(", ")) };

@@ -2,7 +2,7 @@
 
 use super::{
     StudyReport,
-    inert::{self, escape_markdown as escaped},
+    escape::{self, escape_markdown as escaped},
     notes,
     sheet::DataSheet,
     tables::{self, ResultTable},
@@ -13,7 +13,7 @@ use std::fmt::Write;
 pub(super) fn render_markdown(results: &StudyReport, sheets: &[DataSheet]) -> String {
     let mut page = format!(
         "# {}\n\n{}\n\n",
-        escaped(&inert::to_table_name(&results.title)),
+        escaped(&escape::to_table_name(&results.title)),
         escaped(&notes::describe_study(results))
     );
     for warning in notes::collect_warnings(results) {

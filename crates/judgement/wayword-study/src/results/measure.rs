@@ -1,7 +1,7 @@
 //! The list of the figures that each mode of a study measures, with their names, units and meanings, and how each figure is read out
 //! of an answer.
 
-use super::given::TextJudgement;
+use super::judgements::TextJudgement;
 use crate::StudyTask;
 use serde::Serialize;
 use wayword_metrics::TrajectoryScore;

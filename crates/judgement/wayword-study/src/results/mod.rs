@@ -4,13 +4,14 @@
 //! Everything is computed from [`StudyData`] alone, so the same answers give the same files. Texts that participants wrote appear only in
 //! `answers.csv`, and never in a table or on a page.
 
-mod given;
-mod inert;
+mod escape;
+mod judgements;
 mod latex;
 mod markdown;
 mod measure;
 mod names;
 mod notes;
+mod number_format;
 mod outlook;
 mod page;
 mod pairs;
@@ -21,7 +22,6 @@ mod sheets;
 mod tables;
 mod version;
 mod walks;
-mod words;
 mod write;
 
 pub use measure::{MeasureKind, MeasureUnit, StudyMeasure};
@@ -31,7 +31,7 @@ pub use people::{AttentionSummary, FailedChecks, HandoutCounts, ParticipantSumma
 pub use version::{ConditionDifference, ConditionRow, QuestionAgreement, ResultVersion};
 
 use crate::{StudyData, StudyError, StudyTask, wording};
-use given::ParticipantFilter;
+use judgements::ParticipantFilter;
 use names::ParticipantNames;
 use serde::Serialize;
 use sheet::DataSheet;
@@ -100,7 +100,7 @@ pub fn compute_results(data: &StudyData, now_ms: i64) -> Result<StudyReport, Stu
         ));
     }
     let names = ParticipantNames::new(data);
-    let (answered, problems) = given::collect_answers(data, &names);
+    let (answered, problems) = judgements::collect_answers(data, &names);
     let most_failed = data.settings.most_failed();
     let version = |whose| ResultVersion::new(data, &answered, whose, most_failed);
     let people = ParticipantSummary::new(data, &names, &answered, now_ms);

@@ -1,6 +1,6 @@
 //! Writes the sentences around the tables: a summary of the study, warnings, and how to read the figures.
 
-use super::{ResultVersion, StudyReport, words};
+use super::{ResultVersion, StudyReport, number_format};
 use crate::StudyTask;
 use std::collections::BTreeSet;
 use wayword_metrics::IntervalMethod;
@@ -13,13 +13,13 @@ pub(super) fn describe_study(results: &StudyReport) -> String {
         StudyTask::Rate => "people watched a walk and rated a text about it",
         StudyTask::Pair => "people watched a walk and chose between two texts about it",
     };
-    let answers = words::count_with_noun(everybody.answers, "answer", "answers");
-    let persons = words::count_with_noun(everybody.persons, "person", "persons");
+    let answers = number_format::count_with_noun(everybody.answers, "answer", "answers");
+    let persons = number_format::count_with_noun(everybody.persons, "person", "persons");
     let state = if results.is_closed { "closed" } else { "not closed yet, so the figures can change" };
     let style = if results.style.is_empty() {
         String::new()
     } else {
-        format!(" Style of the texts: {}.", super::inert::to_table_name(&results.style))
+        format!(" Style of the texts: {}.", super::escape::to_table_name(&results.style))
     };
     format!("Mode {}: {task}. {answers} of {persons}. The study is {state}.{style}", results.mode.name())
 }
@@ -54,13 +54,13 @@ fn used_method_names(versions: &[ResultVersion]) -> BTreeSet<&'static str> {
     let pairs = versions.iter().filter_map(|version| version.pairs.as_ref());
     let of_pairs =
         pairs.flat_map(|pairs| pairs.rows.iter().filter_map(|row| row.share.as_ref()).map(|share| share.method));
-    of_rows.chain(of_less).chain(of_pairs).map(words::method_name).collect()
+    of_rows.chain(of_less).chain(of_pairs).map(number_format::method_name).collect()
 }
 
 /// The methods by which intervals were computed, in the order in which the notes explain them.
 pub(super) fn used_methods(versions: &[ResultVersion]) -> Vec<IntervalMethod> {
     let used = used_method_names(versions);
-    words::ALL_METHODS.into_iter().filter(|method| used.contains(words::method_name(*method))).collect()
+    number_format::ALL_METHODS.into_iter().filter(|method| used.contains(number_format::method_name(*method))).collect()
 }
 
 /// Explains how to read the figures, one note for each point.
@@ -75,7 +75,11 @@ pub(super) fn collect_notes(results: &StudyReport) -> Vec<String> {
             .to_owned(),
     ];
     for method in used_methods(&results.versions) {
-        notes.push(format!("Interval by {}: {}.", words::method_name(method), words::method_meaning(method)));
+        notes.push(format!(
+            "Interval by {}: {}.",
+            number_format::method_name(method),
+            number_format::method_meaning(method)
+        ));
     }
     if results.versions.iter().any(|version| !version.differences.is_empty()) {
         notes.push(

@@ -1,9 +1,9 @@
 //! Predicts what a planned study needs (answers, participants, minutes) and how small a difference it can detect.
 
 use super::{
-    inert,
+    escape,
+    number_format::{count_with_noun, format_number},
     sheets::kind_name,
-    words::{count_with_noun, format_number},
 };
 use crate::{ConditionKind, StudyDesign, StudyItem, StudySettings, StudyTask};
 use serde::Serialize;
@@ -177,7 +177,7 @@ impl fmt::Display for StudyOutlook {
             } else {
                 format!(" ({})", kind_name(planned.kind))
             };
-            writeln!(f, "  {:<11} {}{kind}", planned.items, inert::to_table_name(&planned.condition))?;
+            writeln!(f, "  {:<11} {}{kind}", planned.items, escape::to_table_name(&planned.condition))?;
         }
         writeln!(f, "answers       {}: {} of each item", self.answers, self.per_item)?;
         writeln!(

@@ -1,7 +1,7 @@
 //! Writes the results as one HTML page, which runs no scripts and loads nothing from elsewhere.
 
 use super::{
-    ResultVersion, StudyReport, inert, notes,
+    ResultVersion, StudyReport, escape, notes,
     plot::{self, DropOff, ForestPlot, LevelBars, WinMatrix},
     sheet::DataSheet,
     tables::{self, ResultTable},
@@ -49,7 +49,7 @@ impl VersionView {
             paper: tables::paper_table(results, version),
             forests: plot::figure_plots(results, version),
             less: plot::difference_plots(results, version),
-            minus: version.differences.first().map_or_else(String::new, |less| inert::to_table_name(&less.minus)),
+            minus: version.differences.first().map_or_else(String::new, |less| escape::to_table_name(&less.minus)),
             bars: plot::level_bars(results, version),
             matrix: plot::win_matrix(version),
             pairs: tables::pair_tables(version),
@@ -75,7 +75,7 @@ pub(super) fn render_page(results: &StudyReport, sheets: &[DataSheet]) -> Result
             .collect(),
     };
     let view = context! {
-        title => inert::to_table_name(&results.title),
+        title => escape::to_table_name(&results.title),
         subject => notes::describe_study(results),
         warnings => notes::collect_warnings(results),
         conditions => tables::condition_table(results),

@@ -1,7 +1,7 @@
 //! Evaluates comparisons of two texts: wins and ties for each pair of conditions, and a strength for each condition by the model of
 //! Bradley and Terry.
 
-use super::{CONFIDENCE_LEVEL, given::AnsweredItem};
+use super::{CONFIDENCE_LEVEL, judgements::AnsweredItem};
 use crate::{PairChoice, ParticipantAnswer, StudyData};
 use serde::Serialize;
 use wayword_metrics::{

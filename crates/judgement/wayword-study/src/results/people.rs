@@ -1,7 +1,7 @@
 //! Counts the participants: how many took part, at which item people stopped, and who failed attention checks.
 
 use super::{
-    given::{AnsweredItem, seconds_between},
+    judgements::{AnsweredItem, seconds_between},
     names::ParticipantNames,
 };
 use crate::{ItemSlot, Participant, ParticipantStatus, SlotState, StudyData};

@@ -2,9 +2,9 @@
 
 use super::{
     HandoutCounts, MeasureUnit, ResultVersion, StudyMeasure, StudyReport,
-    inert::to_table_name,
+    escape::to_table_name,
+    number_format::{self, format_number},
     tables,
-    words::{self, format_number},
 };
 use serde::Serialize;
 
@@ -118,10 +118,10 @@ pub(super) fn figure_plots(results: &StudyReport, version: &ResultVersion) -> Ve
             let label = tables::condition_title(&row.condition, row.kind);
             let counts = format!(
                 "{}, {}, {}; {}",
-                words::count_with_noun(figure.answers, "answer", "answers"),
-                words::count_with_noun(figure.persons, "person", "persons"),
-                words::count_with_noun(figure.items, "route", "routes"),
-                words::method_name(figure.method)
+                number_format::count_with_noun(figure.answers, "answer", "answers"),
+                number_format::count_with_noun(figure.persons, "person", "persons"),
+                number_format::count_with_noun(figure.items, "route", "routes"),
+                number_format::method_name(figure.method)
             );
             ForestPlotRow {
                 id: format!("f-{}-{}-{at}", version.name, measure.name),
@@ -168,7 +168,7 @@ pub(super) fn difference_plots(results: &StudyReport, version: &ResultVersion) -
                 let label = tables::condition_title(&less.condition, kind);
                 let beside_zero =
                     |interval: &wayword_metrics::ConfidenceInterval| interval.low > 0.0 || interval.high < 0.0;
-                let counts = words::method_name(figure.method).to_owned();
+                let counts = number_format::method_name(figure.method).to_owned();
                 ForestPlotRow {
                     id: format!("d-{}-{}-{at}", version.name, measure.name),
                     description: format!("{label} minus {}: {shown}. {counts}.", to_table_name(&less.minus)),
@@ -205,9 +205,9 @@ fn with_ends(value: f64, interval: Option<&wayword_metrics::ConfidenceInterval>)
 }
 
 fn figure_text(measure: &StudyMeasure, value: f64, interval: Option<&wayword_metrics::ConfidenceInterval>) -> String {
-    let ends =
-        interval.map_or_else(|| "no interval".to_owned(), |interval| words::format_interval(measure, Some(interval)));
-    format!("{} {ends}", words::format_value(measure, value))
+    let ends = interval
+        .map_or_else(|| "no interval".to_owned(), |interval| number_format::format_interval(measure, Some(interval)));
+    format!("{} {ends}", number_format::format_value(measure, value))
 }
 
 /// Makes a sentence of a phrase: a capital letter in front and a full stop behind.

@@ -1,6 +1,6 @@
 //! A CSV file with typed cells and described columns, and the codebook that lists the meaning of every column.
 
-use super::inert;
+use super::escape;
 use std::fmt::Write;
 
 /// A column of a file.
@@ -63,7 +63,7 @@ impl SheetCell {
             Self::Empty => String::new(),
             Self::Whole(number) => number.to_string(),
             Self::Number(number, digits) => format!("{number:.digits$}"),
-            Self::Text(text) => inert::escape_csv_cell(text),
+            Self::Text(text) => escape::escape_csv_cell(text),
         }
     }
 }

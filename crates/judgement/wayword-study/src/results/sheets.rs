@@ -2,7 +2,7 @@
 
 use super::{
     MeasureKind, MeasureUnit, StudyMeasure,
-    given::{AnsweredItem, ParticipantFilter, seconds_between},
+    judgements::{AnsweredItem, ParticipantFilter, seconds_between},
     names::ParticipantNames,
     people::ParticipantSummary,
     sheet::{DataSheet, SheetCell, SheetColumn, sheet_column},

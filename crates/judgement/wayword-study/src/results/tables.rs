@@ -2,11 +2,11 @@
 
 use super::{
     ConditionDifference, HandoutCounts, QuestionAgreement, ResultVersion, StudyMeasure, StudyReport,
-    inert::to_table_name,
+    escape::to_table_name,
     measure::OF_THE_PAPER,
+    number_format::{self, NO_FIGURE, count_with_noun, format_number},
     pairs::{ConditionStrengths, PairRow},
     version::CHOICE_QUESTION_NAME,
-    words::{self, NO_FIGURE, count_with_noun, format_number},
 };
 use crate::ConditionKind;
 use serde::Serialize;
@@ -77,12 +77,12 @@ pub(super) fn figure_table(results: &StudyReport, version: &ResultVersion) -> Re
             let cells = [
                 if at == 0 { measure.heading_with_unit() } else { String::new() },
                 condition_title(&row.condition, row.kind),
-                cell(&|figure| words::format_value(measure, figure.value)),
-                cell(&|figure| words::format_interval(measure, figure.interval.as_ref())),
+                cell(&|figure| number_format::format_value(measure, figure.value)),
+                cell(&|figure| number_format::format_interval(measure, figure.interval.as_ref())),
                 figure.map_or(0, |figure| figure.answers).to_string(),
                 figure.map_or(0, |figure| figure.persons).to_string(),
                 figure.map_or(0, |figure| figure.items).to_string(),
-                cell(&|figure| words::method_name(figure.method).to_owned()),
+                cell(&|figure| number_format::method_name(figure.method).to_owned()),
             ];
             table.add_row(at == 0, cells);
         }
@@ -122,9 +122,9 @@ fn difference_row(
     [
         heading,
         condition_title(&less.condition, kind),
-        figure.map_or_else(nothing, |figure| words::format_value(measure, figure.value)),
-        figure.map_or_else(nothing, |figure| words::format_interval(measure, figure.interval.as_ref())),
-        figure.map_or_else(nothing, |figure| words::method_name(figure.method).to_owned()),
+        figure.map_or_else(nothing, |figure| number_format::format_value(measure, figure.value)),
+        figure.map_or_else(nothing, |figure| number_format::format_interval(measure, figure.interval.as_ref())),
+        figure.map_or_else(nothing, |figure| number_format::method_name(figure.method).to_owned()),
     ]
 }
 
@@ -147,8 +147,8 @@ pub(super) fn paper_table(results: &StudyReport, version: &ResultVersion) -> Opt
             row.figures.get(measure.name).map_or_else(
                 || NO_FIGURE.to_owned(),
                 |figure| {
-                    let value = words::format_value(measure, figure.value);
-                    format!("{value} {}", words::format_interval(measure, figure.interval.as_ref()))
+                    let value = number_format::format_value(measure, figure.value);
+                    format!("{value} {}", number_format::format_interval(measure, figure.interval.as_ref()))
                 },
             )
         });
@@ -158,8 +158,8 @@ pub(super) fn paper_table(results: &StudyReport, version: &ResultVersion) -> Opt
         let interval = wilson_interval(count, OF_PEOPLE, results.level);
         format!(
             "{} {}",
-            words::format_value(measure, count / OF_PEOPLE),
-            words::format_interval(measure, interval.as_ref())
+            number_format::format_value(measure, count / OF_PEOPLE),
+            number_format::format_interval(measure, interval.as_ref())
         )
     });
     table.add_row(true, std::iter::once("arXiv 2403.11487: 30 people, one item each".to_owned()).chain(told));
@@ -209,7 +209,7 @@ pub(super) fn pair_tables(version: &ResultVersion) -> Vec<ResultTable> {
             "Of the comparisons with a preference, {} % preferred the text shown as A, {} ({}).",
             format_number(100.0 * side.value, 1),
             per_cent(side.interval.as_ref()),
-            words::method_name(side.method)
+            number_format::method_name(side.method)
         ));
     }
     vec![table, strength_table(&pairs.strengths)]
@@ -226,7 +226,7 @@ fn pair_cells(row: &PairRow) -> [String; 9] {
         row.both_bad.to_string(),
         row.share.as_ref().map_or_else(nothing, |share| format_number(100.0 * share.value, 1)),
         row.share.as_ref().map_or_else(nothing, |share| per_cent(share.interval.as_ref())),
-        row.share.as_ref().map_or_else(nothing, |share| words::method_name(share.method).to_owned()),
+        row.share.as_ref().map_or_else(nothing, |share| number_format::method_name(share.method).to_owned()),
     ]
 }
 
@@ -248,7 +248,7 @@ fn strength_table(strengths: &ConditionStrengths) -> ResultTable {
         ConditionStrengths::Known(known) => {
             for one in &known.strengths {
                 let counts = [one.wins, one.losses, one.ties, one.both_bad].map(|count| count.to_string());
-                let term = [format_number(one.term.value, 3), words::format_ends(Some(&one.term.interval), 3)];
+                let term = [format_number(one.term.value, 3), number_format::format_ends(Some(&one.term.interval), 3)];
                 table.add_row(false, std::iter::once(to_table_name(&one.system)).chain(counts).chain(term));
             }
             table.notes.push(format!(
@@ -256,7 +256,7 @@ fn strength_table(strengths: &ConditionStrengths) -> ResultTable {
                  neither ties. The text shown as A gains {} {} on the same scale. {}, {}, {}; the variance is clustered by persons and by \
                  routes.",
                 format_number(known.side.value, 3),
-                words::format_ends(Some(&known.side.interval), 3),
+                number_format::format_ends(Some(&known.side.interval), 3),
                 count_with_noun(known.comparisons, "comparison", "comparisons"),
                 count_with_noun(known.persons, "person", "persons"),
                 count_with_noun(known.items, "route", "routes"),
@@ -265,7 +265,7 @@ fn strength_table(strengths: &ConditionStrengths) -> ResultTable {
                 table.notes.push(format!(
                     "The log of Davidson's parameter of ties is {} {}; both bad counts as a tie.",
                     format_number(tie.value, 3),
-                    words::format_ends(Some(&tie.interval), 3)
+                    number_format::format_ends(Some(&tie.interval), 3)
                 ));
             }
         }
@@ -282,7 +282,7 @@ pub(super) fn agreement_table(version: &ResultVersion) -> ResultTable {
         let cells = match alpha {
             Some(alpha) => [
                 format_number(alpha.alpha, 3),
-                words::format_ends(alpha.interval.as_ref(), 3),
+                number_format::format_ends(alpha.interval.as_ref(), 3),
                 alpha.answers.to_string(),
                 alpha.persons.to_string(),
                 alpha.items.to_string(),

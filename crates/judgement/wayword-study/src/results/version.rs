@@ -3,7 +3,7 @@
 
 use super::{
     CONFIDENCE_LEVEL,
-    given::{AnsweredItem, ParticipantFilter, TextJudgement},
+    judgements::{AnsweredItem, ParticipantFilter, TextJudgement},
     measure::{MeasureKind, StudyMeasure},
     pairs::PairResults,
 };

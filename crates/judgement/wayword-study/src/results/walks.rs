@@ -1,6 +1,6 @@
 //! Computes the metrics of the participants' walks.
 
-use super::given::walked_trajectory;
+use super::judgements::walked_trajectory;
 use crate::{ParticipantMove, StudyData, StudyRoute};
 use std::collections::BTreeMap;
 use wayword_core::{SceneId, ViewpointId};

@@ -3,8 +3,8 @@
 use super::{
     cookies::StudyCookies,
     desk::StudyDesk,
-    gate::RequestLimiter,
     pages::PageTemplates,
+    request_guard::RequestLimiter,
     routes::{StudySite, build_router},
     tls,
 };

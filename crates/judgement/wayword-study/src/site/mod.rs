@@ -3,9 +3,9 @@
 mod cookies;
 mod desk;
 mod forms;
-mod gate;
 mod listen;
 mod pages;
+mod request_guard;
 mod routes;
 mod tls;
 mod ways;

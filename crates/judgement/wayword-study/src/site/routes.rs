@@ -7,8 +7,8 @@ use super::{
     cookies::StudyCookies,
     desk::{DeskBusyError, StudyDesk},
     forms::{self, FormFields},
-    gate::{self, RequestLimiter, RequestSource},
     pages::{PageContext, PageTemplates, StudyPage, consent_version, person_mark, refusal_page},
+    request_guard::{self, RequestLimiter, RequestSource},
 };
 use crate::{
     store::{ArrivalOutcome, InputRefusal, ParticipantArrival, ParticipantInput, StudyTransaction, WithdrawalChoice},
@@ -83,8 +83,8 @@ pub(super) fn build_router(site: Arc<StudySite>) -> Router {
 
 /// Wraps every request: checks the origin of forms, limits the time, and adds the security headers.
 async fn guard_request(State(site): SiteState, request: Request, next: Next) -> Response {
-    let is_foreign =
-        gate::changes_state(request.method()) && !gate::is_own(request.headers(), site.public.as_deref(), site.scheme);
+    let is_foreign = request_guard::changes_state(request.method())
+        && !request_guard::is_own(request.headers(), site.public.as_deref(), site.scheme);
     let mut response = if is_foreign {
         RequestProblem::Foreign.problem_page(&site)
     } else {
@@ -93,7 +93,7 @@ async fn guard_request(State(site): SiteState, request: Request, next: Next) -> 
             Err(_) => RequestProblem::Busy.problem_page(&site),
         }
     };
-    for (name, value) in gate::response_headers(site.cookies.is_secure) {
+    for (name, value) in request_guard::response_headers(site.cookies.is_secure) {
         response.headers_mut().entry(name).or_insert(value);
     }
     response

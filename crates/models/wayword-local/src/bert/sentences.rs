@@ -4,7 +4,7 @@ use super::{
     config::{BertConfig, SentencePooling},
     encoder::BertEncoder,
 };
-use crate::{LocalError, ModelDevice, WeightPrecision, text::TextTokenizer, weights::CheckpointWeights};
+use crate::{LocalError, ModelDevice, WeightPrecision, tokenizer::TextTokenizer, weights::CheckpointWeights};
 use candle_core::{DType, Tensor};
 use std::path::Path;
 use wayword_core::{ModelError, TextEncoder};

@@ -2,7 +2,7 @@
 
 use super::{config::BlipConfig, decoder::BlipDecoder, vision::BlipVision};
 use crate::{
-    LocalError, ModelDevice, WeightPrecision, picture::PictureProcessor, text::TextTokenizer,
+    LocalError, ModelDevice, WeightPrecision, picture::PictureProcessor, tokenizer::TextTokenizer,
     weights::CheckpointWeights,
 };
 use candle_core::DType;

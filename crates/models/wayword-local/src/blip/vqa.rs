@@ -9,7 +9,7 @@ use super::{
 use crate::{
     LocalError, ModelDevice, WeightPrecision,
     picture::{PictureProcessor, picture_digest},
-    text::TextTokenizer,
+    tokenizer::TextTokenizer,
     weights::CheckpointWeights,
 };
 use candle_core::{DType, Tensor};

@@ -11,7 +11,7 @@ use crate::{
     blip::BlipVision,
     ops::LinearLayer,
     picture::{PictureProcessor, picture_digest},
-    text::TextTokenizer,
+    tokenizer::TextTokenizer,
     weights::CheckpointWeights,
 };
 use candle_core::{DType, Tensor};

@@ -7,7 +7,7 @@ use super::{
 };
 use crate::{
     LocalError, ModelDevice, WeightPrecision, error::FETCH_AGAIN, ops::LinearLayer, picture::PictureProcessor,
-    text::TextTokenizer, weights::CheckpointWeights,
+    tokenizer::TextTokenizer, weights::CheckpointWeights,
 };
 use candle_core::{DType, Result as Computed, Tensor};
 use std::path::Path;

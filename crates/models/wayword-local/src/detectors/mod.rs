@@ -3,9 +3,9 @@
 //! To add an architecture, add a variant to [`DetectorCheckpoint`], the line by which [`DetectorCheckpoint::find_files`] recognises it, its
 //! line in [`DetectorCheckpoint::load`], and the bytes of features that it keeps in [`DetectorCheckpoint::memory_bytes`].
 
-mod kept;
+mod local_detector;
 
-pub use kept::LocalDetector;
+pub use local_detector::LocalDetector;
 
 use crate::{
     LocalError, ModelDevice, WeightPrecision,

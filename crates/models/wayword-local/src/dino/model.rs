@@ -11,7 +11,8 @@ use super::{
     text::{PromptStates, TextTower},
 };
 use crate::{
-    LocalError, ModelDevice, WeightPrecision, picture::picture_digest, text::TextTokenizer, weights::CheckpointWeights,
+    LocalError, ModelDevice, WeightPrecision, picture::picture_digest, tokenizer::TextTokenizer,
+    weights::CheckpointWeights,
 };
 use candle_core::{DType, Result as Computed, Tensor};
 use std::{path::Path, sync::Arc};

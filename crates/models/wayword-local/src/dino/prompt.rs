@@ -4,7 +4,7 @@
 //! it, and positions count from 0 again after each dot. But all phrases change the picture's features, so the scores of
 //! a phrase depend on the other phrases of its prompt.
 
-use crate::{LocalError, text::TextTokenizer};
+use crate::{LocalError, tokenizer::TextTokenizer};
 use candle_core::{Device, Result as Computed, Tensor};
 use std::ops::Range;
 

@@ -4,7 +4,7 @@ use super::{
     model::GroundingDino,
     prompt::{DinoPrompt, build_prompts},
 };
-use crate::{ModelDevice, WeightPrecision, text::TextTokenizer};
+use crate::{ModelDevice, WeightPrecision, tokenizer::TextTokenizer};
 use candle_core::{DType, Tensor};
 use std::{
     collections::HashMap,

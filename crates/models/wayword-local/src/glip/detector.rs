@@ -12,7 +12,7 @@ use crate::{
     LocalError, ModelDevice, WeightPrecision,
     ops::conv3::FeatureMap,
     picture::{PaddedPictureProcessor, picture_digest, picture_of_view},
-    text::TextTokenizer,
+    tokenizer::TextTokenizer,
     weights::CheckpointWeights,
 };
 use candle_core::{Result as Computed, Tensor};

@@ -1,14 +1,14 @@
 //! GLIP: finds things in pictures by phrases, with text and picture joined at every layer of its head (GLIP-T and its
 //! variants A, B and C, from the original checkpoints).
 
-mod bend;
 mod boxes;
+mod channel_means;
 mod config;
 mod detector;
+mod enlargement;
 mod files;
 mod fusion;
 mod head;
-mod means;
 mod model;
 mod prompt;
 mod pyramid;

@@ -1,6 +1,6 @@
 //! Puts phrases into prompts: joined by dots, as many as fit into one prompt. Example: `sink. wooden door`.
 
-use crate::{LocalError, text::TextTokenizer};
+use crate::{LocalError, tokenizer::TextTokenizer};
 
 /// The most tokens of a prompt.
 pub(super) const MOST_TOKENS: usize = 256;

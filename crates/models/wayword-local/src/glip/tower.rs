@@ -7,7 +7,7 @@
 //! lines. All these numbers follow from means over the map. So a map is read only twice: for its means, and to write
 //! the result.
 
-use super::{bend::MapEnlargement, config::HeadConfig, means::ChannelMeans, read_numbers};
+use super::{channel_means::ChannelMeans, config::HeadConfig, enlargement::MapEnlargement, read_numbers};
 use crate::{
     LocalError,
     ops::{

@@ -8,7 +8,7 @@ use super::{
     cache::{BlobHash, CommitHash},
     config::HubToken,
     name::OnHub,
-    trouble::{RequestFailure, RetryPatience, SEE_WHO_ANSWERS, TRY_LATER, header_text, is_absence},
+    request_failure::{RequestFailure, RetryPatience, SEE_WHO_ANSWERS, TRY_LATER, header_text, is_absence},
 };
 use crate::LocalError;
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};

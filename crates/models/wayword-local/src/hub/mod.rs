@@ -15,23 +15,23 @@
 
 mod cache;
 mod client;
+mod commit_download;
 mod config;
-mod fetching;
 mod files;
 mod name;
-mod trouble;
+mod request_failure;
 mod trust;
 
 pub use cache::CachedModel;
+pub use commit_download::DownloadProgress;
 pub use config::HubConfig;
-pub use fetching::DownloadProgress;
 pub use files::NeededFiles;
 pub use name::ModelName;
 
 use crate::LocalError;
 use cache::{CommitHash, RepoFolder};
 use client::HubClient;
-use fetching::CommitDownload;
+use commit_download::CommitDownload;
 use files::{GatheredFiles, OnDisk};
 use name::{ModelSource, OnHub};
 use std::path::{Path, PathBuf};

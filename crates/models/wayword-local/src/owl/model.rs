@@ -11,7 +11,7 @@ use crate::{
     clip::{TextTower, TowerFamily, TowersConfig, VisionTower},
     ops::{LayerNorm, LinearLayer},
     picture::{picture_digest, picture_of_view},
-    text::TextTokenizer,
+    tokenizer::TextTokenizer,
     weights::CheckpointWeights,
 };
 use candle_core::{Result as Computed, Tensor};

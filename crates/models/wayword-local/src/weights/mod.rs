@@ -4,23 +4,23 @@
 //! most one tensor is in memory twice.
 
 mod pickle;
-mod pickled;
+mod pickled_file;
 mod safetensor;
 mod scope;
-mod trained;
+mod training_checkpoint;
 
 pub(crate) use scope::WeightScope;
 
 use crate::{LocalError, ModelDevice, WeightPrecision, error::FETCH_AGAIN};
 use candle_core::{DType, Tensor};
-use pickled::PickledFile;
+use pickled_file::PickledFile;
 use safetensor::SafeFile;
 use serde::Deserialize;
 use std::{
     collections::{BTreeMap, BTreeSet},
     path::{Path, PathBuf},
 };
-use trained::TrainingCheckpoint;
+use training_checkpoint::TrainingCheckpoint;
 
 /// The longest index of a checkpoint in several files that is read, bytes.
 const LONGEST_INDEX: u64 = 64 << 20;

@@ -1,6 +1,6 @@
 //! Parses the address of a bucket, refuses one that contains a secret, and opens the store.
 
-use super::{CloudError, names, trouble};
+use super::{CloudError, names, store_errors};
 use object_store::{
     ClientConfigKey, ObjectStore, ObjectStoreScheme, RetryConfig,
     aws::{AmazonS3Builder, AmazonS3ConfigKey},
@@ -51,12 +51,14 @@ pub(super) fn open_store(text: &str) -> Result<OpenedStore, CloudError> {
     let shown = url.as_str().trim_end_matches('/').escape_debug().to_string();
     let store: Arc<dyn ObjectStore> = match scheme {
         ObjectStoreScheme::Local => return open_folder(&url, shown),
-        ObjectStoreScheme::AmazonS3 => Arc::new(open_s3(&url).map_err(|error| trouble::of_settings(&shown, &error))?),
+        ObjectStoreScheme::AmazonS3 => {
+            Arc::new(open_s3(&url).map_err(|error| store_errors::of_settings(&shown, &error))?)
+        }
         ObjectStoreScheme::GoogleCloudStorage => {
-            Arc::new(open_google(&url).map_err(|error| trouble::of_settings(&shown, &error))?)
+            Arc::new(open_google(&url).map_err(|error| store_errors::of_settings(&shown, &error))?)
         }
         ObjectStoreScheme::MicrosoftAzure => {
-            Arc::new(open_azure(&url).map_err(|error| trouble::of_settings(&shown, &error))?)
+            Arc::new(open_azure(&url).map_err(|error| store_errors::of_settings(&shown, &error))?)
         }
         _ => return Err(address_error("is of a server whose kind is not known", ADDRESS_HINT)),
     };
@@ -98,7 +100,7 @@ fn parse_address(text: &str) -> Result<Url, CloudError> {
 fn open_folder(url: &Url, shown: String) -> Result<OpenedStore, CloudError> {
     let path = url.to_file_path().map_err(|()| address_error("is no folder of this machine", ADDRESS_HINT))?;
     fs::create_dir_all(&path).map_err(CloudError::for_local_file(&path, "make this folder"))?;
-    let store = LocalFileSystem::new_with_prefix(&path).map_err(|error| trouble::of_settings(&shown, &error))?;
+    let store = LocalFileSystem::new_with_prefix(&path).map_err(|error| store_errors::of_settings(&shown, &error))?;
     Ok(OpenedStore { store: Arc::new(store.with_fsync(true)), prefix: Path::default(), shown })
 }
 

@@ -1,6 +1,6 @@
 //! A bucket of an object store, and the operations on single objects: write, read, list, remove. All of them block.
 
-use super::{CloudError, address, names, trouble};
+use super::{CloudError, address, names, store_errors};
 use futures_util::{StreamExt, TryStreamExt};
 use object_store::{
     GetResult, ObjectMeta, ObjectStore, ObjectStoreExt, PutMode, PutOptions, PutPayload, memory::InMemory, path::Path,
@@ -99,7 +99,7 @@ impl CloudBucket {
     }
 
     pub(super) fn object_error(&self, name: &str, doing: &'static str, error: &object_store::Error) -> CloudError {
-        match trouble::from_store_error(&self.shown_address(name), doing, error) {
+        match store_errors::from_store_error(&self.shown_address(name), doing, error) {
             CloudError::NoBucket { .. } => CloudError::NoBucket { bucket: self.shown.clone() },
             other => other,
         }
@@ -122,18 +122,18 @@ impl CloudBucket {
                 let options = PutOptions::from(PutMode::Create);
                 match self.store.put_opts(&place, payload.clone(), options).await {
                     Ok(_) => return Ok(true),
-                    Err(error) if trouble::is_conflict(&error) && conflicts < MAX_CONFLICT_RETRIES => {
+                    Err(error) if store_errors::is_conflict(&error) && conflicts < MAX_CONFLICT_RETRIES => {
                         conflicts += 1;
                         tokio::time::sleep(CONFLICT_PAUSE * conflicts).await;
                     }
-                    Err(error) if trouble::is_conflict(&error) => {
+                    Err(error) if store_errors::is_conflict(&error) => {
                         let problem = "others write the same object all the time".to_owned();
                         return Err(CloudError::Network { at: self.shown_address(name), doing: "write it", problem });
                     }
-                    Err(error @ object_store::Error::AlreadyExists { .. }) if !trouble::is_no_bucket(&error) => {
+                    Err(error @ object_store::Error::AlreadyExists { .. }) if !store_errors::is_no_bucket(&error) => {
                         return Ok(false);
                     }
-                    Err(error) if trouble::is_not_implemented(&error) => {
+                    Err(error) if store_errors::is_not_implemented(&error) => {
                         return Err(self.no_put_new("it says so"));
                     }
                     Err(error) => return Err(self.object_error(name, "write it", &error)),

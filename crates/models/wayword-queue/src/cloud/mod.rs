@@ -34,8 +34,8 @@ mod index;
 mod lock;
 mod names;
 mod send;
+mod store_errors;
 mod stored_run;
-mod trouble;
 
 pub use bucket::{CloudBucket, MOST_OBJECTS, StoredObject};
 pub use error::CloudError;

@@ -7,8 +7,8 @@
 use super::{CloudBucket, CloudError};
 use crate::{
     ChunkBoard, ChunkClaim, ChunkPlan, ChunkRecord, PLAN, QueueError, RemainingChunks, chunk_folder,
-    done::{CHUNKS_FOLDER, done_of, done_path, to_bytes},
     folder::remove_if_there,
+    marks::{CHUNKS_FOLDER, done_of, done_path, to_bytes},
     put_whole,
 };
 use std::{

@@ -1,7 +1,7 @@
 //! Reads from a response how long the service asks the program to wait. Services use several headers and forms of time
 //! for this.
 
-use super::{said::ServiceErrorBody, times};
+use super::{error_body::ServiceErrorBody, times};
 use std::time::{Duration, SystemTime};
 use ureq::http::HeaderMap;
 

@@ -4,12 +4,12 @@
 //! and a 200 may carry an error in its body. So the body's codes and words are read first ([`ServiceErrorBody`]).
 
 mod delay;
-mod said;
+mod error_body;
 mod times;
 
 use crate::{secret::ServiceSecret, transport::LARGEST_BODY};
-use said::ServiceErrorBody;
-pub(crate) use said::one_line;
+use error_body::ServiceErrorBody;
+pub(crate) use error_body::one_line;
 use std::{
     io::ErrorKind,
     time::{Duration, SystemTime},

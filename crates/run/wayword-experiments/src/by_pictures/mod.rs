@@ -13,7 +13,7 @@ use crate::by_pictures::args::PictureCriticArgs;
 use parts::split_into_parts;
 use std::path::{Path, PathBuf};
 use wayword_core::{ModelError, PhraseGrounder, View};
-use wayword_metrics::pictures::{CLIP_PROMPT_PREFIX, PictureScores};
+use wayword_metrics::picture_scores::{CLIP_PROMPT_PREFIX, PictureScores};
 use wayword_run::{error::CommandError, output::CommandOutput};
 
 /// A model that scores a phrase on a view by the cosine of their vectors.

@@ -1,6 +1,6 @@
 //! The agents of a comparison by name, and the thresholds at which they decide.
 
-use super::kept::ComparisonSettings;
+use super::settings::ComparisonSettings;
 use crate::compare::args::AskedPrior;
 use std::{collections::BTreeMap, path::Path};
 use wayword_navigation::{
@@ -156,7 +156,7 @@ pub(super) fn read_thresholds(
 /// boxes, and the grounder for the others.
 pub(super) fn scored_by<'a>(agent: &str, grounder: &'a str, detector: Option<&str>) -> &'a str {
     let by_boxes = agent == BY_DETECTOR && detector.is_some();
-    if by_boxes || detector == Some(grounder) { super::kept::BY_NAME } else { grounder }
+    if by_boxes || detector == Some(grounder) { super::settings::BY_NAME } else { grounder }
 }
 
 fn parameter_error(file: &Path, problem: &str) -> CommandError {

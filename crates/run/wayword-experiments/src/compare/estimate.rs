@@ -2,8 +2,8 @@
 
 use super::{
     agents::{TOOLS_AGENT_NAME, WalkingAgent},
-    kept::{ComparisonSettings, ToolAgentSettings},
-    sets::ComparisonItem,
+    instruction_sets::ComparisonItem,
+    settings::{ComparisonSettings, ToolAgentSettings},
     tools::describing_settings,
 };
 use crate::compare::args::SEE_BY_PICTURES;

@@ -1,6 +1,6 @@
 //! Opens the grounders that `--grounder` and `--detector` name.
 
-use super::kept::ComparisonSettings;
+use super::settings::ComparisonSettings;
 use crate::encoder;
 use std::sync::Arc;
 use wayword_core::{DetectorGrounder, ObjectDetector, PhraseGrounder};

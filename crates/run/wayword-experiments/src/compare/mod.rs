@@ -4,22 +4,22 @@ mod agents;
 pub mod args;
 mod estimate;
 mod grounders;
-mod kept;
-mod make;
+mod instruction_sets;
+mod make_walks;
 mod outputs;
 mod page;
 mod score;
-mod sets;
+mod settings;
 mod tools;
 
 use crate::{compare::args::CompareArgs, demands::PlatformDemands};
 use agents::WalkingAgent;
 use estimate::ComparisonEstimate;
 use grounders::ComparisonGrounders;
-use make::ItemWalkMaker;
+use instruction_sets::ComparisonItem;
+use make_walks::ItemWalkMaker;
 use outputs::ComparisonOutputs;
 use score::WalkJudge;
-use sets::ComparisonItem;
 use std::{fs, path::Path};
 use tools::{AgentToolbox, WithheldWalks};
 use wayword_core::{FailureKind, ModelError, RecentCache};
@@ -43,8 +43,8 @@ use wayword_run::{
     settings_file as config,
 };
 
-pub(crate) use kept::ComparisonSettings;
 pub use page::{is_comparison, write_of_folder};
+pub(crate) use settings::ComparisonSettings;
 
 /// Names of the files in a comparison's folder, except `config.toml`.
 pub(crate) mod file {
@@ -79,7 +79,7 @@ pub fn run_comparison(args: &CompareArgs, output: &CommandOutput) -> Result<Exit
         );
         return Err(CommandError::usage(problem, "leave it out; `wayword check` and `wayword generate` take it"));
     }
-    kept::refuse_flags_of_tools(args)?;
+    settings::refuse_flags_of_tools(args)?;
     let job = args.asked_settings().or_file(config::read_call_settings(args.config.as_deref())?).into_job()?;
     let kept = ComparisonSettings::from_args(args, &job.settings)?;
     let models = JobModels::for_job(&job)?;
@@ -89,7 +89,7 @@ pub fn run_comparison(args: &CompareArgs, output: &CommandOutput) -> Result<Exit
     }
     let platform = kept.open_platform()?;
     let demands = PlatformDemands::new(platform.as_ref());
-    let (items, sizes, of_episodes) = sets::load_items(&kept, platform.as_ref(), &demands)?;
+    let (items, sizes, of_episodes) = instruction_sets::load_items(&kept, platform.as_ref(), &demands)?;
     let judge = WalkJudge::new(&kept, &items, &demands, args.rule.map(Into::into))?;
     if let Some(item) = judge.without_object.filter(|_| args.rule.is_none()) {
         output.say(format_args!(
@@ -139,7 +139,7 @@ pub fn run_comparison(args: &CompareArgs, output: &CommandOutput) -> Result<Exit
         let problem = "no item could be walked: a model failed on every one of them";
         return Err(CommandError::usage(problem, "see the reasons above; give the same command again to try again"));
     }
-    let sets = sets::describe_sets(&kept, &items, &sizes, |item| gathered.results.has_item(item));
+    let sets = instruction_sets::describe_sets(&kept, &items, &sizes, |item| gathered.results.has_item(item));
     let (resamples, results) = (args.resamples as usize, &gathered.results);
     let comparison = score::build_comparison(&kept, &crew, sets, &judge, results, (resamples, failed));
     outputs::write_outputs(&args.out, &comparison, &gathered)?;

@@ -1,6 +1,6 @@
 //! Writes the HTML page of a comparison: its tables and plots, and a replay of some of its walks.
 
-use super::{file, kept::ComparisonSettings, score::WalkJudge, sets};
+use super::{file, instruction_sets, score::WalkJudge, settings::ComparisonSettings};
 use crate::{demands::PlatformDemands, episodes};
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -46,7 +46,7 @@ pub fn write_of_folder(folder: &Path, out: &Path, most: usize) -> Result<Written
     let platform = kept.open_platform()?;
     let mut episodes = episodes::read_episodes(&kept.episodes, platform.as_ref())?;
     episodes.truncate(kept.limit.unwrap_or(usize::MAX));
-    let items: Vec<_> = episodes.into_iter().map(|episode| sets::item_with_texts(episode, &[])).collect();
+    let items: Vec<_> = episodes.into_iter().map(|episode| instruction_sets::item_with_texts(episode, &[])).collect();
     // Without the rule, because it may not apply to items that no set has, and those are not walked.
     let mut judge = WalkJudge::new(&kept, &items, &PlatformDemands::new(platform.as_ref()), None)?;
     judge.rule = found.about.rule;

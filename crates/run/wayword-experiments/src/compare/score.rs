@@ -3,9 +3,9 @@
 use super::{
     agents::{READER_AGENT_NAME, TOOLS_AGENT_NAME, WalkingAgent},
     file,
-    kept::{ComparisonSettings, last_part},
-    make::ItemWalkMaker,
-    sets::ComparisonItem,
+    instruction_sets::ComparisonItem,
+    make_walks::ItemWalkMaker,
+    settings::{ComparisonSettings, last_part},
 };
 use crate::{demands::PlatformDemands, episodes};
 use std::{collections::BTreeMap, path::Path, sync::Arc};

@@ -1,8 +1,8 @@
 //! The agent `tools`, which lets a language model decide its moves: the model, how the agent sees, and the limits of its walks.
 
 use super::{
-    kept::{ComparisonSettings, ToolAgentSettings},
-    sets::ComparisonItem,
+    instruction_sets::ComparisonItem,
+    settings::{ComparisonSettings, ToolAgentSettings},
 };
 use crate::compare::args::SEE_BY_PICTURES;
 use std::sync::Arc;

@@ -7,13 +7,12 @@ use serde::Serialize;
 use std::{collections::BTreeSet, fmt};
 use wayword_checks::{
     Evidence, FrameEvidence,
-    detected::{DetectorFigures, DetectorRates},
+    detection::{DetectorFigures, DetectorRates},
 };
 use wayword_core::{Platform, SceneId, View, seeded_rng};
 use wayword_language::lexicon::{find_thing, names_agree, normalise_name};
 use wayword_run::{
-    error::CommandError, looking_for::DetectorLookout, output::CommandOutput, plan::RunPlan,
-    platforms::RememberingPlatform,
+    error::CommandError, lookout::DetectorLookout, output::CommandOutput, plan::RunPlan, platforms::RememberingPlatform,
 };
 use wayword_synthesis::{detection::usual_nouns, observe::frame_gazes};
 

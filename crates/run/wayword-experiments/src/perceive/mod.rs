@@ -11,24 +11,24 @@ use serde::Serialize;
 use std::path::Path;
 use table::{DetectorCorrectedFigures, PerceptionTable};
 use views::{LabelledView, labelled_views};
-use wayword_checks::detected::DetectorFigures;
+use wayword_checks::detection::DetectorFigures;
 use wayword_core::{Caption, ModelError, Platform};
 use wayword_run::{
     calls::ModelCalls,
     error::{CommandError, Exit},
     in_order::{core_count, in_order},
     interrupt,
-    looking_for::DetectorLookout,
+    lookout::DetectorLookout,
     losses::LossCounter,
     output::CommandOutput,
     own_format,
     plan::RunPlan,
     platforms,
     run_folder::fresh_id,
+    scene_selection,
     settings::{Perception, RunJob, RunSettings, is_in_process},
     settings_file as config,
     team::RoleTeam,
-    usable,
 };
 use wayword_synthesis::{
     detection::{CaptionDetector, seek_in},
@@ -85,7 +85,7 @@ pub fn run_perceive(args: &PerceiveArgs, output: &CommandOutput) -> Result<Exit,
     let mut job = asked.into_job()?;
     ModelCalls::check_ready(&job, output)?;
     let platform = platforms::open_platform(&job.settings)?;
-    job.settings = usable::settle_left_out(&job.settings, platform.as_ref(), output)?;
+    job.settings = scene_selection::settle_left_out(&job.settings, platform.as_ref(), output)?;
     let ways =
         args.perception.clone().filter(|asked| !asked.is_empty()).unwrap_or_else(|| askable_perceptions(&job.settings));
     let measured = measure_perception(

@@ -3,24 +3,23 @@
 pub mod args;
 mod arm;
 mod base;
-mod elsewhere;
+mod compared_sets;
 mod eye;
 mod figures;
-mod making;
-mod names;
-mod other;
+mod other_path;
+mod other_platform;
 mod reader;
 mod record;
+mod scene_names;
 mod screen;
-mod sets;
 mod world;
+mod write_texts;
 
 use crate::{demands::PlatformDemands, robustness::args::RobustnessArgs};
 use arm::RobustnessArm;
 use base::BaseRun;
-use elsewhere::OtherPlatformScenes;
 use figures::RecordsByArm;
-use making::{ArmContext, ArmTextWriter, UnchangedRecords};
+use other_platform::OtherPlatformScenes;
 use record::{ArmPathRecord, record_key};
 use serde::{Deserialize, Serialize};
 use std::{
@@ -38,7 +37,7 @@ use wayword_run::{
     follow::KnownScenes,
     in_order::{core_count, in_order},
     interrupt,
-    looking_for::DetectorLookout,
+    lookout::DetectorLookout,
     output::CommandOutput,
     own_format::OwnFormat,
     plan::JobModels,
@@ -49,6 +48,7 @@ use wayword_run::{
     settings_file as config,
     team::RoleTeam,
 };
+use write_texts::{ArmContext, ArmTextWriter, UnchangedRecords};
 
 /// Names of the files in the folder, except `config.toml`.
 mod file {
@@ -74,7 +74,7 @@ struct RobustnessSettings {
     eye: Option<String>,
     /// The names that the run's scenes have on other platforms.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    scene_names: names::SceneNames,
+    scene_names: scene_names::SceneNames,
     /// Only this many paths.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     limit: Option<u32>,
@@ -94,7 +94,7 @@ pub fn run_robustness(args: &RobustnessArgs, output: &CommandOutput) -> Result<E
     }
     if !args.compared.is_empty() {
         let drawing = BootstrapOptions { resamples: args.resamples as usize, level: CONFIDENCE_LEVEL, seed: args.seed };
-        let found = sets::compare_sets(&args.compared, drawing)?;
+        let found = compared_sets::compare_sets(&args.compared, drawing)?;
         output.print_result(&found, &found);
         return Ok(Exit::Done);
     }
@@ -193,7 +193,8 @@ fn change_setting<'a>(
 fn sorted_out(changes: Vec<Change>, setting: &ChangeSetting<'_>) -> (Vec<Change>, Vec<RefusedChange>) {
     let (mut made, mut refused) = (Vec::new(), Vec::new());
     for change in changes {
-        let unknown = || if let Change::Platform(spec) = &change { elsewhere::platform_refusal(spec) } else { None };
+        let unknown =
+            || if let Change::Platform(spec) = &change { other_platform::platform_refusal(spec) } else { None };
         match unknown().or_else(|| change.refusal_reason(setting)) {
             Some(reason) => refused.push(RefusedChange { change: change.to_string(), reason }),
             None => made.push(change),
@@ -210,7 +211,7 @@ fn begin_folder(args: &RobustnessArgs, base: &BaseRun, out: &FilePath) -> Result
         run: folder.canonicalize().map_err(CommandError::io(folder, "find"))?,
         walks: hash_of_file(&folder.join(run::file::WALKS))?,
         eye: args.eye.clone(),
-        scene_names: names::parse_names(&args.scene_name)?,
+        scene_names: scene_names::parse_names(&args.scene_name)?,
         limit: args.limit,
         seed: args.seed,
     };
@@ -245,13 +246,13 @@ fn make_texts(
     let _graceful = interrupt::finish_first(calls);
     let workers = calls.map_or_else(core_count, ModelCalls::worker_count);
     let arms = RobustnessArm::for_changes(changes);
-    let names = names::parse_names(&args.scene_name)?;
+    let names = scene_names::parse_names(&args.scene_name)?;
     let bar = output.progress_bar(arms.len() * base.paths.len(), "texts");
     let mut failed = 0;
     let mut unchanged = UnchangedRecords::new();
     for arm in &arms {
         bar.set_message(arm.progress_label());
-        let walks = making::walked_platform(arm, world);
+        let walks = write_texts::walked_platform(arm, world);
         let left: Vec<&Path> =
             base.paths.iter().filter(|path| !journal.has_key(&record_key(&arm.id(), &path.id))).collect();
         let elsewhere = match arm {

@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     similarity::args::{MetricTokens, SimilarityArgs as Args, TextPairing},
-    texts::{ItemTexts, TextSet},
+    text_sets::{ItemTexts, TextSet},
 };
 use serde::Serialize;
 use std::fmt;

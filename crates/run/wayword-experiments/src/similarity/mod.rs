@@ -8,7 +8,7 @@ mod pictures;
 use crate::{
     encoder,
     similarity::args::SimilarityArgs as Args,
-    texts::{self, TextSet},
+    text_sets::{self, TextSet},
 };
 use serde::Serialize;
 use std::{collections::BTreeMap, fmt};
@@ -23,7 +23,7 @@ use wayword_run::{
 const CONFIDENCE_LEVEL: f64 = 0.95;
 
 pub fn run_similarity(args: &Args, output: &CommandOutput) -> Result<Exit, CommandError> {
-    let sides = [&args.a, &args.b].map(|name| texts::read_text_set(name, args.style.as_deref(), args.by));
+    let sides = [&args.a, &args.b].map(|name| text_sets::read_text_set(name, args.style.as_deref(), args.by));
     let [a, b] = sides;
     let (a, b) = (a?, b?);
     if !a.keys().any(|item| b.contains_key(item)) {
@@ -54,7 +54,7 @@ pub fn run_similarity(args: &Args, output: &CommandOutput) -> Result<Exit, Comma
 }
 
 fn vectors_by_item<'a>(items: &'a TextSet, vectors: &'a BTreeMap<&str, Vec<f32>>) -> BTreeMap<String, ItemVectors<'a>> {
-    let of = |item: &'a texts::ItemTexts| ItemVectors {
+    let of = |item: &'a text_sets::ItemTexts| ItemVectors {
         cluster: item.path.clone(),
         vectors: item.texts.iter().filter_map(|text| vectors.get(text.as_str()).map(Vec::as_slice)).collect(),
     };

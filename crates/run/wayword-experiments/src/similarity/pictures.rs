@@ -4,14 +4,14 @@ use super::metrics::format_percent;
 use crate::{
     by_pictures::PictureCritic,
     similarity::args::SimilarityArgs as Args,
-    texts::{self, TextSet},
+    text_sets::{self, TextSet},
 };
 use serde::Serialize;
 use std::fmt;
 use wayword_metrics::{
     ResamplingOptions,
     captions::draw_other_paths,
-    pictures::{
+    picture_scores::{
         AnchoredPictureFigures, CLIP_PROMPT_PREFIX, PictureFigures, PictureScores, PicturedItem,
         anchored_picture_figures,
     },
@@ -55,8 +55,8 @@ pub(super) fn measure_pictures(
     drawing: &ResamplingOptions,
     output: &CommandOutput,
 ) -> Result<Option<PictureAgreementReport>, CommandError> {
-    let runs: Vec<_> = [&args.a, &args.b].into_iter().filter_map(|name| texts::run_of(name)).collect();
-    let Some(critic) = PictureCritic::open(&args.pictured, &runs, &texts::file_of(&args.a), output)? else {
+    let runs: Vec<_> = [&args.a, &args.b].into_iter().filter_map(|name| text_sets::run_of(name)).collect();
+    let Some(critic) = PictureCritic::open(&args.pictured, &runs, &text_sets::file_of(&args.a), output)? else {
         return Ok(None);
     };
     let mut common: Vec<CommonItem<'_>> = Vec::new();

@@ -1,6 +1,6 @@
 //! Marks doubtful words in the texts of a study, for the conditions that show such marks to people.
 
-use super::walks::StudyWalk;
+use super::choose_paths::StudyWalk;
 use std::collections::BTreeSet;
 use wayword_core::{Path, Platform};
 use wayword_run::{check::doubts_of, error::CommandError, output::CommandOutput};

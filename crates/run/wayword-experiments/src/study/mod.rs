@@ -1,16 +1,16 @@
 //! `wayword study`: makes a study from runs, serves it to people, and writes its results.
 
+mod choose_paths;
 mod marks;
-mod new;
+mod messages;
+mod new_study;
 mod pictures;
 mod serve;
-mod told;
-mod walks;
 
 use crate::study_args::{StudyArgs as Args, StudyCommand, StudyForget, StudyInvite, StudyResults, StudyStatus};
+use messages::{ClosedNotice, PersonalLinks, ReconciliationTable, RemovalReport, StudyStatusReport};
 use serde::Serialize;
 use std::{fmt, path::PathBuf};
-use told::{ClosedNotice, PersonalLinks, ReconciliationTable, RemovalReport, StudyStatusReport};
 use wayword_run::{
     count::count_phrase,
     error::{CommandError, Exit},
@@ -20,7 +20,7 @@ use wayword_study::{Study, now_ms, results::StudyOutlook};
 
 pub fn run_study(args: &Args, output: &CommandOutput) -> Result<Exit, CommandError> {
     match &args.command {
-        StudyCommand::New(args) => new::make_study(args, output)?,
+        StudyCommand::New(args) => new_study::make_study(args, output)?,
         StudyCommand::Serve(args) => return serve::run_serve(args, output),
         StudyCommand::Invite(args) => run_invite(args, output)?,
         StudyCommand::Plan(args) => {

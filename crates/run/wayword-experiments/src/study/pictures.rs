@@ -1,6 +1,6 @@
 //! Draws the pictures of a study: panoramas of the places where people walk, and films of the paths that they watch.
 
-use super::walks::StudyWalk;
+use super::choose_paths::StudyWalk;
 use rayon::prelude::*;
 use sha2::{Digest as _, Sha256};
 use std::{
@@ -10,7 +10,7 @@ use std::{
 use wayword_core::{Frame, Heading, Platform, Pose, SceneId, ViewGaze, ViewpointGraph, ViewpointId};
 use wayword_report::view::{
     panorama::draw_panorama,
-    path::between::{FilmStep, film_steps},
+    path::film_steps::{FilmStep, film_steps},
     picture,
     unfinished::UnfinishedFile,
 };

@@ -1,6 +1,6 @@
 //! Converts records to items of R2R, REVERIE, RxR and VLN-CE, and writes these formats.
 
-use super::in_habitat::HabitatSceneSource;
+use super::habitat_scenes::HabitatSceneSource;
 use crate::export::args::ExportFormat;
 use serde_json::{Value, json};
 use std::{

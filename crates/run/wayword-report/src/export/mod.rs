@@ -4,8 +4,8 @@ pub mod args;
 #[cfg(feature = "parquet")]
 mod card;
 mod duet;
+mod habitat_scenes;
 mod highlight;
-mod in_habitat;
 pub mod items;
 mod splits;
 #[cfg(not(feature = "habitat"))]

@@ -1,9 +1,9 @@
 //! The frames of an item as the page shows them: picture, room, caption, dialogue, and the move to the next frame.
 
 use super::{
+    link_targets::{frame_anchor, side_words},
     palette::{FrameColour, frame_colour},
     pictures::{PagePicture, PagePictures},
-    places::{frame_anchor, side_words},
 };
 use serde::Serialize;
 use wayword_core::{

@@ -4,33 +4,33 @@
 //! Everything from files or models is untrusted: the templates escape it, and the pages' content security policy
 //! forbids scripts and remote addresses.
 
-mod book;
 pub mod comparison;
 pub(crate) mod data_uri;
 pub mod doubts;
 mod frames;
+mod item_order;
+mod item_view;
+mod link_targets;
 pub(crate) mod map;
-mod model;
-mod order;
 mod page;
 pub(crate) mod palette;
 mod pictures;
-mod places;
 mod records;
 pub mod replay;
+mod report_files;
 pub mod robustness;
 mod rows;
 pub(crate) mod sheet;
 mod spans;
 mod texts;
 
-use book::{ReportFiles, WALKS_PER_PAGE};
+use item_view::ItemView;
+use link_targets::item_anchor;
 use minijinja::{AutoEscape, Environment, UndefinedBehavior, Value, context};
-use model::ItemView;
 use page::ReportPageView;
 use pictures::PagePictures;
-use places::item_anchor;
 use records::ReportRecords;
+use report_files::{ReportFiles, WALKS_PER_PAGE};
 use rows::TextList;
 use serde::Serialize;
 use std::{

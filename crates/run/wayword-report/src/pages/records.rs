@@ -4,7 +4,7 @@
 //! and unverified texts come first, because readers open a report to see those.
 
 use super::{
-    order::{ItemOrder, WorstStates},
+    item_order::{ItemOrder, WorstStates},
     texts::{TextState, state_from_verdict},
 };
 use serde::Deserialize;

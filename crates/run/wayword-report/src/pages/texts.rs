@@ -1,8 +1,8 @@
 //! The instructions of an item as the page shows them: text with its mentions, verdict, checks and provenance.
 
 use super::{
+    link_targets::{LinkTargets, frame_anchor},
     palette::{FrameColour, frame_colour},
-    places::{LinkTargets, frame_anchor},
     records::ItemRecord,
     spans::cut_segments,
 };

@@ -1,15 +1,15 @@
 //! The calls of a command to models: over HTTP or in process, kept in the ledger, and limited by a budget.
 
+mod call_keeping;
 mod configured;
-mod gguf;
-mod keeping;
+mod gguf_refusal;
 #[cfg(feature = "local")]
 mod local;
 #[cfg(not(feature = "local"))]
 #[path = "no_local.rs"]
 mod local;
-mod ready;
-mod spent;
+mod readiness;
+mod spending;
 
 use crate::{
     error::CommandError,
@@ -30,9 +30,9 @@ use wayword_ledger::{Ledger, LedgerRun, RunLimits};
 use wayword_remote::{ModelPrice, ModelServices, ServiceFinding};
 use wayword_synthesis::prompts::PromptManner;
 
+pub use call_keeping::CallKeeping;
 pub use configured::ledger_path;
-pub use keeping::CallKeeping;
-pub use spent::CallSpending;
+pub use spending::CallSpending;
 
 /// The models that one command may call.
 pub struct ModelCalls {
@@ -60,7 +60,7 @@ impl ModelCalls {
         let nowhere = Ledger::in_memory()?.start_run("rehearsal", RunLimits::default())?;
         let services = ModelServices::new(service_config(job)?, nowhere)?;
         let price = |name: &str| -> Result<Option<ModelPrice>, CommandError> {
-            if let Some(refused) = gguf::refuse_gguf(name) {
+            if let Some(refused) = gguf_refusal::refuse_gguf(name) {
                 return Err(refused);
             }
             if settings.roles.detector.as_deref() == Some(name) {
@@ -110,7 +110,7 @@ impl ModelCalls {
         let run = ledger.start_run(run, RunLimits { max_usd: service.max_usd, max_calls: service.max_calls })?;
         let services = ModelServices::new(service_config(job)?, run.clone())?;
         let models = settings.roles.model_names();
-        if let Some(refused) = models.iter().find_map(|name| gguf::refuse_gguf(name)) {
+        if let Some(refused) = models.iter().find_map(|name| gguf_refusal::refuse_gguf(name)) {
             return Err(refused);
         }
         let in_process = models.iter().any(|name| is_in_process(name));

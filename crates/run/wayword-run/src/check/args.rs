@@ -1,7 +1,7 @@
 //! `wayword check` as the user types it.
 
 use crate::{
-    looking_for::NO_PROPOSALS,
+    lookout::NO_PROPOSALS,
     settings::{AskedPlatform, AskedRoles, AskedSettings, EvidenceSources, Service, Writing},
     styles,
 };

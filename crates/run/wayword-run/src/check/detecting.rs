@@ -1,8 +1,8 @@
 //! Lets a detector look for the things that texts name, on a platform without labels.
 
-use super::walks::PathTexts;
+use super::path_texts::PathTexts;
 use crate::{
-    calls::ModelCalls, check::args::CheckDetectorArgs, error::CommandError, looking_for::DetectorLookout,
+    calls::ModelCalls, check::args::CheckDetectorArgs, error::CommandError, lookout::DetectorLookout,
     output::CommandOutput, plan::JobModels, run_folder::fresh_id,
 };
 use std::collections::BTreeSet;

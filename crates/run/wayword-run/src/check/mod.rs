@@ -3,10 +3,10 @@
 
 pub mod args;
 mod detecting;
-mod held;
-mod of_run;
+mod path_texts;
 mod report;
-mod walks;
+mod run_texts;
+mod styles;
 mod worlds;
 
 use crate::{
@@ -16,17 +16,17 @@ use crate::{
     error::{CommandError, Exit},
     follow::{FollowedPath, FollowerFindings, KnownScenes, ambiguity_rejection},
     interrupt,
-    looking_for::DetectorLookout,
+    lookout::DetectorLookout,
     output::CommandOutput,
     pipeline::path_panoramas,
     platforms::{self, RememberingPlatform},
     settings::{AskedSettings, EvidenceSources, RunSettings},
 };
-use held::CheckStyles;
+use path_texts::{FileText, PathTexts, read_path_texts};
 use rayon::prelude::*;
 use report::CheckReportText;
 use std::{collections::BTreeMap, path::Path as FilePath};
-use walks::{FileText, PathTexts, read_path_texts};
+use styles::CheckStyles;
 use wayword_checks::{
     CheckSubject, CheckWorld, Evidence, PathSurroundings, Testimony, TurnJudge, WorldReach, check_text, lift_confirmed,
     open::Calibration,
@@ -60,7 +60,7 @@ pub fn check_texts(args: &Args, output: &CommandOutput) -> Result<CheckReport, C
         captions: None,
     };
     if let Some(run) = &args.run {
-        return of_run::check_file(&args.file, run, how);
+        return run_texts::check_file(&args.file, run, how);
     }
     let settings = AskedSettings::from(args.platform.clone()).resolve()?;
     let lookout = detecting::open_lookout(&args.detecting, output)?;
@@ -121,7 +121,7 @@ fn check_by(
         lookout,
         sources,
         calibration: calibration.as_ref(),
-        captions: how.captions.map(of_run::read_captions).transpose()?.unwrap_or_default(),
+        captions: how.captions.map(run_texts::read_captions).transpose()?.unwrap_or_default(),
         scenes: KnownScenes::new(),
     };
     checking.check_walks(&walks, output)
@@ -148,7 +148,7 @@ pub fn doubts_of(
         captions: BTreeMap::new(),
         scenes: KnownScenes::new(),
     };
-    let report = checking.check_walks(&walks::gather_by_path(texts), output)?;
+    let report = checking.check_walks(&path_texts::gather_by_path(texts), output)?;
     Ok(report.doubted.into_iter().map(|text| text.doubts).collect())
 }
 

@@ -1,6 +1,6 @@
 //! The report of `wayword check`: counts by verdict and check, and the texts that did not pass.
 
-use super::walks::FileText;
+use super::path_texts::FileText;
 use crate::{count::count_phrase, doubts::TextDoubts, follow::RouteShares};
 use serde::Serialize;
 use std::{collections::BTreeMap, fmt};

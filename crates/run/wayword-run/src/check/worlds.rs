@@ -1,6 +1,6 @@
 //! Decides in which world each text is checked.
 
-use super::walks::FileText;
+use super::path_texts::FileText;
 use crate::check::args::AskedWorld;
 use wayword_checks::{CheckWorld, EvidenceSource};
 

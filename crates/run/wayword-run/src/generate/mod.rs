@@ -16,15 +16,15 @@ use crate::{
     generate::args::GenerateArgs,
     interrupt,
     item::RunItem,
-    looking_for::DetectorLookout,
+    lookout::DetectorLookout,
     output::CommandOutput,
     plan::RunPlan,
     platforms::{self, has_hops},
     run_folder::{RunFolder, WorldData, continued_settings, id_of, is_begun, keep_id, refuse_file},
+    scene_selection,
     settings::{RunJob, RunSettings},
     settings_file as config, stores,
     team::RoleTeam,
-    usable,
     watch::{self, CommandWatch},
 };
 use fill::ItemWorkshop;
@@ -39,7 +39,8 @@ pub fn run_generate(args: &GenerateArgs, output: &CommandOutput) -> Result<Exit,
     if args.dry_run {
         ModelCalls::rehearse_job(&job)?;
         let platform = platforms::open_platform(&job.settings)?;
-        let job = RunJob { settings: usable::settle_left_out(&job.settings, platform.as_ref(), output)?, ..job };
+        let job =
+            RunJob { settings: scene_selection::settle_left_out(&job.settings, platform.as_ref(), output)?, ..job };
         let chunk = args.workers.is_asked().then(|| args.workers.chunk_items());
         let estimate = RunPlan::for_writing(&job, platform.as_ref())?.estimate_calls(chunk)?;
         output.print_result(&estimate, &estimate);
@@ -138,7 +139,7 @@ pub fn generate_into(folder: &Path, job: &RunJob, output: &CommandOutput) -> Res
     let is_new = !is_begun(folder);
     let mut job = job.clone();
     if is_new {
-        job.settings = usable::settle_left_out(&job.settings, platform.as_ref(), output)?;
+        job.settings = scene_selection::settle_left_out(&job.settings, platform.as_ref(), output)?;
     }
     let job = &job;
     let plan = RunPlan::for_writing(job, platform.as_ref())?;
@@ -147,7 +148,7 @@ pub fn generate_into(folder: &Path, job: &RunJob, output: &CommandOutput) -> Res
     }
     let settings = &plan.settings_with_hashes()?;
     if is_new {
-        usable::tell_of_episodes(settings, &plan.items, platform.as_ref(), output)?;
+        scene_selection::tell_of_episodes(settings, &plan.items, platform.as_ref(), output)?;
         refuse_impossible_paths(&plan.items, settings, platform.as_ref())?;
     }
     // A new folder is made after the models are loaded, so that a model that does not fit into the memory leaves none.

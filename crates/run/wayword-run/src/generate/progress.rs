@@ -6,7 +6,7 @@ use crate::{
     count::count_phrase,
     error::{CommandError, Exit},
     interrupt,
-    looking_for::DetectorLookout,
+    lookout::DetectorLookout,
     losses::{LossCounter, MOST_IN_A_ROW},
     output::CommandOutput,
     run_folder::RunFolder,

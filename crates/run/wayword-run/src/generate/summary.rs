@@ -5,7 +5,7 @@ use crate::{
     calls::CallSpending,
     count::count_phrase,
     error::{CommandError, Exit},
-    looking_for::DetectorLookout,
+    lookout::DetectorLookout,
     output::tame_text,
     run_folder::{FailedItem, RejectedText, RunFolder, file, lines},
 };

@@ -10,7 +10,7 @@ use crate::{
     count::count_phrase,
     error::CommandError,
     item::RunItem,
-    looking_for::proposed_names,
+    lookout::proposed_names,
     pipeline,
     platforms::RememberingPlatform,
     settings::{Perception, RunSettings, is_model},

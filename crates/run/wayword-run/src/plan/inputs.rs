@@ -3,7 +3,7 @@
 
 use crate::{
     error::CommandError,
-    looking_for::{DetectorProposals, asked_proposals},
+    lookout::{DetectorProposals, asked_proposals},
     run_folder::{hash_of_file, short_hex},
     settings::{ProviderTables, RunJob},
     styles::MeasuredStyle,

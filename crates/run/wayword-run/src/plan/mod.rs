@@ -10,7 +10,7 @@ use crate::{
     calls::ModelCalls,
     error::CommandError,
     item::{RunItem, check_names, run_items},
-    looking_for::{self, DetectorLookout},
+    lookout::{self, DetectorLookout},
     output::CommandOutput,
     settings::{RunJob, RunSettings},
     styles::{self, MeasuredStyle},
@@ -57,7 +57,7 @@ impl<'a> RunPlan<'a> {
     /// model is not known.
     pub fn for_writing(job: &'a RunJob, platform: &'a dyn Platform) -> Result<Self, CommandError> {
         let styles = styles::find_styles(&job.settings.style)?;
-        looking_for::check_detector_files(&job.settings, &styles)?;
+        lookout::check_detector_files(&job.settings, &styles)?;
         let items = run_items(&job.settings, platform)?;
         check_names(&items)?;
         Ok(Self { job, platform, items, styles, models: JobModels::for_job(job)? })

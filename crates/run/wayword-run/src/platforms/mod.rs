@@ -1,8 +1,8 @@
 //! Opens platforms by their names, and lists them for `wayword platforms`.
 
-mod inside;
 #[cfg(feature = "live")]
 mod live;
+mod python_worlds;
 mod remembering;
 
 use crate::{
@@ -20,7 +20,7 @@ use wayword_house::HousePlatform;
 use wayword_platforms::{matterport::MatterportPlatform, process};
 use wayword_recording::RecordingPlatform;
 
-pub use inside::{forget_inside, put_inside};
+pub use python_worlds::{forget_inside, put_inside};
 pub use remembering::RememberingPlatform;
 
 /// Number of scene surveys that a command keeps in memory.
@@ -232,7 +232,7 @@ pub fn open_at(name: &str, place: PlatformPlace<'_>) -> Result<Box<dyn Platform>
 /// A platform that is another program, or an object of the program that this one runs in. If this program is killed, a second
 /// copy of it ends the other program.
 fn open_child(file: &Path) -> Result<Box<dyn Platform>, CommandError> {
-    if let Some(options) = inside::find_inside(file)? {
+    if let Some(options) = python_worlds::find_inside(file)? {
         return Ok(Box::new(process::ProcessPlatform::start(options, Arc::new(output::pass_on))?));
     }
     let options =

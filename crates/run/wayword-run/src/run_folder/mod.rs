@@ -8,7 +8,7 @@
 //! the run was stopped.
 
 mod config;
-mod held;
+mod folder_lock;
 mod journal;
 pub mod lines;
 mod record;
@@ -29,7 +29,7 @@ use wayword_world::files;
 use config::keep_settings;
 pub use config::{config_of, config_text, differing_keys, keep_config, refuse_other_format, refuse_unmerged, table_of};
 pub use config::{continued_settings, is_begun, settings_of};
-pub use held::{FolderLock, lock_folder};
+pub use folder_lock::{FolderLock, lock_folder};
 pub use journal::{Journal, read_lines};
 pub use record::{FailedItem, PathMap, RejectedText, WalkRecord, extra_fields, name_of_text, text_name};
 pub use world_data::WorldData;

@@ -1,6 +1,6 @@
 //! Settings of a run: flags and a TOML file, resolved once into [`RunSettings`], which the run folder keeps.
 
-mod asked;
+mod asked_settings;
 mod roles;
 mod service;
 mod sources;
@@ -19,7 +19,7 @@ use wayword_synthesis::{
     walk::FrameSelection,
 };
 
-pub use asked::{AskedFrames, AskedPlatform, AskedSettings, Draw, Walks, Writing};
+pub use asked_settings::{AskedFrames, AskedPlatform, AskedSettings, Draw, Walks, Writing};
 pub use roles::{
     AskedPrecision, AskedRoles, FailureFinish, LABELS_ROLE, RULES_ROLE, RunRoles, can_play, is_in_process, is_model,
 };

@@ -1,6 +1,6 @@
 //! The roles of a run: which model, or labels or rules, asks, sees, summarises and writes.
 
-use super::{asked::group, is_false};
+use super::{asked_settings::group, is_false};
 use crate::error::CommandError;
 use clap::{Args, ValueEnum};
 use serde::{Deserialize, Serialize};

@@ -1,6 +1,6 @@
 //! How models are reached, and how much may be spent. No value changes an answer, so a run may be continued with other values.
 
-use super::asked::group;
+use super::asked_settings::group;
 use crate::error::CommandError;
 use clap::Args;
 use serde::Deserialize;

@@ -5,8 +5,8 @@ use super::{DoctorFinding, DoctorGrade, problem_finding};
 use std::collections::BTreeMap;
 use wayword_core::{GraphSize, SceneCondition, SceneLack};
 use wayword_run::{
-    count::count_phrase, error::CommandError, output::CommandOutput, platforms, settings::RunSettings,
-    usable::examine_scenes,
+    count::count_phrase, error::CommandError, output::CommandOutput, platforms, scene_selection::examine_scenes,
+    settings::RunSettings,
 };
 
 /// Examines the scenes of a platform's data, and marks those that cannot be used as left out in the settings.

@@ -2,15 +2,15 @@
 //! stairs and the openings between rooms. It is made of the evidence and the path alone, for writers and checks alike.
 
 mod openings;
+mod stays_and_bends;
 #[cfg(test)]
 mod tests;
 mod things;
-mod ways;
 
 pub(crate) use openings::frames_at_doors;
 pub use openings::{RoomOpening, leads_through_a_door};
+pub use stays_and_bends::{RoomStay, StairFlight, WalkBend};
 pub use things::{RememberedThing, ThingGlimpse, ThingPassing};
-pub use ways::{RoomStay, StairFlight, WalkBend};
 
 use crate::Evidence;
 use wayword_core::{DVec3, Heading, Path, Side};
@@ -45,12 +45,12 @@ impl WalkMemory {
             false => Vec::new(),
         };
         let headings: Vec<Heading> = path.frames.iter().map(|frame| frame.pose.heading).collect();
-        let stays = ways::find_stays(evidence);
+        let stays = stays_and_bends::find_stays(evidence);
         let openings = openings::find_openings(&stays, evidence);
         Self {
             things: things::remember_things(evidence, &eyes, &headings),
-            bends: ways::find_bends(&evidence.moves),
-            flights: ways::find_flights(evidence),
+            bends: stays_and_bends::find_bends(&evidence.moves),
+            flights: stays_and_bends::find_flights(evidence),
             stays,
             openings,
             eyes,

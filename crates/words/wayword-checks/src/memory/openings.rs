@@ -1,6 +1,6 @@
 //! Finds the places where a walk goes from one room to another, and whether there is a door.
 
-use super::{RoomStay, ways};
+use super::{RoomStay, stays_and_bends};
 use crate::Evidence;
 use wayword_language::lexicon::{ThingClass, find_thing, room_name};
 
@@ -71,7 +71,8 @@ pub(super) fn find_openings(stays: &[RoomStay], evidence: &Evidence) -> Vec<Room
 
 /// The frames on either side of a door or doorway through which the walk leads.
 pub(crate) fn frames_at_doors(evidence: &Evidence) -> Vec<usize> {
-    let through = find_openings(&ways::find_stays(evidence), evidence).into_iter().filter(|opening| opening.has_door);
+    let through =
+        find_openings(&stays_and_bends::find_stays(evidence), evidence).into_iter().filter(|opening| opening.has_door);
     through.flat_map(|opening| [opening.before, opening.behind]).collect()
 }
 

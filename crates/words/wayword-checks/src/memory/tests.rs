@@ -142,7 +142,7 @@ fn small_turns_to_one_side_are_one_bend_and_a_winding_way_has_none() {
     let step = |deg: f64| wayword_core::PathMove { turn_rad: deg.to_radians(), distance_m: 1.0, rise_m: 0.0 };
     let bends = |turns: &[f64]| -> Vec<(usize, usize, f64)> {
         let moves: Vec<_> = turns.iter().map(|deg| step(*deg)).collect();
-        let told = ways::find_bends(&moves);
+        let told = stays_and_bends::find_bends(&moves);
         told.iter().map(|bend| (bend.first, bend.last, bend.turn_rad.to_degrees().round())).collect()
     };
     assert_eq!(bends(&[0.0, 25.0, 28.0, 22.0, 0.0]), [(1, 3, 75.0)]);

@@ -1,7 +1,7 @@
 //! Corrections to the weights for single names of objects and rooms, fitted on the user's own dataset. People name
 //! some things more reliably than their class, and some less.
 
-use super::{claims::PlaceClaim, sight::MissedClaim, weights::SilenceWeights};
+use super::{claim_sight::MissedClaim, claims::PlaceClaim, weights::SilenceWeights};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use wayword_language::lexicon::{kinds_of, room_name};

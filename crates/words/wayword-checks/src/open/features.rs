@@ -1,9 +1,9 @@
 //! Turns the evidence about a claimed place into features, the numbers that weights are fitted to.
 
 use super::{
+    claim_sight::{ClaimCase, ClaimSight, MissedClaim, class_name},
     claims::PlaceClaim,
     relation::WalkerRelation,
-    sight::{ClaimCase, ClaimSight, MissedClaim, class_name},
     weights::SilenceWeights,
 };
 use crate::evidence::{Evidence, ListedDistance, NEAR_M, PathSurroundings};

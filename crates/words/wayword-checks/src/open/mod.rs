@@ -5,6 +5,7 @@
 //! text and no rate by the name of an object or a building.
 
 mod calibration;
+mod claim_sight;
 mod claims;
 mod climbs;
 mod distances;
@@ -16,7 +17,6 @@ mod places;
 mod relation;
 mod repeats;
 mod sides;
-mod sight;
 mod stretches;
 #[cfg(test)]
 mod tests;
@@ -28,11 +28,11 @@ use wayword_core::{CheckFinding, CheckKind, Verdict};
 use wayword_language::reading::{EventContent, TextReading};
 
 pub use calibration::{Calibration, ClaimObservation, NameOffsets};
+pub use claim_sight::{ClaimCase, ClaimSight, MissedClaim, class_name};
 pub use claims::{PlaceClaim, read_claims};
 pub use expected::is_expected;
 pub use features::sight_of_claim;
 pub use relation::WalkerRelation;
-pub use sight::{ClaimCase, ClaimSight, MissedClaim, class_name};
 pub use weights::{SilenceWeights, WeightTable};
 
 /// The mistakes in the places, the order, the turns and the storeys of another author's text. `whole` is the reading

@@ -2,11 +2,11 @@
 
 use super::{
     Calibration,
+    claim_sight::{ClaimSight, MissedClaim},
     claims::{PlaceClaim, read_claims},
     features::sight_of_claim,
     relation::WalkerRelation,
     sides,
-    sight::{ClaimSight, MissedClaim},
     weights::{SilenceWeights, WeightTable},
 };
 use crate::{CheckSubject, evidence::EvidenceSource, landmarks::is_beyond, new_finding};

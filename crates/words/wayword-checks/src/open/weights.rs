@@ -1,6 +1,6 @@
 //! The weights that ship with the program: how much a missing label means for a claim.
 
-use super::sight::{ClaimCase, MissedClaim, class_name};
+use super::claim_sight::{ClaimCase, MissedClaim, class_name};
 use serde::{Deserialize, Serialize};
 use std::{
     collections::{BTreeMap, BTreeSet},

@@ -2,11 +2,11 @@
 //! suggests these.
 //!
 //! [`sites`] computes the gain of each possible change. [`find_doubts`] selects those with enough gain, by [`DoubtBounds`];
-//! [`said`] adds the doubts from checks and ambiguity. [`wayword_core::doubt::apart_in`] combines all of them.
+//! [`from_checks`] adds the doubts from checks and ambiguity. [`wayword_core::doubt::apart_in`] combines all of them.
 
 mod bounds;
-mod others;
-pub mod said;
+pub mod from_checks;
+mod other_places;
 mod ways;
 
 use crate::{
@@ -146,7 +146,7 @@ pub fn find_doubts(
     (bounds, findings): (&DoubtBounds, &[CheckFinding]),
 ) -> Vec<TextDoubt> {
     let sites = find_sites(text, guide, known, weights);
-    let mut doubts = said::doubts_from_findings(findings);
+    let mut doubts = from_checks::doubts_from_findings(findings);
     for doubt in &mut doubts {
         let is_wrong = doubt.cause == DoubtCause::Wrong;
         let motion = sites.iter().filter(|site| site.tells_motion() && is_within(doubt.span, site.span));
@@ -206,7 +206,7 @@ pub fn find_sites(text: &str, guide: &Guide, known: KnownWalk<'_>, weights: &Fea
     let walk = OneWalk::new(known.building, known.walk, known.heading_rad, weights);
     let mut sites = step_sites(&spelt, guide, known, weights);
     sites.extend(ways::way_sites(&spelt, guide, &walk));
-    sites.extend(others::other_place_sites(&spelt, guide, known, &walk));
+    sites.extend(other_places::other_place_sites(&spelt, guide, known, &walk));
     sites.extend(swap_sites(&spelt, guide, known, weights));
     sites
 }

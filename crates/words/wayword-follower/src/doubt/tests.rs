@@ -77,7 +77,7 @@ fn of_findings_ignores_form_and_unknown_words() {
         finding(CheckKind::Landmarks, Verdict::Unverified),
     ];
     let doubts: Vec<_> =
-        said::doubts_from_findings(&findings).into_iter().map(|doubt| (doubt.grade, doubt.cause)).collect();
+        from_checks::doubts_from_findings(&findings).into_iter().map(|doubt| (doubt.grade, doubt.cause)).collect();
     assert_eq!(doubts, [(DoubtGrade::Likely, DoubtCause::Wrong), (DoubtGrade::Uncertain, DoubtCause::Unverified)]);
 }
 
@@ -88,10 +88,10 @@ fn of_ambiguity_suggests_a_name_that_identifies_the_end() {
     let guide = Guide::from_reading(text, &reading);
     let ambiguity =
         TextAmbiguity { ends: Some(2), objects: 3, told_apart_by: Some("kitchen".into()), unverified: None };
-    let doubts = said::doubts_from_ambiguity(text, &guide, &reading, &ambiguity);
+    let doubts = from_checks::doubts_from_ambiguity(text, &guide, &reading, &ambiguity);
     assert_eq!(told(text, &doubts), [("door", vec!["door in the kitchen"]), ("lamp", vec![])]);
     let clear = TextAmbiguity { ends: Some(1), objects: 1, ..ambiguity };
-    assert_eq!(said::doubts_from_ambiguity(text, &guide, &reading, &clear), []);
+    assert_eq!(from_checks::doubts_from_ambiguity(text, &guide, &reading, &clear), []);
 }
 
 #[test]

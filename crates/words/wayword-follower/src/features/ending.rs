@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     guide::GuideTrial,
-    near::{CLASSES, FAR_CLASS},
+    nearness::{CLASSES, FAR_CLASS},
     tree::WalkTree,
 };
 

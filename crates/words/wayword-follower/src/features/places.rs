@@ -10,7 +10,7 @@ use super::{
 use crate::{
     building::{offset_bearing, wrap_angle},
     guide::{GuideTrial, LocatedMention},
-    near::{CLASSES, FAR_CLASS},
+    nearness::{CLASSES, FAR_CLASS},
 };
 use wayword_core::Side;
 

@@ -1,7 +1,7 @@
 //! The tables of features. Each table has a consecutive range of feature numbers, one for each combination of its
 //! dimensions.
 
-use crate::{guide::GuideStepKind, near::CLASSES};
+use crate::{guide::GuideStepKind, nearness::CLASSES};
 use wayword_language::reading::steps::StepRelation;
 
 /// A table of features.

@@ -1,6 +1,6 @@
 use super::*;
 use std::sync::Arc;
-use wayword_checks::{CheckSubject, Evidence, EvidenceSource, check_text, detected::DetectorRates};
+use wayword_checks::{CheckSubject, Evidence, EvidenceSource, check_text, detection::DetectorRates};
 use wayword_core::{
     CheckKind, DVec3, DepthImage, DetectedBox, DetectionSpot, DetectorScoring, DialogueExchange, Frame, Image,
     InstructionStyle, ModelError, ObjectId, PathMotion, PathRequest, PlatformError, SceneId, Verdict, ViewThird,
@@ -148,10 +148,10 @@ fn of_several_finds_the_nearest_counts_and_a_door_has_no_distance() {
     let spot =
         |score, distance_m| DetectionSpot { found: DetectedBox { box_px: [0.0; 4], score }, off_rad: 0.0, distance_m };
     let spots = [spot(0.9, Some(6.0)), spot(0.6, Some(2.0))];
-    assert_eq!(testimony::nearest_spot(&spots, "chair"), spots[1]);
-    assert_eq!(testimony::nearest_spot(&spots, "door"), spot(0.9, None), "it would be that of the room behind");
+    assert_eq!(corrections::nearest_spot(&spots, "chair"), spots[1]);
+    assert_eq!(corrections::nearest_spot(&spots, "door"), spot(0.9, None), "it would be that of the room behind");
     let unknown = [spot(0.9, None), spot(0.6, None)];
-    assert_eq!(testimony::nearest_spot(&unknown, "chair"), unknown[0]);
+    assert_eq!(corrections::nearest_spot(&unknown, "chair"), unknown[0]);
 }
 
 #[test]

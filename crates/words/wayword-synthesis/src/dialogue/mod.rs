@@ -4,7 +4,7 @@
 //! supplies it. So the same code runs with a model, a recording or a test.
 
 mod answers;
-mod clean;
+mod extract;
 mod faults;
 mod news;
 mod questions;
@@ -154,7 +154,7 @@ impl Dialogue {
     /// Takes the asker's question, even with text that a model put around it. The asking ends on `None`, on a text
     /// without a question, and on a question with the same words as an earlier one.
     pub fn take_question(&mut self, question: Option<String>) {
-        let question = question.and_then(|question| clean::extract_question(&question));
+        let question = question.and_then(|question| extract::extract_question(&question));
         let is_new = |question: &String| {
             !self.transcript.iter().any(|before| same_words(&before.question) == same_words(question))
         };
@@ -167,7 +167,7 @@ impl Dialogue {
     pub fn take_answer(&mut self, answer: &str) {
         let Some(PendingQuestion { question, trouble }) = self.pending.take() else { return };
         let asked = if trouble.is_some() { trouble::rephrase_question(&question) } else { question.clone() };
-        let answer = clean::extract_answer(answer, &asked);
+        let answer = extract::extract_answer(answer, &asked);
         let found = trouble::answer_trouble(&asked, &answer, &self.transcript)
             .or_else(|| trouble::answer_trouble(&question, &answer, &self.transcript));
         if found.is_some() && trouble.is_none() {

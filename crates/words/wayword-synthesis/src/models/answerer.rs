@@ -1,6 +1,6 @@
 //! A vision-language model as the answerer.
 
-use super::{PERCEPTION_SEED, clean::whole_sentences};
+use super::{PERCEPTION_SEED, plain_text::whole_sentences};
 use crate::{
     dialogue::rephrase_question,
     prompts::{PromptManner, Prompts},

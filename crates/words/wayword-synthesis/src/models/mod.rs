@@ -6,7 +6,7 @@
 mod answerer;
 mod asker;
 mod chatter;
-mod clean;
+mod plain_text;
 mod summariser;
 mod writer;
 

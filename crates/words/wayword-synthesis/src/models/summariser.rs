@@ -3,7 +3,7 @@
 use super::{
     PERCEPTION_SEED,
     chatter::is_refusal,
-    clean::{plain_text, whole_sentences},
+    plain_text::{plain_text, whole_sentences},
     send_message,
 };
 use crate::{

@@ -1,7 +1,7 @@
 use super::*;
 use crate::{
     dialogue::{CaptionSummariser, OPENING_REQUEST, QuestionAsker},
-    prompts::{PromptManner, Prompts, trial},
+    prompts::{PromptManner, Prompts, trial_fill},
     style::{StyleProfile, built_in},
     writer::{FramePicture, InstructionWriter, WriteError, WritingBrief},
 };
@@ -123,7 +123,7 @@ fn answerer_sends_the_picture_and_repeats_cut_answers() {
 #[test]
 fn a_text_of_two_megabytes_is_refused_and_not_sent_back_whole() {
     let long = "Go past the sofa and turn left at the lamp. ".repeat(50_000);
-    let walk = trial::trial_walk(PathMotion::Known).unwrap();
+    let walk = trial_fill::trial_walk(PathMotion::Known).unwrap();
     let style = built_in("r2r").unwrap();
     let profile = StyleProfile::from_references(&style.references);
     let memory = walk.memory();
@@ -153,7 +153,7 @@ fn errors_of_a_model_are_passed_on() {
 
 #[test]
 fn a_refusal_is_no_text_and_a_writer_that_sees_gets_the_pictures() {
-    let walk = trial::trial_walk(PathMotion::Known).unwrap();
+    let walk = trial_fill::trial_walk(PathMotion::Known).unwrap();
     let style = built_in("r2r").unwrap();
     let profile = StyleProfile::from_references(&style.references);
     let image = Arc::new(Image::new(1, 1, vec![0; 3]).unwrap());

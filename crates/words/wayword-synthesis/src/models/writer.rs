@@ -1,6 +1,6 @@
 //! A language model that writes instructions.
 
-use super::{chatter::is_refusal, clean::plain_text, send_message};
+use super::{chatter::is_refusal, plain_text::plain_text, send_message};
 use crate::{
     prompts::Prompts,
     writer::{InstructionWriter, WriteError, WritingBrief},

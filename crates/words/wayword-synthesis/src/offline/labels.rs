@@ -5,7 +5,7 @@
 //! missing label means "not sure" and not "no", unless the platform lists everything or a calibration decides
 //! otherwise.
 
-use super::listed::labels_as_json;
+use super::structured_answer::labels_as_json;
 use crate::dialogue::{QuestionSubject, QuestionThing, read_question};
 use std::sync::Arc;
 use wayword_checks::open::{Calibration, is_expected};

@@ -1,11 +1,11 @@
 //! The parts that need no model: answers from ground-truth labels, and rules that find how a target differs from
 //! similar objects.
 
+mod around_frame;
 mod describe;
-mod distinguish;
 mod labels;
-mod listed;
+mod structured_answer;
 
+pub use around_frame::list_around_frame;
 pub use describe::{BuildingListing, describe_target};
-pub use distinguish::list_around_frame;
 pub use labels::LabelAnswerer;

@@ -6,8 +6,8 @@
 
 mod bounds;
 mod corrections;
-mod remembered;
-pub(crate) mod trial;
+mod memory_lines;
+pub(crate) mod trial_fill;
 mod writing;
 
 use minijinja::{Environment, ErrorKind, UndefinedBehavior, context};
@@ -117,7 +117,7 @@ impl Prompts {
         }
         let hash = hash.finalize().iter().take(8).map(|byte| format!("{byte:02x}")).collect();
         let prompts = Self { templates, hash };
-        trial::fill_all(&prompts)?;
+        trial_fill::fill_all(&prompts)?;
         Ok(prompts)
     }
 

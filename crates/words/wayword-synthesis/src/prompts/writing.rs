@@ -1,6 +1,6 @@
 //! Computes the values that fill the writing prompt: frames, moves, references, constraints.
 
-use super::{corrections::refusal_reasons, remembered::remembered_lines};
+use super::{corrections::refusal_reasons, memory_lines::remembered_lines};
 use crate::{walk::ObservedWalk, writer::WritingBrief};
 use minijinja::{Value, context};
 use rand::seq::index;

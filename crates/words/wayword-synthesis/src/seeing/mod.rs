@@ -3,14 +3,14 @@
 //! A capable model answers in one call. Its answer is parsed leniently and turned into a caption by rules. If it cannot
 //! be parsed, the request is repeated once with the reason, and the second answer is read as free text if necessary.
 
+mod caption;
 mod json;
 mod names;
-mod read;
+mod read_answer;
 #[cfg(test)]
 mod tests;
-mod told;
 
-pub(crate) use told::caption_text;
+pub(crate) use caption::caption_text;
 
 use crate::{
     dialogue::{
@@ -56,25 +56,27 @@ pub(crate) fn see_view(view: &View, observers: ObservationRoles<'_>, questions: 
     let mut transcript = Vec::new();
     let first = ask_in_form(view, VIEW_REQUEST, observers)?;
     transcript.push(DialogueExchange::new(VIEW_REQUEST, cut_answer(&first)));
-    let (seen, form) = match read::read_view_answer(&first, false) {
+    let (seen, form) = match read_answer::read_view_answer(&first, false) {
         Ok(seen) => (Some(seen), None),
         Err(fault) => {
             let question = format!("{REPEAT_REQUEST_PREFIX}{fault}");
             let second = ask_in_form(view, &question, observers)?;
             let trouble = if refuses_to_look(&first) { AnswerTrouble::Refusal } else { AnswerTrouble::Form };
             transcript.push(DialogueExchange { question, answer: cut_answer(&second), trouble: Some(trouble) });
-            match read::read_view_answer(&second, false) {
+            match read_answer::read_view_answer(&second, false) {
                 Ok(seen) => (Some(seen), Some(FormOutcome::Mended)),
                 // The complete part of a cut answer is better than no answer.
                 Err(_) => (
-                    read::read_view_answer(&second, true).or_else(|_| read::read_view_answer(&first, true)).ok(),
+                    read_answer::read_view_answer(&second, true)
+                        .or_else(|_| read_answer::read_view_answer(&first, true))
+                        .ok(),
                     Some(FormOutcome::Broken),
                 ),
             }
         }
     };
     let Some(seen) = seen else { return Ok(Caption { form, ..as_words(transcript, by)? }) };
-    let mut caption = told::caption_from_view(seen, by);
+    let mut caption = caption::caption_from_view(seen, by);
     for exchange in ask_open_questions(view, open_questions(&caption).into_iter().take(questions).collect(), observers)?
     {
         apply_answer(&mut caption, &exchange, by);
@@ -156,5 +158,5 @@ fn apply_answer(caption: &mut Caption, exchange: &DialogueExchange, by: &str) {
         doubted.filter(|before| names_agree(&before.name, &name)).for_each(|before| before.witness = witness);
     }
     caption.text =
-        told::caption_text(caption.room.as_deref(), &caption.perhaps_rooms, &caption.sightings, &caption.ways);
+        caption::caption_text(caption.room.as_deref(), &caption.perhaps_rooms, &caption.sightings, &caption.ways);
 }

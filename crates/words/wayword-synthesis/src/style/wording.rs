@@ -4,7 +4,7 @@
 //! measured on its references and smoothed with the built-in ones, which decide if the references show too little.
 
 use super::parse_wording;
-use crate::weighed::draw_weighted;
+use crate::weighted_draw::draw_weighted;
 use rand_chacha::ChaCha8Rng;
 use std::{collections::BTreeMap, sync::LazyLock};
 use wayword_core::WordingPolicy;

@@ -15,7 +15,7 @@ mod place;
 mod route;
 mod rules;
 mod task;
-mod telling;
+mod way;
 
 use crate::{style::StyleProfile, walk::ObservedWalk};
 use std::sync::Arc;

@@ -2,7 +2,7 @@
 
 use crate::{
     style::PlaceWording,
-    weighed::draw_weighted,
+    weighted_draw::draw_weighted,
     writer::{WriteError, WritingBrief, phrases::storey_ordinal, task::free_object},
 };
 use rand::Rng;

@@ -1,7 +1,7 @@
 //! Helpers for words and random choices that the writers of ways and of places share. In templates `{s}` is a side,
 //! `{l}` a landmark, `{r}` a room.
 
-use crate::weighed::draw_weighted;
+use crate::weighted_draw::draw_weighted;
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use wayword_core::PathMotion;

@@ -1,6 +1,6 @@
 //! The writer that works by rules; their parameters are measured on a style's references.
 
-use super::{InstructionWriter, WriteError, WritingBrief, dice::TextDice, place::the_place, telling};
+use super::{InstructionWriter, WriteError, WritingBrief, dice::TextDice, place::the_place, way};
 
 /// Writes from captions and moves. If the references mention turns, it describes the way step by step; otherwise it
 /// names the place at the end. Length, sentences, storeys, task and full stop are drawn from the measured references
@@ -18,7 +18,7 @@ impl InstructionWriter for RulesWriter {
         if !brief.profile.tells_turns() {
             return the_place(brief, dice);
         }
-        let task = telling::draw_ending(brief, &mut dice.named_rng(&["task"]))?;
-        Ok(telling::the_way(brief, task.as_ref(), dice))
+        let task = way::draw_ending(brief, &mut dice.named_rng(&["task"]))?;
+        Ok(way::the_way(brief, task.as_ref(), dice))
     }
 }

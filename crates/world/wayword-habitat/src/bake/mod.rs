@@ -16,7 +16,7 @@ use crate::{
 };
 use glam::{UVec3, Vec3};
 use rerecast::{Aabb3d, AreaType, DetailNavmesh, HeightfieldBuilder, PolygonNavmesh, SubMesh, TriMesh};
-use wayword_core::contain::run_decoder;
+use wayword_core::contain_panics::run_decoder;
 
 /// Most columns of voxels: 250 m x 250 m at Habitat's 5 cm.
 const MAX_COLUMNS: f32 = 25e6;

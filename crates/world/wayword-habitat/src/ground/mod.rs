@@ -5,17 +5,17 @@
 //! over shared edges.
 
 #[cfg(test)]
-mod exact;
+mod exact_search_tests;
 mod frames;
 mod geodesic;
 mod islands;
 mod levels;
 mod locate;
-mod maze;
 mod polygon;
 mod portals;
 mod roadmap;
 mod sample;
+mod search_mesh;
 mod stride;
 #[cfg(test)]
 pub(crate) mod tests;
@@ -27,8 +27,8 @@ pub use roadmap::viewpoint_graph;
 pub use stride::GroundStride;
 
 use crate::navmesh::{EdgeNeighbour, NavMesh};
-use maze::IslandSearchMesh;
 use polygon::GroundPolygon;
+use search_mesh::IslandSearchMesh;
 use std::sync::OnceLock;
 use wayword_core::DVec3;
 

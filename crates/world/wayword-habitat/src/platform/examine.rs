@@ -2,13 +2,13 @@
 
 use super::{
     files::SceneFiles,
-    fit::{self, GraphMisfit},
     graph,
+    graph_fit::{self, GraphMisfit},
 };
 use crate::{
-    columns::TriangleColumns,
     scene::{HabitatStage, SceneModel},
     semantics::{self, SemanticFiles},
+    triangle_columns::TriangleColumns,
 };
 use wayword_core::{GraphFit, GraphSize, PlatformError, RoomNames, SceneCondition, SceneId, SceneLack};
 
@@ -50,7 +50,7 @@ fn fill_condition(condition: &mut SceneCondition, files: &SceneFiles) -> Result<
             condition.graph = Some(GraphSize { viewpoints: built.len(), edges });
             let storeys = built.viewpoints().filter_map(|viewpoint| built.level_of(viewpoint)).max();
             condition.storeys = storeys;
-            let judged = fit::judge_fit(&TriangleColumns::with_walls(model.triangles()), &connectivity);
+            let judged = graph_fit::judge_fit(&TriangleColumns::with_walls(model.triangles()), &connectivity);
             condition.fit = Some(fit_of(&judged));
             condition.unusable = judged.err().map(|GraphMisfit { reason, hint, .. }| SceneLack {
                 what: format!("{}: {reason}", file.display()),

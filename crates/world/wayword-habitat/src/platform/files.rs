@@ -1,7 +1,7 @@
 //! Finds the scenes in a folder and the files that belong to each.
 
 use crate::{
-    fault::FileError,
+    file_error::FileError,
     scene::{HabitatStage, files_beside, scene_stem},
     semantics::SemanticFiles,
 };

@@ -1,7 +1,7 @@
 //! Reads the viewpoint graph of a scene from a file in Matterport's format.
 
-use super::fit;
-use crate::{columns::TriangleColumns, fault::FileError, scene::SceneModel};
+use super::graph_fit;
+use crate::{file_error::FileError, scene::SceneModel, triangle_columns::TriangleColumns};
 use std::path::Path;
 use wayword_core::{DVec3, PlatformError, ViewpointGraph};
 use wayword_world::connectivity::{self, ConnectivityGraph};
@@ -22,7 +22,7 @@ pub(super) fn read_connectivity(file: &Path) -> Result<ConnectivityGraph, Platfo
 pub(super) fn read_graph(file: &Path, model: Option<&SceneModel>) -> Result<ViewpointGraph, PlatformError> {
     let connectivity = read_connectivity(file)?;
     if let Some(model) = model {
-        let judged = fit::judge_fit(&TriangleColumns::with_walls(model.triangles()), &connectivity);
+        let judged = graph_fit::judge_fit(&TriangleColumns::with_walls(model.triangles()), &connectivity);
         judged.map_err(|misfit| FileError::new(file, misfit.reason, misfit.hint))?;
     }
     build_graph(file, &connectivity).map_err(PlatformError::from)

@@ -5,8 +5,8 @@
 //! are rooms below.
 
 use crate::{
-    columns::{OverheadCover, TriangleColumns},
     ground::NavMeshGround,
+    triangle_columns::{OverheadCover, TriangleColumns},
 };
 use wayword_core::{GroundCover, GroundIsland, seeded_rng};
 

@@ -2,14 +2,14 @@
 
 mod examine;
 mod files;
-mod fit;
 mod graph;
+mod graph_fit;
+mod graph_pairing;
 #[cfg(test)]
 mod graph_tests;
-mod home;
 mod islands;
-mod pairs;
 mod sample;
+mod scene;
 #[cfg(test)]
 mod tests;
 mod walkable;
@@ -19,8 +19,8 @@ use crate::{
     scene::{HabitatStage, SceneModel},
 };
 use files::SceneFiles;
-use home::HabitatScene;
-use pairs::GraphPairing;
+use graph_pairing::GraphPairing;
+use scene::HabitatScene;
 use std::{
     collections::{BTreeMap, BTreeSet},
     path::{Path as FilePath, PathBuf},
@@ -31,7 +31,7 @@ use wayword_core::{
     RecentCache, SceneCondition, SceneId, View, ViewGaze, ViewpointGraph, ViewpointId,
 };
 use wayword_render::to_flat_gaze;
-use wayword_world::said::OutputListener;
+use wayword_world::output_lines::OutputListener;
 
 /// Scenes that are kept in memory at a time: one of HM3D takes a few hundred MB.
 const SCENES_IN_MEMORY: usize = 2;
@@ -92,7 +92,7 @@ impl HabitatPlatform {
     pub fn open(place: &FilePath, options: HabitatOptions, hear: OutputListener) -> Result<Self, PlatformError> {
         let scenes = files::find_scenes(place)?;
         let pairs = match &options.connectivity {
-            Some(folder) => pairs::pair_graphs(scenes, folder)?,
+            Some(folder) => graph_pairing::pair_graphs(scenes, folder)?,
             None => GraphPairing::without_graphs(scenes),
         };
         let (ready, examined, told) =

@@ -1,12 +1,12 @@
 //! Random paths: the shortest way between two random places of the island that paths stay on, with frames along it.
 
-use super::{home::HabitatScene, walkable::WalkableGround};
+use super::{scene::HabitatScene, walkable::WalkableGround};
 use crate::{axes::EYE_M, ground::stops_along};
 use rand::Rng;
 use wayword_core::{DVec3, Frame, Heading, Path, PathRequest, PathTarget, PlatformError, path::PathStop, seeded_rng};
 use wayword_world::{
     graph_walk::{self, choose_target},
-    wander::{OpenGroundScene, sample_open_path},
+    open_ground::{OpenGroundScene, sample_open_path},
 };
 
 /// A random path with a length within `request`: over the ground, or along the graph if that comes from a file.

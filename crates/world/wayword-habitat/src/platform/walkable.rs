@@ -8,11 +8,11 @@ use super::{
 use crate::{
     axes::EYE_M,
     bake::bake_navmesh,
-    columns::TriangleColumns,
-    fault::{self, FileError},
+    file_error::{self, FileError},
     ground::{NavMeshGround, viewpoint_graph},
     navmesh::{NavMesh, NavMeshSettings},
     scene::{HabitatStage, SceneModel},
+    triangle_columns::TriangleColumns,
 };
 use wayword_core::{DVec3, GroundIsland, GroundRoute, PlatformError, ViewpointGraph, graph::GraphError};
 
@@ -39,7 +39,7 @@ pub(super) fn read_or_bake_navmesh(
 ) -> Result<NavMesh, FileError> {
     match options.navmesh.clone().or_else(|| files.navmesh_file(stage)) {
         Some(file) => {
-            let bytes = fault::read_bytes(&file, MAX_NAVMESH, NAVMESH_HINT)?;
+            let bytes = file_error::read_bytes(&file, MAX_NAVMESH, NAVMESH_HINT)?;
             NavMesh::from_bytes(&bytes).map_err(|error| FileError::new(&file, error.to_string(), NAVMESH_HINT))
         }
         None => bake_navmesh(model, &NavMeshSettings::default())

@@ -1,6 +1,6 @@
 //! A glTF file's document with its buffers. Every reference is checked when it is followed.
 
-use crate::fault::{self, FileError};
+use crate::file_error::{self, FileError};
 use gltf::json::{Index, Root, buffer::View};
 use serde::Deserialize;
 use std::{
@@ -11,7 +11,7 @@ use std::{
     path::{Component, Path, PathBuf},
     rc::Rc,
 };
-use wayword_core::contain::run_decoder;
+use wayword_core::contain_panics::run_decoder;
 
 const EXPORT_HINT: &str = "export the scene again as GLB";
 /// Largest file that is read: HM3D's and Matterport3D's are below 1 GB.
@@ -32,7 +32,7 @@ pub(super) struct GltfAsset {
 impl GltfAsset {
     pub(super) fn read(file: &Path) -> Result<Self, FileError> {
         let wrong = |reason: String| FileError::new(file, reason, EXPORT_HINT);
-        let bytes = fault::read_bytes(file, MAX_BYTES, "use a GLB or glTF file")?;
+        let bytes = file_error::read_bytes(file, MAX_BYTES, "use a GLB or glTF file")?;
         // The library's validation rejects GOOGLE_texture_basis, so values are checked here where they are used.
         let gltf = run_decoder(|| gltf::Gltf::from_slice_without_validation(&bytes).map_err(|error| error.to_string()))
             .map_err(&wrong)?;
@@ -117,8 +117,8 @@ impl AdjacentFiles {
         if let Some(known) = self.read.borrow().get(&target) {
             return Ok(known.clone());
         }
-        let bytes =
-            fault::read_bytes(&self.folder.join(&target), MAX_BYTES, EXPORT_HINT).map_err(|error| error.to_string())?;
+        let bytes = file_error::read_bytes(&self.folder.join(&target), MAX_BYTES, EXPORT_HINT)
+            .map_err(|error| error.to_string())?;
         self.bytes.set(self.bytes.get().saturating_add(bytes.len() as u64));
         let bytes = Rc::new(bytes);
         self.read.borrow_mut().insert(target, bytes.clone());

@@ -14,7 +14,7 @@ pub(crate) use asset::files_beside;
 pub use stage::HabitatStage;
 pub(crate) use stage::scene_stem;
 
-use crate::{axes::wayword_from_habitat, fault::FileError};
+use crate::{axes::wayword_from_habitat, file_error::FileError};
 use asset::GltfAsset;
 use glam::{DMat3, Vec3};
 use std::{collections::BTreeMap, path::Path};

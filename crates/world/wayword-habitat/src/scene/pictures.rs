@@ -3,7 +3,7 @@
 use super::asset::GltfAsset;
 use basisu::{DecodeFlags, TargetFormat, Transcoder};
 use std::io::Cursor;
-use wayword_core::contain::run_decoder;
+use wayword_core::contain_panics::run_decoder;
 use wayword_render::{MAX_TEXTURE_SIDE, Texture};
 
 /// Texels that any picture may have.

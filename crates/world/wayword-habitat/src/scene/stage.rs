@@ -1,6 +1,6 @@
 //! Reads stage configurations: which file a scene is drawn from, and which direction is up in it.
 
-use crate::fault::{self, FileError};
+use crate::file_error::{self, FileError};
 use glam::{DMat3, DVec3};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
@@ -47,7 +47,7 @@ impl HabitatStage {
         } else {
             file.with_file_name(format!("{}{STAGE_CONFIG_ENDING}", scene_stem(name)))
         };
-        match fault::text_if_there(&config, MAX_BYTES, STAGE_CONFIG_HINT)? {
+        match file_error::text_if_there(&config, MAX_BYTES, STAGE_CONFIG_HINT)? {
             Some(text) => Self::parse(&config, file, &text),
             None if name.ends_with(STAGE_CONFIG_ENDING) => {
                 Err(FileError::new(file, "there is no such file", STAGE_CONFIG_HINT))

@@ -3,7 +3,7 @@
 use super::{SceneSemantics, SemanticThing, hm3d, house, ply, rooms::NumberedRooms};
 use crate::{
     axes::wayword_from_habitat,
-    fault::{self, FileError},
+    file_error::{self, FileError},
     scene::SceneModel,
 };
 use glam::{DMat3, Vec2, Vec3};
@@ -60,7 +60,7 @@ pub(crate) fn check_semantics(files: &SemanticFiles, habitat_from_asset: DMat3) 
 }
 
 fn read_text(file: &Path, hint: &'static str) -> Result<String, FileError> {
-    fault::text_if_there(file, MAX_TEXT, hint)?.ok_or_else(|| FileError::new(file, "there is no such file", hint))
+    file_error::text_if_there(file, MAX_TEXT, hint)?.ok_or_else(|| FileError::new(file, "there is no such file", hint))
 }
 
 fn load_painted(mesh: &Path, annotations: &Path, habitat_from_asset: DMat3) -> Result<SceneSemantics, FileError> {
@@ -110,7 +110,7 @@ fn load_numbered(mesh: &Path, house: &Path, habitat_from_asset: DMat3) -> Result
         house::parse_house(&read_text(house, MATTERPORT_HINT)?)
             .map_err(|reason| FileError::new(house, reason, MATTERPORT_HINT))?;
     let wrong = |reason: String| FileError::new(mesh, reason, MATTERPORT_HINT);
-    let faces = ply::parse_faces(&fault::read_bytes(mesh, MAX_MESH, MATTERPORT_HINT)?).map_err(wrong)?;
+    let faces = ply::parse_faces(&file_error::read_bytes(mesh, MAX_MESH, MATTERPORT_HINT)?).map_err(wrong)?;
     let place = |position: &Vec3| wayword_from_habitat(habitat_from_asset * position.as_dvec3()).as_vec3();
     let positions: Vec<Vec3> = faces.positions.iter().map(place).collect();
     let thing = |object: u32| by_number.get(&object).copied();

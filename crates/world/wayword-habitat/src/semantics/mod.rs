@@ -15,7 +15,7 @@ use rooms::{NumberedRooms, ShellPart};
 use std::collections::BTreeMap;
 use wayword_core::{DVec3, Heading, ObjectId};
 use wayword_render::{PinholeCamera, RenderError, RenderScene, RenderedPicture, render_ids, render_scene};
-use wayword_world::{object_names, region};
+use wayword_world::{object_names, region_letters};
 
 /// An object of a scene.
 #[derive(Clone, Debug, PartialEq)]
@@ -94,7 +94,7 @@ impl SceneSemantics {
         let holds = |region: &&HouseRegion| region.low.cmple(eye).all() && region.high.cmpge(eye).all();
         let size = |region: &HouseRegion| (region.high - region.low).element_product();
         match self.regions.iter().filter(holds).min_by(|a, b| size(a).total_cmp(&size(b))) {
-            Some(inside) => region::room_for_letter(inside.letter),
+            Some(inside) => region_letters::room_for_letter(inside.letter),
             None => self.rooms.room_in_view(eye, heading),
         }
     }

@@ -10,7 +10,7 @@ use ply_rs_bw::{
     ply::{Encoding, Header, Property, PropertyAccess, PropertyAccessResult},
 };
 use std::io::ErrorKind;
-use wayword_core::contain::run_decoder;
+use wayword_core::contain_panics::run_decoder;
 
 /// Longest header, bytes.
 const MAX_HEADER: usize = 1 << 14;

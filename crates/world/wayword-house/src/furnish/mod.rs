@@ -7,15 +7,15 @@ mod bathroom;
 mod bedroom;
 mod built_in;
 mod dining;
-mod dress;
 mod finish;
 mod kitchen;
 mod living;
 mod office;
 mod placing;
-mod reach;
+mod reachable_floor;
 mod service;
 mod stairwell;
+mod wall_hangings;
 mod walls;
 
 use super::{

@@ -9,7 +9,7 @@ use super::super::{
     model::{CEILING_CM, DoorLeaf, FurniturePiece, HouseRoom, WallOpening},
     rect::{RectCm, SpanCm, WallSide},
 };
-use super::{HousePalette, finish::RoomFinishes, reach};
+use super::{HousePalette, finish::RoomFinishes, reachable_floor};
 
 /// A room while it is being furnished.
 pub(super) struct RoomFurnisher<'a> {
@@ -344,7 +344,7 @@ impl<'a> RoomFurnisher<'a> {
     fn keeps_ways_open(&self, footprint: &RectCm) -> bool {
         let obstacles: Vec<_> =
             self.standing_footprints().chain(self.leaves.iter().copied()).chain([*footprint]).collect();
-        reach::ways_stay_open(&self.inner, &obstacles, &self.doorsteps)
+        reachable_floor::ways_stay_open(&self.inner, &obstacles, &self.doorsteps)
     }
 
     /// Puts a small thing on top of a piece, `shift` centimetres along it from its middle and `forward` from its middle

@@ -4,7 +4,7 @@
 //! house's whole depth. Houses of two storeys have the same stairwell on both. At the end the whole plan is mirrored or
 //! turned, so that houses do not look alike.
 
-mod ajar;
+mod door_angles;
 mod openings;
 mod orientation;
 mod program;
@@ -104,7 +104,7 @@ pub(super) fn lay_out(seed: u64) -> HouseLayout {
     let rooms = finish_rooms(&mut dice, &plan);
     let mut ids = ObjectIdCounter(1);
     let mut openings = openings::cut_openings(&mut dice, &plan, &rooms, &mut ids);
-    ajar::set_door_angles(seed, &rooms, &mut openings);
+    door_angles::set_door_angles(seed, &rooms, &mut openings);
     let windows = windows::cut_windows(&plan, &rooms, &openings, &mut ids);
     let stairs = plan.place_stairs(&rooms, &mut ids);
     HouseLayout { storeys, rooms, openings, windows, stairs, next_id: ids.next_id() }

@@ -6,7 +6,7 @@
 mod commands;
 mod controller;
 mod error;
-mod flat;
+mod flatbuffer_reader;
 mod output;
 mod pictures;
 mod platform;
@@ -19,7 +19,7 @@ mod zmtp;
 pub use commands::{BuildCommand, GridPoint, SendFrequency, TdwQuaternion, TdwVector3};
 pub use controller::{BuildResponse, BuildVersion, ControllerOptions, TdwController};
 pub use error::TdwError;
-pub use flat::FlatBufferError;
+pub use flatbuffer_reader::FlatBufferError;
 pub use output::{
     AvatarImages, AvatarPose, AvatarSensor, BuildOutput, NavMeshPath, OnNavMesh, OutputError, PicturePass,
     SegmentedObject, TdwCameraMatrices, TdwObjectBounds, TdwObjectTransform, TdwOccupancyMap, TdwRegion, VersionOutput,

@@ -12,7 +12,7 @@ use crate::live::{
 use std::path::PathBuf;
 use wayword_core::{DVec3, FailureKind, SceneId};
 use wayword_render::PinholeCamera;
-use wayword_world::said;
+use wayword_world::output_lines;
 
 /// Options of the platform.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -79,7 +79,7 @@ impl TdwSimulator {
             address.port()
         ));
         let build = self.controller.connect()?.tdw.clone();
-        self.ear.report_line(&format!("ThreeDWorld build {} has connected", said::to_safe_text(&build, 40)));
+        self.ear.report_line(&format!("ThreeDWorld build {} has connected", output_lines::to_safe_text(&build, 40)));
         Ok(())
     }
 }

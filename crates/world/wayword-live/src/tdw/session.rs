@@ -8,11 +8,11 @@ use super::{
     pictures::{self, PassKind},
 };
 use crate::{
+    labels::{ObjectPalette, SimulatorObject, colour_id},
     live::{SimulatorShot, SimulatorShotKind, SimulatorSurvey},
+    path_sampling::EYE_M,
     raster::FloorRaster,
-    sight::{ObjectPalette, SimulatorObject, colour_id},
     unity::{unity_from_wayword, unity_rotation_from_heading, wayword_from_unity},
-    walk::EYE_M,
 };
 use std::collections::BTreeMap;
 use wayword_core::{DVec3, Heading};

@@ -8,13 +8,13 @@ use super::{
     names,
 };
 use crate::{
+    labels::{ObjectPalette, SimulatorObject, colour_id},
     live::{
         LivePictureOptions, LivePlatform, ProgressListener, Simulator, SimulatorRoom, SimulatorShot, SimulatorShotKind,
         SimulatorSurvey,
     },
-    sight::{ObjectPalette, SimulatorObject, colour_id},
+    path_sampling::EYE_M,
     unity::unity_from_wayword,
-    walk::EYE_M,
 };
 use std::{collections::BTreeMap, time::Duration};
 use wayword_core::{DVec3, FailureKind, SceneId};

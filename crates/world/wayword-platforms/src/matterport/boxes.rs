@@ -4,7 +4,7 @@
 //! w, h], ...]}}}`. View `i` looks along `(i mod 12) * 30` degrees with elevation `(i / 12 - 1) * 30` degrees; boxes
 //! are in pixels of its 640x480 picture with a vertical field of view of 60 degrees.
 
-use super::read;
+use super::file_reading;
 use serde_json::{Map, Value};
 use std::{f64::consts::FRAC_PI_6, path::Path};
 use wayword_core::{Heading, ObjectId, PlatformError, ViewpointId};
@@ -105,10 +105,10 @@ pub(crate) fn ray_through(view: u8, x_px: f64, y_px: f64) -> Option<ViewpointRay
 /// # Errors
 /// If the file does not have this format; the message names the object and the field.
 pub(crate) fn read_boxes(file: &Path, viewpoint: &ViewpointId) -> Result<Option<Vec<ListedObject>>, PlatformError> {
-    let Some(bytes) = read::json_if_there(file, MAX_BYTES, BOXES_HINT)? else {
+    let Some(bytes) = file_reading::json_if_there(file, MAX_BYTES, BOXES_HINT)? else {
         return Ok(None);
     };
-    parse_boxes(&bytes, viewpoint).map(Some).map_err(|reason| read::file_error(file, reason, BOXES_HINT))
+    parse_boxes(&bytes, viewpoint).map(Some).map_err(|reason| file_reading::file_error(file, reason, BOXES_HINT))
 }
 
 fn parse_boxes(bytes: &[u8], viewpoint: &ViewpointId) -> Result<Vec<ListedObject>, String> {
@@ -128,8 +128,8 @@ fn parse_boxes(bytes: &[u8], viewpoint: &ViewpointId) -> Result<Vec<ListedObject
 }
 
 fn parse_listed_object(object: &str, entry: &Value) -> Result<ListedObject, String> {
-    let views = read::list_field(entry, "visible_pos")?;
-    let boxes = read::list_field(entry, "bbox2d")?;
+    let views = file_reading::list_field(entry, "visible_pos")?;
+    let boxes = file_reading::list_field(entry, "bbox2d")?;
     if views.len() != boxes.len() || views.len() > SIMULATOR_VIEW_COUNT {
         let (views, boxes) = (views.len(), boxes.len());
         return Err(format!(
@@ -138,7 +138,7 @@ fn parse_listed_object(object: &str, entry: &Value) -> Result<ListedObject, Stri
     }
     Ok(ListedObject {
         object: ObjectId::new(object).map_err(|error| error.to_string())?,
-        name: object_names::plain_name(read::text_field(entry, "name")?),
+        name: object_names::plain_name(file_reading::text_field(entry, "name")?),
         boxes: views.iter().zip(boxes).map(|(view, found)| parse_seen_box(view, found)).collect::<Result<_, _>>()?,
     })
 }
@@ -150,7 +150,7 @@ fn parse_seen_box(view: &Value, found: &Value) -> Result<SeenBox, String> {
     let numbers = numbers.ok_or("field `bbox2d` has an entry that is not a box of four numbers")?;
     let mut box_px = [0.0; 4];
     for (place, number) in box_px.iter_mut().zip(numbers) {
-        *place = read::read_coordinate(number, "bbox2d")?;
+        *place = file_reading::read_coordinate(number, "bbox2d")?;
     }
     if box_px[2] < 0.0 || box_px[3] < 0.0 {
         return Err("field `bbox2d` has a box of negative size".into());

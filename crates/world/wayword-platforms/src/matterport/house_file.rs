@@ -4,7 +4,7 @@
 //! is the kind of the record. Read here: `L` levels, `R` regions, `P` panoramas, `O` objects, `C` categories. The counts
 //! in `H` are not used.
 
-use super::read;
+use super::file_reading;
 use glam::DVec3;
 use std::{collections::BTreeMap, path::Path};
 use wayword_core::{ObjectId, PlatformError, ViewpointId};
@@ -71,10 +71,10 @@ impl MatterportHouseFile {
 /// # Errors
 /// If the file does not have this format; the message names the line and the column.
 pub(crate) fn read_house_file(file: &Path) -> Result<Option<MatterportHouseFile>, PlatformError> {
-    let Some(text) = read::text_if_there(file, MAX_BYTES, HOUSE_FILE_HINT)? else {
+    let Some(text) = file_reading::text_if_there(file, MAX_BYTES, HOUSE_FILE_HINT)? else {
         return Ok(None);
     };
-    parse_house_file(&text).map(Some).map_err(|reason| read::file_error(file, reason, HOUSE_FILE_HINT))
+    parse_house_file(&text).map(Some).map_err(|reason| file_reading::file_error(file, reason, HOUSE_FILE_HINT))
 }
 
 fn parse_house_file(text: &str) -> Result<MatterportHouseFile, String> {
@@ -153,7 +153,7 @@ impl<'a> HouseFileEntry<'a> {
             let word = self.word_at(column)?;
             let number: f64 =
                 word.parse().map_err(|_| format!("column {}: {word:.20?} is not a number", column + 1))?;
-            read::check_coordinate(number).map_err(|reason| format!("column {}: {reason}", column + 1))
+            file_reading::check_coordinate(number).map_err(|reason| format!("column {}: {reason}", column + 1))
         };
         Ok(DVec3::new(number(column)?, number(column + 1)?, number(column + 2)?))
     }

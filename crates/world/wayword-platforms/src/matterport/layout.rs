@@ -1,6 +1,6 @@
 //! Finds the user's Matterport3D data below a folder, in the places where the tools of its makers put them.
 
-use super::read;
+use super::file_reading;
 use std::path::{Path, PathBuf};
 use wayword_core::{PlatformError, SceneId, ViewpointId};
 
@@ -46,7 +46,7 @@ impl MatterportLayout {
             } else {
                 "there is no such folder"
             };
-            read::file_error(data, reason, DATA_FOLDER_HINT)
+            file_reading::file_error(data, reason, DATA_FOLDER_HINT)
         })?;
         Ok(Self {
             connectivity,

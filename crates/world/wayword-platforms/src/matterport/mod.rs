@@ -4,13 +4,13 @@
 //! which are optional. Its labels come from REVERIE's boxes or the `.house` file, and its room from the file of rooms.
 
 mod boxes;
+pub(crate) mod file_reading;
 mod house_file;
 mod labels;
 mod layout;
 mod object_positions;
 mod photographs;
 mod platform;
-pub(crate) mod read;
 mod rooms;
 mod scene;
 mod thirty_six;

@@ -1,6 +1,6 @@
 //! Reads REVERIE's `objpos.json`: the centres of objects, `{scan: {objId: [x, y, z]}}`, metres, world frame.
 
-use super::read;
+use super::file_reading;
 use glam::DVec3;
 use std::{collections::BTreeMap, path::Path};
 use wayword_core::PlatformError;
@@ -17,10 +17,10 @@ pub(crate) type ObjectPositions = BTreeMap<String, BTreeMap<String, DVec3>>;
 /// # Errors
 /// If the file does not have this format; the message names the scan and the object.
 pub(crate) fn read_object_positions(file: &Path) -> Result<ObjectPositions, PlatformError> {
-    let Some(bytes) = read::json_if_there(file, MAX_BYTES, OBJECT_POSITIONS_HINT)? else {
+    let Some(bytes) = file_reading::json_if_there(file, MAX_BYTES, OBJECT_POSITIONS_HINT)? else {
         return Ok(ObjectPositions::new());
     };
-    parse_object_positions(&bytes).map_err(|reason| read::file_error(file, reason, OBJECT_POSITIONS_HINT))
+    parse_object_positions(&bytes).map_err(|reason| file_reading::file_error(file, reason, OBJECT_POSITIONS_HINT))
 }
 
 fn parse_object_positions(bytes: &[u8]) -> Result<ObjectPositions, String> {
@@ -31,7 +31,7 @@ fn parse_object_positions(bytes: &[u8]) -> Result<ObjectPositions, String> {
         let mut centres = BTreeMap::new();
         for (object, [x, y, z]) in objects {
             for number in [x, y, z] {
-                read::check_coordinate(number)
+                file_reading::check_coordinate(number)
                     .map_err(|reason| format!("scan {scan:.40}, object {object:.40}: {reason}"))?;
             }
             centres.insert(object, DVec3::new(x, y, z));

@@ -1,8 +1,8 @@
 //! Reads the photographs of a viewpoint, and makes a view in any direction from them.
 
 use super::{
+    file_reading::{self, PICTURE_HINT},
     layout::{MatterportLayout, SkyboxFiles},
-    read::{self, PICTURE_HINT},
     thirty_six::ThirtySix,
 };
 use glam::DMat3;
@@ -62,19 +62,19 @@ impl ViewpointPhotographs {
 fn read_cube_map(files: &SkyboxFiles) -> Result<CubeMap, PlatformError> {
     match files {
         SkyboxFiles::Strip(file) => {
-            let strip = read::read_picture(file)?;
+            let strip = file_reading::read_picture(file)?;
             CubeMap::from_strip(strip.width_px(), strip.height_px(), strip.rgb_bytes())
-                .map_err(|error| read::file_error(file, error.to_string(), PICTURE_HINT))
+                .map_err(|error| file_reading::file_error(file, error.to_string(), PICTURE_HINT))
         }
         SkyboxFiles::Faces(files) => {
             let mut faces = Vec::with_capacity(6);
             for file in files {
-                let picture = read::read_picture(file)?;
+                let picture = file_reading::read_picture(file)?;
                 faces.push(CubeFace { side_px: picture.height_px(), rgb: picture.rgb_bytes().to_vec() });
             }
             let faces = <[CubeFace; 6]>::try_from(faces)
-                .map_err(|_| read::file_error(&files[0], "must have six faces", PICTURE_HINT))?;
-            CubeMap::new(faces).map_err(|error| read::file_error(&files[0], error.to_string(), PICTURE_HINT))
+                .map_err(|_| file_reading::file_error(&files[0], "must have six faces", PICTURE_HINT))?;
+            CubeMap::new(faces).map_err(|error| file_reading::file_error(&files[0], error.to_string(), PICTURE_HINT))
         }
     }
 }

@@ -3,7 +3,7 @@
 //! The file has one line per panorama: index, viewpoint, region, letter of the region's label (Matterport3D
 //! `house_segmentations`, data organisation, "region labels").
 
-use super::read;
+use super::file_reading;
 use std::{collections::BTreeMap, path::Path};
 use wayword_core::{PlatformError, ViewpointId};
 
@@ -18,10 +18,10 @@ pub(crate) type RoomLetters = BTreeMap<ViewpointId, char>;
 /// # Errors
 /// If a line does not have this format; the message names the line.
 pub(crate) fn read_rooms(file: &Path) -> Result<Option<RoomLetters>, PlatformError> {
-    let Some(text) = read::text_if_there(file, MAX_BYTES, ROOMS_HINT)? else {
+    let Some(text) = file_reading::text_if_there(file, MAX_BYTES, ROOMS_HINT)? else {
         return Ok(None);
     };
-    parse_rooms(&text).map(Some).map_err(|reason| read::file_error(file, reason, ROOMS_HINT))
+    parse_rooms(&text).map(Some).map_err(|reason| file_reading::file_error(file, reason, ROOMS_HINT))
 }
 
 fn parse_rooms(text: &str) -> Result<RoomLetters, String> {
@@ -54,12 +54,12 @@ fn parse_room_line(words: &[&str]) -> Result<(ViewpointId, char), String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use wayword_world::region;
+    use wayword_world::region_letters;
 
     #[test]
     fn a_line_gives_a_viewpoint_its_room() {
         let rooms = parse_rooms("0 aa 3 k\n1 bb 0 Z\n\n").unwrap();
-        let words: Vec<_> = rooms.values().map(|letter| region::room_for_letter(*letter)).collect();
+        let words: Vec<_> = rooms.values().map(|letter| region_letters::room_for_letter(*letter)).collect();
         assert_eq!(words, [Some("kitchen"), None]);
     }
 

@@ -1,9 +1,10 @@
 //! One building of Matterport3D in memory: its graph, cameras, rooms and objects.
 
 use super::{
+    file_reading,
     house_file::{self, MatterportHouseFile},
     layout::MatterportLayout,
-    read, rooms,
+    rooms,
 };
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -12,7 +13,7 @@ use std::{
 use wayword_core::{ObjectId, PlatformError, SceneId, ViewpointGraph, ViewpointId};
 use wayword_world::{
     connectivity::{self, PanoramaViewpoint},
-    region,
+    region_letters,
 };
 
 const GRAPH_HINT: &str = "copy the file again from Matterport3DSimulator's folder `connectivity`";
@@ -54,8 +55,9 @@ impl MatterportScene {
             layout.house_segmentation_file(scene).map(|file| house_file::read_house_file(&file)).transpose()?.flatten();
         let rooms = layout.rooms_file(scene).map(|file| rooms::read_rooms(&file)).transpose()?.flatten();
         let level = |viewpoint: &ViewpointId| house.as_ref().and_then(|house| house.storey_of_viewpoint(viewpoint));
-        let graph =
-            read.to_viewpoint_graph(level).map_err(|error| read::file_error(&file, error.to_string(), GRAPH_HINT))?;
+        let graph = read
+            .to_viewpoint_graph(level)
+            .map_err(|error| file_reading::file_error(&file, error.to_string(), GRAPH_HINT))?;
         let viewpoints = read.viewpoints.into_iter().map(|viewpoint| (viewpoint.id.clone(), viewpoint)).collect();
         Ok(Self { graph: Arc::new(graph), viewpoints, house, rooms, objects: OnceLock::new() })
     }
@@ -69,6 +71,6 @@ impl MatterportScene {
     pub(crate) fn room_name(&self, viewpoint: &ViewpointId) -> Option<&'static str> {
         let listed = self.rooms.as_ref().and_then(|rooms| rooms.get(viewpoint)).copied();
         let letter = listed.or_else(|| self.house.as_ref()?.room_letter(viewpoint))?;
-        region::room_for_letter(letter)
+        region_letters::room_for_letter(letter)
     }
 }

@@ -3,7 +3,7 @@
 //! The pictures look in 12 directions at 3 elevations each. A pixel of a view is taken from the picture that looks most
 //! nearly in the pixel's direction.
 
-use super::{boxes::SIMULATOR_VIEW_COUNT, read};
+use super::{boxes::SIMULATOR_VIEW_COUNT, file_reading};
 use rayon::prelude::*;
 use std::{f64::consts::FRAC_PI_6, path::Path};
 use wayword_core::{Image, PlatformError, ViewGaze};
@@ -37,17 +37,17 @@ impl ThirtySix {
         let mut views: Vec<Image> = Vec::with_capacity(SIMULATOR_VIEW_COUNT);
         for index in 0..SIMULATOR_VIEW_COUNT {
             let file = folder.join(format!("{index}.jpg"));
-            let view = read::read_picture(&file)?;
+            let view = file_reading::read_picture(&file)?;
             let size = (view.width_px(), view.height_px());
             if u64::from(size.0) * u64::from(size.1) > MAX_PIXELS {
-                return Err(read::file_error(
+                return Err(file_reading::file_error(
                     &file,
                     format!("has {} x {} pixels, more than 1280 x 960", size.0, size.1),
                     VIEWS_HINT,
                 ));
             }
             if views.first().is_some_and(|first| (first.width_px(), first.height_px()) != size) {
-                return Err(read::file_error(
+                return Err(file_reading::file_error(
                     &file,
                     format!("has {} x {} pixels, but 0.jpg has another size", size.0, size.1),
                     VIEWS_HINT,

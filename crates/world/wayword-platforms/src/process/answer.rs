@@ -3,7 +3,7 @@
 use super::fault::ChildFault;
 use serde::Deserialize;
 use serde_json::Value;
-use wayword_world::said::to_safe_text;
+use wayword_world::output_lines::to_safe_text;
 
 /// Longest line of a child, bytes: an answer with a large picture in base64.
 pub(crate) const MAX_LINE_BYTES: usize = 48 << 20;
@@ -68,7 +68,7 @@ mod tests {
     use proptest::prelude::*;
     use serde_json::json;
     use std::io::Cursor;
-    use wayword_world::said::{OutputLine, read_line};
+    use wayword_world::output_lines::{OutputLine, read_line};
 
     #[test]
     fn an_answer_has_an_id_and_either_a_result_or_an_error() {

@@ -17,7 +17,7 @@ use std::{
     thread::{self, JoinHandle},
     time::{Duration, Instant},
 };
-use wayword_world::said::{OutputLine, OutputListener, read_line, to_safe_text};
+use wayword_world::output_lines::{OutputLine, OutputListener, read_line, to_safe_text};
 
 /// How long to wait for a child's end after its output has closed, and then for the rest of its error output.
 const AFTERMATH_WAIT: Duration = Duration::from_millis(500);

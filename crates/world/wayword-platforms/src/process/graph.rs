@@ -2,7 +2,7 @@
 //! places that the child proposes: it is asked for the neighbours of each place, or whether one can walk straight between
 //! two of them.
 
-use super::{keeper::ChildKeeper, labels::plausible_position, protocol::WorldOffer};
+use super::{child_keeper::ChildKeeper, labels::plausible_position, protocol::WorldOffer};
 use serde::Deserialize;
 use serde_json::json;
 use std::collections::BTreeSet;

@@ -11,7 +11,7 @@ use std::{
     thread,
     time::{Duration, Instant},
 };
-use wayword_world::said::OutputListener;
+use wayword_world::output_lines::OutputListener;
 
 /// How often to check whether a child has ended, while waiting for its end.
 const LOOK_EVERY: Duration = Duration::from_millis(5);

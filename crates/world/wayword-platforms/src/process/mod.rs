@@ -15,11 +15,11 @@
 
 mod answer;
 mod child;
+mod child_keeper;
 mod fault;
 mod graph;
 mod group;
 mod guard;
-mod keeper;
 mod labels;
 mod options;
 mod path;

@@ -2,7 +2,7 @@
 //! file or from the caller.
 
 use super::{answer::MAX_LINE_BYTES, guard::GuardProgram};
-use crate::matterport::read;
+use crate::matterport::file_reading;
 use serde::Deserialize;
 use std::{
     fmt,
@@ -11,7 +11,7 @@ use std::{
     time::Duration,
 };
 use wayword_core::PlatformError;
-use wayword_world::said::{OutputLine, to_safe_text};
+use wayword_world::output_lines::{OutputLine, to_safe_text};
 
 const MAX_FILE_BYTES: u64 = 1 << 20;
 const WORLD_FILE_HINT: &str =
@@ -167,12 +167,12 @@ impl ProcessOptions {
     /// # Errors
     /// If the file is missing, or is not a valid world file.
     pub fn read_world_file(file: &Path) -> Result<Self, PlatformError> {
-        let wrong = |reason: String| read::file_error(file, reason, WORLD_FILE_HINT);
+        let wrong = |reason: String| file_reading::file_error(file, reason, WORLD_FILE_HINT);
         if file.extension().is_none_or(|end| end != "json") {
             let program = file.canonicalize().map_err(|error| wrong(error.to_string()))?;
             return Ok(Self::new(program));
         }
-        let text = read::text_if_there(file, MAX_FILE_BYTES, WORLD_FILE_HINT)?
+        let text = file_reading::text_if_there(file, MAX_FILE_BYTES, WORLD_FILE_HINT)?
             .ok_or_else(|| wrong("there is no such file".into()))?;
         let world: WorldFile = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
         let resolved = file.canonicalize().map_err(|error| wrong(error.to_string()))?;

@@ -1,6 +1,6 @@
 //! Asks a child for a random path, if it offers to choose paths itself, and checks the path.
 
-use super::{keeper::ChildKeeper, labels::plausible_position};
+use super::{child_keeper::ChildKeeper, labels::plausible_position};
 use serde::Deserialize;
 use serde_json::json;
 use wayword_core::{

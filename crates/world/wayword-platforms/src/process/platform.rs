@@ -1,8 +1,8 @@
 //! Offers a child process as a [`Platform`].
 
 use super::{
+    child_keeper::ChildKeeper,
     graph,
-    keeper::ChildKeeper,
     labels::{self, MAX_COORDINATE_M, ObserveAnswer},
     options::ProcessOptions,
     path, picture,
@@ -20,7 +20,7 @@ use wayword_core::{
     ViewGaze, ViewpointGraph, ViewpointId,
 };
 use wayword_render::to_flat_gaze;
-use wayword_world::{episode_path::labels_around, graph_walk, said::OutputListener};
+use wayword_world::{episode_path::labels_around, graph_walk, output_lines::OutputListener};
 
 /// Most scenes that a child may list.
 const MAX_SCENES: usize = 10_000;

@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 use std::{collections::BTreeSet, fmt, path::PathBuf};
-use wayword_world::said::to_safe_text;
+use wayword_world::output_lines::to_safe_text;
 
 /// Version of the protocol.
 pub const PROTOCOL_VERSION: u64 = 1;

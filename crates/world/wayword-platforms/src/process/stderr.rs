@@ -5,7 +5,7 @@ use std::{
     io::{BufRead, BufReader, Read},
     sync::{Arc, Mutex, PoisonError},
 };
-use wayword_world::said::{OutputListener, to_safe_text};
+use wayword_world::output_lines::{OutputListener, to_safe_text};
 
 /// Number of last lines that are stored for error messages.
 const KEPT_LINES: usize = 12;

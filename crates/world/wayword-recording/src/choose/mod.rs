@@ -4,12 +4,12 @@
 //! look away from the path are left out. First [`marks`] are set along the track, each with some pictures near it as
 //! candidates; then the candidates are read and compared.
 
-mod look;
 mod marks;
+mod picture_measure;
 
 use crate::reel::Recording;
-use look::PictureMeasure;
 use marks::FrameMark;
+use picture_measure::PictureMeasure;
 use std::collections::BTreeSet;
 use wayword_core::{Heading, Image, PlatformError, ViewGaze};
 

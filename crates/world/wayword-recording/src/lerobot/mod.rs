@@ -16,7 +16,7 @@ use crate::{
     axes::{PoseAxes, PoseBody},
     describe::{self, RecordingDescription},
     names::{plain_files, scene_of, sorted_entries, unknown_scene},
-    plausible::find_doubt,
+    pose_plausibility::find_doubt,
     reel::{PictureReel, Recording, RecordingSource},
     track::{CameraTrack, TrackFix},
 };

@@ -4,7 +4,7 @@ use super::info::{DatasetFeature, DatasetInfo};
 use crate::{
     axes::{PoseAxes, PoseBody, WorldUpAxis, rotation_columns},
     describe::RecordingDescription,
-    plausible::PoseSample,
+    pose_plausibility::PoseSample,
     track::TrackFix,
 };
 use std::path::Path;

@@ -4,8 +4,8 @@
 //! Then the file is read through once, up to the byte at which it breaks off.
 
 use super::{
-    found::{McapRecord, RecordPlace},
     messages::MessageKind,
+    record::{McapRecord, RecordPlace},
     records::RecordReader,
 };
 use mcap::{

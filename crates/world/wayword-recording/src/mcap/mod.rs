@@ -5,31 +5,31 @@
 
 mod cdr;
 mod contents;
-mod found;
 mod messages;
 mod pixels;
 mod poses;
+mod record;
 mod records;
 mod reel;
 #[cfg(test)]
 mod tests;
 mod topics;
-mod tree;
+mod transform_tree;
 
 use crate::{
     axes::{PoseAxes, PoseBody, rotation_columns},
     describe::RecordingDescription,
-    kind, names,
-    plausible::{PoseSample, find_doubt},
+    file_kind, names,
+    pose_plausibility::{PoseSample, find_doubt},
     reel::{Recording, RecordingSource},
     track::{CameraTrack, TrackFix},
 };
 use ::mcap::MAGIC;
 use contents::{McapContents, TopicMessage};
-use found::RecordPlace;
 use glam::DVec3 as Vector;
 use messages::{CameraLens, MessageKind, PictureHead, RigidTransform};
 use poses::{RecordedPoses, TransformChain};
+use record::RecordPlace;
 use reel::TopicReel;
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -39,7 +39,7 @@ use std::{
     path::{Path, PathBuf},
 };
 use topics::PictureHeads;
-use tree::{MessageClock, MessageTimes};
+use transform_tree::{MessageClock, MessageTimes};
 use wayword_core::{DVec3, PlatformError, SceneId};
 use wayword_world::files;
 
@@ -72,7 +72,7 @@ impl McapFile {
             Err(error) if error.kind() != std::io::ErrorKind::UnexpectedEof => error.to_string(),
             _ => "byte 0: does not begin like an MCAP file".to_owned(),
         };
-        Err(kind::refuse_file(&self.path, "an MCAP file", (reason, MCAP_HINT)))
+        Err(file_kind::refuse_file(&self.path, "an MCAP file", (reason, MCAP_HINT)))
     }
 
     fn file_error(&self, (reason, hint): topics::UnclearReason) -> PlatformError {

@@ -1,7 +1,7 @@
 //! Decodes ROS pictures into RGB (encodings of `sensor_msgs/include/sensor_msgs/image_encodings.hpp`).
 
 use super::messages::{self, MessageKind, RawPicture};
-use crate::size;
+use crate::picture_size;
 use wayword_core::Image;
 use wayword_world::files;
 
@@ -81,7 +81,7 @@ fn decode_raw(raw: &RawPicture<'_>) -> Result<Image, String> {
     let layout =
         RosPixelLayout::from_encoding(&raw.encoding).ok_or_else(|| format!("has the encoding {:?}", raw.encoding))?;
     let (width_px, height_px) = (raw.width_px, raw.height_px);
-    if !size::is_possible(width_px, height_px) || width_px == 0 || height_px == 0 {
+    if !picture_size::is_possible(width_px, height_px) || width_px == 0 || height_px == 0 {
         return Err(format!("has {width_px} x {height_px} pixels, but only 1 x 1 to 64 megapixels can be read"));
     }
     let (width, height, stride) = (width_px as usize, height_px as usize, raw.row_bytes as usize);

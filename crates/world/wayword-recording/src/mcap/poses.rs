@@ -3,7 +3,7 @@
 use super::{
     messages::{MessageHead, MessageKind, RigidTransform, StampedTransform},
     topics::{UnclearReason, list_names},
-    tree::{MessageClock, MessageTimes, TransformEdge, TransformTree, placings_along},
+    transform_tree::{MessageClock, MessageTimes, TransformEdge, TransformTree, placings_along},
 };
 use std::collections::BTreeMap;
 

@@ -3,7 +3,7 @@
 //! The crate `mcap` unpacks compressed chunks, a record at a time. Everything else is read here, because the crate
 //! reads every record whole, while only the first bytes of a picture are needed to find its time.
 
-use super::found::{McapRecord, RecordPlace};
+use super::record::{McapRecord, RecordPlace};
 use mcap::{
     records::op,
     sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions},

@@ -1,10 +1,10 @@
 //! The pictures of one topic.
 
-use super::{MCAP_HINT, found::RecordPlace, messages::MessageKind, pixels, records::RecordReader};
+use super::{MCAP_HINT, messages::MessageKind, pixels, record::RecordPlace, records::RecordReader};
 use crate::reel::{PictureReel, TakePicture};
 use mcap::records::Record;
 use std::{fs::File, ops::ControlFlow, path::PathBuf};
-use wayword_core::{Image, PlatformError, contain::run_decoder};
+use wayword_core::{Image, PlatformError, contain_panics::run_decoder};
 use wayword_world::files;
 
 /// Largest message of a picture: 64 megapixels of four bytes.

@@ -8,7 +8,7 @@ mod rows;
 use crate::{
     axes::{PoseAxes, WorldUpAxis},
     describe::RecordingDescription,
-    plausible::{self, PoseDoubt},
+    pose_plausibility::{self, PoseDoubt},
     track::CameraTrack,
 };
 use rows::{PoseFacing, PoseKey};
@@ -68,7 +68,7 @@ pub(crate) fn read_track(
     }
     .map_err(wrong)?;
     let axes = described.axes_or_usual(read.usual);
-    let doubt = plausible::find_doubt(&read.samples(), axes, described);
+    let doubt = pose_plausibility::find_doubt(&read.samples(), axes, described);
     let rows = read.rows;
     if axes.world != WorldUpAxis::ZUp && rows.iter().any(|row| matches!(row.facing, PoseFacing::Yaw(_))) {
         return Err(wrong("a yaw turns about z, so `world` must be z-up".into()));

@@ -2,7 +2,7 @@
 
 use crate::{
     axes::{PoseAxes, rotation_columns},
-    plausible::PoseSample,
+    pose_plausibility::PoseSample,
     track::TrackFix,
 };
 use std::path::Path;

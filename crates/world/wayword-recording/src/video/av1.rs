@@ -4,7 +4,7 @@ use super::{
     colour::{ChromaPlanes, PicturePlane, PicturePlanes, StreamColour},
     decoder::{CodedSample, SampleDecoder, TakePlanes, size_is_possible},
 };
-use crate::size::MAX_PIXELS;
+use crate::picture_size::MAX_PIXELS;
 use re_rav1d::dav1d::{Decoder, Error, Picture, PixelLayout, PlanarImageComponent, Settings, pixel::YUVRange};
 
 /// A decoder of one stream.

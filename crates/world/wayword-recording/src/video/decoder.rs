@@ -1,7 +1,7 @@
 //! The common interface of the decoders of all codecs.
 
 use super::colour::PicturePlanes;
-use crate::size;
+use crate::picture_size;
 
 /// A sample on its way into a decoder.
 #[derive(Debug, Clone, Copy)]
@@ -28,7 +28,7 @@ pub(super) trait SampleDecoder {
 
 /// Refuses pictures that are larger than any camera's.
 pub(super) fn size_is_possible(width_px: u32, height_px: u32) -> Result<(), String> {
-    if size::is_possible(width_px, height_px) {
+    if picture_size::is_possible(width_px, height_px) {
         Ok(())
     } else {
         Err(format!("has pictures of {width_px} x {height_px} pixels, which is too large"))

@@ -6,14 +6,14 @@ use super::{
     edits::ShownPicture,
     movie::{Mp4Movie, VIDEO_HINT, bytes_at},
 };
-use crate::{kind, reel::TakePicture};
+use crate::{file_kind, reel::TakePicture};
 use std::{
     collections::{BTreeMap, btree_map::Entry},
     fs::File,
     ops::Range,
     path::{Path, PathBuf},
 };
-use wayword_core::{Image, PlatformError, contain::run_decoder};
+use wayword_core::{Image, PlatformError, contain_panics::run_decoder};
 use wayword_world::files;
 
 /// Most pictures that decoders hold back (ITU-T H.264, annex A.3.1).
@@ -36,7 +36,8 @@ impl Mp4Film {
     pub(crate) fn open(file: &Path, camera: Option<&str>) -> Result<Self, PlatformError> {
         let mut opened = files::open_plain_file(file, VIDEO_HINT)?;
         let movie = Mp4Movie::read(&mut opened, camera);
-        let movie = movie.map_err(|refusal| kind::refuse_file(file, "an MP4 video", (refusal.reason, refusal.hint)))?;
+        let movie =
+            movie.map_err(|refusal| file_kind::refuse_file(file, "an MP4 video", (refusal.reason, refusal.hint)))?;
         let times_s = movie.shown.iter().map(|shown| shown.time_s).collect();
         Ok(Self { file: file.to_owned(), movie, times_s })
     }

@@ -6,16 +6,16 @@ mod codec;
 mod colour;
 mod decoder;
 mod edits;
-mod entry;
 mod film;
 mod fragments;
 mod h264;
 mod movie;
+mod picture_turn;
+mod sample_entry;
 mod sps;
 mod tables;
 #[cfg(test)]
 mod tests;
-mod turn;
 
 pub(crate) use film::Mp4Film;
 

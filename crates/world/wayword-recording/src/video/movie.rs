@@ -4,11 +4,11 @@ use super::{
     boxes::{BoxFields, BoxHeader, boxes_in, find_box, in_box, need_box},
     codec::ReadableCodec,
     edits::{self, ShownPicture, TickRates},
-    entry::{self, SampleEntry, read_entry},
     fragments::FragmentReader,
     h264,
+    picture_turn::PictureTurn,
+    sample_entry::{self, SampleEntry, read_entry},
     tables::{self, TrackSample},
-    turn::PictureTurn,
 };
 use std::{
     fs::File,
@@ -22,7 +22,7 @@ const MAX_DESCRIBING_BYTES: u64 = 512 << 20;
 const MAX_BOXES: u64 = 2 * tables::MAX_SAMPLES;
 
 /// The way out of a file that cannot be read.
-pub(super) const VIDEO_HINT: &str = crate::kind::ENCODE_HINT;
+pub(super) const VIDEO_HINT: &str = crate::file_kind::ENCODE_HINT;
 const CAMERA_HINT: &str = "write `camera = \"NUMBER\"` into the .toml file beside it";
 
 /// A video track.
@@ -154,9 +154,13 @@ impl<'a> VideoTrack<'a> {
 
     fn read_movie(&self, parts: &MovieBoxes, file_bytes: u64) -> Result<Mp4Movie, String> {
         let codec = match &self.entry.codec {
-            entry::NamedCodec::H264(record) => ReadableCodec::H264(h264::H264Setup::read(record, self.entry.colour)?),
-            entry::NamedCodec::Av1 => ReadableCodec::Av1(self.entry.colour),
-            entry::NamedCodec::Other(name) => return Err(format!("is in {name}, but only H.264 and AV1 can be read")),
+            sample_entry::NamedCodec::H264(record) => {
+                ReadableCodec::H264(h264::H264Setup::read(record, self.entry.colour)?)
+            }
+            sample_entry::NamedCodec::Av1 => ReadableCodec::Av1(self.entry.colour),
+            sample_entry::NamedCodec::Other(name) => {
+                return Err(format!("is in {name}, but only H.264 and AV1 can be read"));
+            }
         };
         let mut samples = tables::read_samples(self.stbl, file_bytes)?;
         let mut fragments = FragmentReader::new(&parts.moov, self.number, file_bytes)?;
@@ -178,9 +182,9 @@ impl<'a> VideoTrack<'a> {
 
     fn describe_track(&self) -> String {
         let codec = match &self.entry.codec {
-            entry::NamedCodec::H264(_) => "H.264",
-            entry::NamedCodec::Av1 => "AV1",
-            entry::NamedCodec::Other(name) => name,
+            sample_entry::NamedCodec::H264(_) => "H.264",
+            sample_entry::NamedCodec::Av1 => "AV1",
+            sample_entry::NamedCodec::Other(name) => name,
         };
         format!("{} ({codec}, {} x {})", self.number, self.entry.width_px, self.entry.height_px)
     }
@@ -203,7 +207,7 @@ fn choose_track<'a, 'b>(tracks: &'b [VideoTrack<'a>], camera: Option<&str>) -> R
     let mut meant = tracks.iter().filter(|track| match wanted {
         Some(wanted) => track.number.to_string() == wanted,
         // Cover pictures and previews do not count as a second camera.
-        None => tracks.len() == 1 || !matches!(track.entry.codec, entry::NamedCodec::Other(_)),
+        None => tracks.len() == 1 || !matches!(track.entry.codec, sample_entry::NamedCodec::Other(_)),
     });
     match (meant.next(), meant.next(), wanted) {
         (Some(track), None, _) => Ok(track),

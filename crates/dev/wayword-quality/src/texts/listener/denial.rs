@@ -3,7 +3,7 @@
 
 use super::{
     fits::{ABOVE_M, AHEAD_RAD, BETWEEN_M, FAR_M, SLACK_M, SLACK_RAD, TargetListener, is_between},
-    said::{ArrivalSide, RelationKind, TargetRelation},
+    target_description::{ArrivalSide, RelationKind, TargetRelation},
 };
 use std::{collections::BTreeSet, f64::consts::PI};
 use wayword_core::DVec3;

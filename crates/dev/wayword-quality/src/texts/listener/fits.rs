@@ -1,10 +1,10 @@
 //! Finds the objects of a building that a description fits. Each statement narrows the set of objects; one that fits none is skipped.
 
 use super::{
-    said::{
+    scene::ListenerScene,
+    target_description::{
         ArrivalSide, LevelMention, NamesakeRank, RelationKind, RelationLandmark, TargetDescription, TargetRelation,
     },
-    scene::ListenerScene,
 };
 use std::{collections::BTreeSet, f64::consts::PI};
 use wayword_core::{DVec3, Heading};

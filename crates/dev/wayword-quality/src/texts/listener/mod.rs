@@ -7,8 +7,8 @@ mod clauses;
 mod denial;
 mod fits;
 mod phrases;
-mod said;
 mod scene;
+mod target_description;
 mod vocabulary;
 
 use super::row::{TextFigureRow, share_row};
@@ -107,7 +107,7 @@ pub(super) fn hear_episodes(
 
 fn hear_text(scene: &ListenerScene, arrival: ListenerArrival, target: usize, text: &str) -> ListenerResult {
     let mut heard = ListenerResult { text: text.to_owned(), ..ListenerResult::default() };
-    let said = said::describe_target(text, &scene.names).unwrap_or_default();
+    let said = target_description::describe_target(text, &scene.names).unwrap_or_default();
     let listener = TargetListener { scene, said: &said, arrival };
     let namesakes = listener.namesakes_in_view(target);
     heard.has_namesake = !namesakes.is_empty();

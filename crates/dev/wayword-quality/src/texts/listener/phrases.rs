@@ -3,7 +3,7 @@
 use super::super::names::LexiconName;
 use super::{
     clauses::ListenerText,
-    said::{
+    target_description::{
         ArrivalSide, InRoom, LevelMention, NamesakeRank, RelationKind, RelationLandmark, TargetDescription,
         TargetRelation,
     },

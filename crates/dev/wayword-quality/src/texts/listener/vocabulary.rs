@@ -1,6 +1,6 @@
 //! The vocabulary of the listener. It is independent of the reader's lexicon.
 
-use super::said::{NamesakeRank, RelationKind};
+use super::target_description::{NamesakeRank, RelationKind};
 
 /// Phrases of relations, the longest first.
 pub(super) const RELATION_PHRASES: &[(&str, RelationKind)] = &[

@@ -1,8 +1,8 @@
 //! Finds the turns of a text. "Left" is a turn in "go left", but not in "the left door", so the words around a side
 //! decide.
 
-mod again;
 mod clock;
+mod repeated_turns;
 #[cfg(test)]
 mod tests;
 
@@ -46,7 +46,7 @@ pub(super) fn read_turns(tokens: TokenSlice<'_>, clauses: &[usize]) -> Vec<TextE
             denied: false,
         };
         turns.push(event(at, last));
-        let (more, told_at) = again::more_turns(tokens, at, last);
+        let (more, told_at) = repeated_turns::more_turns(tokens, at, last);
         turns.extend((0..more).map(|_| event(told_at.0, told_at.1)));
     }
     turns
@@ -132,7 +132,7 @@ impl<'a> TurnText<'a> {
     fn turn_side_at(&self, at: usize, told_before: bool) -> Option<(Side, Option<usize>)> {
         let side = side_word(self.word_at(at))?;
         let after = self.word_at(at + 1);
-        let is_counted = again::is_count(self.word_before(at));
+        let is_counted = repeated_turns::is_count(self.word_before(at));
         let is_turn = |word: &str| word == "turn" || (word == "turns" && is_counted);
         if is_turn(after) || (after == "hand" && is_turn(self.word_at(at + 2))) {
             return Some((side, None));

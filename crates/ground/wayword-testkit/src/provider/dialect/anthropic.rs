@@ -1,22 +1,22 @@
 //! The dialect of Anthropic's messages API.
 
-use super::{ReplyEnding, ScriptReply, ServiceErrorKind, parts};
+use super::{ReplyEnding, ScriptReply, ServiceErrorKind, request_parts};
 use crate::provider::ScriptRequest;
 use serde_json::{Value, json};
 use wayword_core::MessageRole;
 
 pub(super) fn read_request(body: &Value) -> Result<ScriptRequest, &'static str> {
-    let mut heard = ScriptRequest { model: parts::text_field(body, "model")?, ..ScriptRequest::default() };
+    let mut heard = ScriptRequest { model: request_parts::text_field(body, "model")?, ..ScriptRequest::default() };
     if let Some(system) = body.get("system") {
         let text = read_content(system, &mut heard.pictures)?;
         heard.messages.push((MessageRole::System, text));
     }
-    for message in parts::list_field(body, "messages")? {
-        let role = parts::message_role(message)?;
+    for message in request_parts::list_field(body, "messages")? {
+        let role = request_parts::message_role(message)?;
         let text = read_content(message.get("content").unwrap_or(&Value::Null), &mut heard.pictures)?;
         heard.messages.push((role, text));
     }
-    parts::read_sampling(&mut heard, body, &["max_tokens"]);
+    request_parts::read_sampling(&mut heard, body, &["max_tokens"]);
     // The service refuses a request without it.
     heard.max_tokens.ok_or("max_tokens: Field required")?;
     Ok(heard)
@@ -31,10 +31,10 @@ fn read_content(content: &Value, pictures: &mut Vec<Vec<u8>>) -> Result<String, 
     let mut texts = Vec::new();
     for part in parts {
         match part.get("type").and_then(Value::as_str) {
-            Some("text") => texts.push(parts::text_field(part, "text")?),
+            Some("text") => texts.push(request_parts::text_field(part, "text")?),
             Some("image") => {
                 let source = part.get("source").ok_or("An image has no source.")?;
-                pictures.push(parts::decode_picture(&parts::text_field(source, "data")?)?);
+                pictures.push(request_parts::decode_picture(&request_parts::text_field(source, "data")?)?);
             }
             _ => return Err("A part of a message has no type that is known."),
         }

@@ -1,18 +1,18 @@
 //! The dialect of OpenAI's legacy completions: the request has one prompt, and the model continues it.
 
-use super::{ReplyEnding, ScriptReply, openai, parts};
+use super::{ReplyEnding, ScriptReply, openai, request_parts};
 use crate::provider::ScriptRequest;
 use serde_json::{Value, json};
 use wayword_core::MessageRole;
 
 pub(super) fn read_request(body: &Value) -> Result<ScriptRequest, &'static str> {
-    let prompt = parts::text_field(body, "prompt")?;
+    let prompt = request_parts::text_field(body, "prompt")?;
     let mut heard = ScriptRequest {
-        model: parts::text_field(body, "model")?,
+        model: request_parts::text_field(body, "model")?,
         messages: vec![(MessageRole::User, prompt)],
         ..ScriptRequest::default()
     };
-    parts::read_sampling(&mut heard, body, &["max_tokens"]);
+    request_parts::read_sampling(&mut heard, body, &["max_tokens"]);
     Ok(heard)
 }
 

@@ -1,6 +1,6 @@
 //! The dialect of Gemini's `generateContent`.
 
-use super::{ReplyEnding, ScriptReply, ServiceErrorKind, parts};
+use super::{ReplyEnding, ScriptReply, ServiceErrorKind, request_parts};
 use crate::provider::ScriptRequest;
 use serde_json::{Value, json};
 use wayword_core::MessageRole;
@@ -11,22 +11,29 @@ pub(super) fn read_request(body: &Value, model: &str) -> Result<ScriptRequest, &
         let text = read_content(system, &mut heard.pictures)?;
         heard.messages.push((MessageRole::System, text));
     }
-    for message in parts::list_field(body, "contents")? {
+    for message in request_parts::list_field(body, "contents")? {
         // A single content may lack its role.
-        let role = if message.get("role").is_some() { parts::message_role(message)? } else { MessageRole::User };
+        let role =
+            if message.get("role").is_some() { request_parts::message_role(message)? } else { MessageRole::User };
         let text = read_content(message, &mut heard.pictures)?;
         heard.messages.push((role, text));
     }
-    parts::read_sampling(&mut heard, body.get("generationConfig").unwrap_or(&Value::Null), &["maxOutputTokens"]);
+    request_parts::read_sampling(
+        &mut heard,
+        body.get("generationConfig").unwrap_or(&Value::Null),
+        &["maxOutputTokens"],
+    );
     Ok(heard)
 }
 
 fn read_content(content: &Value, pictures: &mut Vec<Vec<u8>>) -> Result<String, &'static str> {
     let mut texts = Vec::new();
-    for part in parts::list_field(content, "parts")? {
+    for part in request_parts::list_field(content, "parts")? {
         match part.get("inlineData").or_else(|| part.get("inline_data")) {
-            Some(picture) => pictures.push(parts::decode_picture(&parts::text_field(picture, "data")?)?),
-            None => texts.push(parts::text_field(part, "text")?),
+            Some(picture) => {
+                pictures.push(request_parts::decode_picture(&request_parts::text_field(picture, "data")?)?)
+            }
+            None => texts.push(request_parts::text_field(part, "text")?),
         }
     }
     Ok(texts.join("\n"))

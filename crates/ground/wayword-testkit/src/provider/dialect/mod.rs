@@ -5,7 +5,7 @@ mod completions;
 mod gemini;
 mod ollama;
 mod openai;
-mod parts;
+mod request_parts;
 
 use super::{RetryAfter, ScriptRequest};
 use axum::{

@@ -1,6 +1,6 @@
 //! The dialect of Ollama's own chat endpoint.
 
-use super::{ReplyEnding, ScriptReply, parts};
+use super::{ReplyEnding, ScriptReply, request_parts};
 use crate::provider::ScriptRequest;
 use serde_json::{Value, json};
 
@@ -8,14 +8,14 @@ pub(super) fn read_request(body: &Value) -> Result<ScriptRequest, &'static str> 
     if body.get("stream") != Some(&Value::Bool(false)) {
         return Err("Only whole answers are given here: set stream to false.");
     }
-    let mut heard = ScriptRequest { model: parts::text_field(body, "model")?, ..ScriptRequest::default() };
-    for message in parts::list_field(body, "messages")? {
-        heard.messages.push((parts::message_role(message)?, parts::text_field(message, "content")?));
+    let mut heard = ScriptRequest { model: request_parts::text_field(body, "model")?, ..ScriptRequest::default() };
+    for message in request_parts::list_field(body, "messages")? {
+        heard.messages.push((request_parts::message_role(message)?, request_parts::text_field(message, "content")?));
         for image in message.get("images").and_then(Value::as_array).into_iter().flatten() {
-            heard.pictures.push(parts::decode_picture(image.as_str().ok_or("An image is not a text.")?)?);
+            heard.pictures.push(request_parts::decode_picture(image.as_str().ok_or("An image is not a text.")?)?);
         }
     }
-    parts::read_sampling(&mut heard, body.get("options").unwrap_or(&Value::Null), &["num_predict"]);
+    request_parts::read_sampling(&mut heard, body.get("options").unwrap_or(&Value::Null), &["num_predict"]);
     Ok(heard)
 }
 

@@ -1,17 +1,17 @@
 //! The dialect of OpenAI's chat completions.
 
-use super::{ReplyEnding, ScriptReply, ServiceErrorKind, parts};
+use super::{ReplyEnding, ScriptReply, ServiceErrorKind, request_parts};
 use crate::provider::ScriptRequest;
 use serde_json::{Value, json};
 
 pub(super) fn read_request(body: &Value) -> Result<ScriptRequest, &'static str> {
-    let mut heard = ScriptRequest { model: parts::text_field(body, "model")?, ..ScriptRequest::default() };
-    for message in parts::list_field(body, "messages")? {
-        let role = parts::message_role(message)?;
+    let mut heard = ScriptRequest { model: request_parts::text_field(body, "model")?, ..ScriptRequest::default() };
+    for message in request_parts::list_field(body, "messages")? {
+        let role = request_parts::message_role(message)?;
         let text = read_content(message.get("content").unwrap_or(&Value::Null), &mut heard.pictures)?;
         heard.messages.push((role, text));
     }
-    parts::read_sampling(&mut heard, body, &["max_completion_tokens", "max_tokens"]);
+    request_parts::read_sampling(&mut heard, body, &["max_completion_tokens", "max_tokens"]);
     Ok(heard)
 }
 
@@ -24,12 +24,12 @@ fn read_content(content: &Value, pictures: &mut Vec<Vec<u8>>) -> Result<String, 
     let mut texts = Vec::new();
     for part in parts {
         match part.get("type").and_then(Value::as_str) {
-            Some("text") => texts.push(parts::text_field(part, "text")?),
+            Some("text") => texts.push(request_parts::text_field(part, "text")?),
             Some("image_url") => {
                 let url = part.get("image_url").and_then(|image| image.get("url")?.as_str());
                 let data = url.and_then(|url| url.strip_prefix("data:image/")?.split_once(";base64,"));
                 let (_, base64) = data.ok_or("Only data URLs of images are read.")?;
-                pictures.push(parts::decode_picture(base64)?);
+                pictures.push(request_parts::decode_picture(base64)?);
             }
             _ => return Err("A part of a message has no type that is known."),
         }

@@ -1,6 +1,6 @@
 //! A scripted author: it writes instructions from the captions and moves in a prompt, with occasional mistakes.
 
-use super::{ModelScript, prompt::named_things, rng_for_text};
+use super::{ModelScript, prompt_reading::named_things, rng_for_text};
 use crate::provider::ScriptRequest;
 use rand::{Rng, seq::IndexedRandom};
 

@@ -2,11 +2,11 @@
 //! seed, so every run repeats them.
 
 mod author;
-mod eye;
-mod prompt;
+mod flawed_eye;
+mod prompt_reading;
 mod questioner;
 mod summariser;
-mod troubles;
+mod troubled_script;
 mod walker;
 
 use super::{ModelScript, ScriptRequest};
@@ -15,10 +15,10 @@ use rand_chacha::ChaCha8Rng;
 use sha2::{Digest, Sha256};
 
 pub use author::ScriptedAuthor;
-pub use eye::FlawedEye;
+pub use flawed_eye::FlawedEye;
 pub use questioner::ScriptedQuestioner;
 pub use summariser::ScriptedSummariser;
-pub use troubles::TroubledScript;
+pub use troubled_script::TroubledScript;
 pub use walker::{BROKEN_REPLIES, ScriptedRoute, ScriptedWalker, WalkerGait};
 
 /// All roles behind one model name. A request to write goes to the author, with pictures or without; another request with
@@ -60,7 +60,7 @@ impl ModelScript for ScriptedCast {
         } else if prompt.contains("Sum up") {
             self.summariser.reply(heard)
         } else if prompt.contains("Describe the place in one sentence") {
-            prompt::condense_panorama(prompt)
+            prompt_reading::condense_panorama(prompt)
         } else {
             "ready".to_owned()
         }

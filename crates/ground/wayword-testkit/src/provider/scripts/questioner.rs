@@ -2,7 +2,7 @@
 
 use super::{
     ModelScript,
-    prompt::{named_things, read_exchanges, with_article},
+    prompt_reading::{named_things, read_exchanges, with_article},
     rng_for_text,
 };
 use crate::provider::ScriptRequest;

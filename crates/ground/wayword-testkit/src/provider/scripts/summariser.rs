@@ -2,7 +2,7 @@
 
 use super::{
     ModelScript,
-    prompt::{is_denial, join_with_and, named_room, named_things, read_exchanges, with_article},
+    prompt_reading::{is_denial, join_with_and, named_room, named_things, read_exchanges, with_article},
     rng_for_text,
 };
 use crate::provider::ScriptRequest;

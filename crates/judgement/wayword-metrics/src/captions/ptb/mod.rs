@@ -1,16 +1,16 @@
 //! The tokenizer of `pycocoevalcap`: Stanford's PTB tokenizer (CoreNLP 3.4.1, `-preserveLines -lowerCase`), without the
 //! punctuation marks that `pycocoevalcap` then drops.
 //!
-//! Like the original, it takes at each position the longest match among many patterns ([`table`]). It was written by observing the
+//! Like the original, it takes at each position the longest match among many patterns ([`shape_table`]). It was written by observing the
 //! answers of the original, without its source. `docs/CRITICS.md` lists where the two are known to agree and to differ.
 
 mod abbreviations;
 mod shape;
-mod table;
+mod shape_table;
 
 use shape::{SOFT_HYPHEN, TokenShapes};
+use shape_table::{SHAPE_ROWS, TokenExtent};
 use std::sync::LazyLock;
-use table::{SHAPE_ROWS, TokenExtent};
 
 static TOKEN_SHAPES: LazyLock<TokenShapes> = LazyLock::new(|| TokenShapes::new(SHAPE_ROWS.iter().map(|row| row.shape)));
 

@@ -9,14 +9,14 @@
 //!
 //! The answer "both bad" counts as a tie, because it prefers neither. It is also counted separately.
 
+mod connectedness;
 mod fit;
-mod links;
-mod reason;
+mod no_strength;
 
 use super::crossed::{AnswerGroups, VarianceParts};
 use super::{ConfidenceInterval, is_level, quantile};
 use fit::{ChoiceOutcome, StrengthFit, SystemPair};
-pub use reason::NoStrength;
+pub use no_strength::NoStrength;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::fmt::Display;
@@ -109,7 +109,7 @@ pub fn bradley_terry<P: Ord, I: Ord, S: Ord + Clone + Display>(
     let systems: BTreeSet<&S> = comparisons.iter().flat_map(|one| [&one.first, &one.second]).collect();
     let systems: Vec<&S> = systems.into_iter().collect();
     let pairs: Vec<SystemPair> = comparisons.iter().map(|one| numbered_pair(one, &systems)).collect();
-    links::check_connected(&pairs, &systems)?;
+    connectedness::check_connected(&pairs, &systems)?;
     let fit = StrengthFit::from_pairs(&pairs, systems.len())?;
     let groups = AnswerGroups::from_pairs(comparisons.iter().map(|one| (&one.person, &one.item)));
     let errors = FitErrors { fit: &fit, pairs: &pairs, groups, level };

@@ -6,7 +6,7 @@
 mod difference;
 mod variance;
 
-use super::{ConfidenceInterval, StudyAnswer, is_level, logit_normal, quantile, share::wilson_interval};
+use super::{ConfidenceInterval, StudyAnswer, is_level, logit_normal, quantile, wilson::wilson_interval};
 pub use difference::{FigureDifference, mean_difference, share_difference};
 use serde::{Deserialize, Serialize};
 use std::fmt;

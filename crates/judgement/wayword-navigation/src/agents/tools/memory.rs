@@ -1,7 +1,7 @@
 //! The agent's memory of its walk, which each prompt repeats: a map of the visited places, the last steps with their reasons, and
 //! the agent's note. A language model has no memory between calls, so everything that it needs is here. All parts are bounded.
 
-use super::scene::ObservedScene;
+use super::observed_scene::ObservedScene;
 use crate::one_line::shorten_line;
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet, VecDeque};

@@ -7,16 +7,16 @@
 
 mod limits;
 mod memory;
+mod observed_scene;
 mod prompt;
 mod rehearsal;
-mod reply;
-mod scene;
+mod tool_calls;
 mod walker;
 
 pub use limits::ToolWalkLimits;
+pub use observed_scene::{ToolAgentSight, ViewDescriber};
 pub use prompt::{MOST_TEXT_CHARS, prompt_wording};
 pub use rehearsal::rehearse_route;
-pub use scene::{ToolAgentSight, ViewDescriber};
 
 use super::{AgentStart, AgentWalk, choice_for_hop};
 use crate::{error::WalkError, sight::AgentView};

@@ -5,7 +5,7 @@
 use super::{
     limits::ToolWalkLimits,
     memory::ToolWalkMemory,
-    scene::{ObservedScene, describe_turn},
+    observed_scene::{ObservedScene, describe_turn},
 };
 use crate::{error::WalkError, one_line::shorten_line};
 use minijinja::{Environment, context};

@@ -2,7 +2,7 @@
 
 use super::{
     ModelWalker, ToolAgentSight, ToolWalkLimits,
-    reply::{AgentToolAction, AgentToolCall},
+    tool_calls::{AgentToolAction, AgentToolCall},
     walker::ToolWalker,
 };
 use crate::{agents::AgentStart, error::WalkError, sight::AgentView};

@@ -2,8 +2,8 @@
 
 use super::{
     memory::ToolWalkMemory,
+    observed_scene::ObservedScene,
     prompt::{PromptSightKind, PromptState, PromptWay, build_request},
-    scene::ObservedScene,
     *,
 };
 use crate::{

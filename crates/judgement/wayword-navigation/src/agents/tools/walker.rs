@@ -3,9 +3,9 @@
 use super::{
     AgentStart, AgentWalk, ModelWalker, ToolAgentSight, choice_for_hop,
     memory::ToolWalkMemory,
+    observed_scene::{ObservedScene, clockwise_turn, observe_scene},
     prompt::{PromptSightKind, PromptState, PromptWay, build_request},
-    reply::{AgentToolAction, AgentToolCall, ObjectChoice, read_calls},
-    scene::{ObservedScene, clockwise_turn, observe_scene},
+    tool_calls::{AgentToolAction, AgentToolCall, ObjectChoice, read_calls},
 };
 use crate::{
     error::WalkError,

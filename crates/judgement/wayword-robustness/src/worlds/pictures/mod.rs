@@ -5,7 +5,7 @@ mod jpeg;
 mod light;
 mod noise;
 
-use super::{WorldAlteration, altered::AlteredLook};
+use super::{WorldAlteration, altered_platform::AlteredLook};
 use std::sync::Arc;
 use wayword_core::{Image, PlatformError, View, image::WrongPixelCount};
 

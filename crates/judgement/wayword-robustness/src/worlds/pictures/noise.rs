@@ -2,7 +2,7 @@
 
 use crate::{
     draws::normal_pair,
-    worlds::altered::{AlteredLook, frame_key},
+    worlds::altered_platform::{AlteredLook, frame_key},
 };
 use rand::Rng;
 use wayword_core::{Image, image::WrongPixelCount, seeded_rng};

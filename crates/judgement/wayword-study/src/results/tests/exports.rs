@@ -1,6 +1,6 @@
 use super::{
     figures::of,
-    made::{add_slot, small},
+    fixtures::{add_slot, small},
     reader::{column, read},
 };
 use crate::{ParticipantAnswer, SlotState, StudyTask};
@@ -149,7 +149,7 @@ proptest! {
         prop_assert_eq!(levels, given);
         for own in column(&rows, "own_text") {
             let text = own.strip_prefix('\'').unwrap_or(&own);
-            prop_assert!(texts.iter().any(|one| super::super::inert::strip_active_characters(one) == text), "{:?}", own);
+            prop_assert!(texts.iter().any(|one| super::super::escape::strip_active_characters(one) == text), "{:?}", own);
         }
         let submissions = read(&files["submissions.csv"]);
         let done: usize = column(&submissions, "answered").iter().map(|cell| cell.parse::<usize>().unwrap()).sum();

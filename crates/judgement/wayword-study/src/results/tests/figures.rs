@@ -1,5 +1,5 @@
 use super::super::{ConditionStrengths, StudyReport, compute_results};
-use super::made::{START_MS, add_item, add_person, add_route, add_slot, empty, of_the_paper, small};
+use super::fixtures::{START_MS, add_item, add_person, add_route, add_slot, empty, of_the_paper, small};
 use crate::{ConditionKind, PairChoice, ParticipantAnswer, ParticipantStatus, StudyData, StudyTask};
 
 pub(super) fn of(data: &StudyData) -> StudyReport {

@@ -1,7 +1,7 @@
-use super::super::inert;
+use super::super::escape;
 use super::{
     figures::of,
-    made::small,
+    fixtures::small,
     reader::{column, read},
 };
 use crate::{StudyTask, wording::RATE_QUESTIONS};
@@ -139,8 +139,8 @@ fn latex_is_whole(latex: &str) {
 
 #[test]
 fn numbers_are_never_taken_for_formulas() {
-    assert_eq!(inert::escape_csv_cell("-"), "\"'-\"");
-    assert_eq!(inert::escape_csv_cell("plain"), "plain");
+    assert_eq!(escape::escape_csv_cell("-"), "\"'-\"");
+    assert_eq!(escape::escape_csv_cell("plain"), "plain");
     assert_eq!(super::super::sheet::SheetCell::Number(-1.5, 1), super::super::sheet::SheetCell::number(Some(-1.5), 1));
     let mut sheet = super::super::sheet::DataSheet::new("x.csv", "x", vec![]);
     sheet.rows.push(vec![super::super::sheet::SheetCell::Number(-1.5, 1), super::super::sheet::SheetCell::Whole(-2)]);

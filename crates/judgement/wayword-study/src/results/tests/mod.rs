@@ -2,8 +2,8 @@
 
 mod exports;
 mod figures;
+mod fixtures;
 mod hostile;
-mod made;
 mod page;
 mod planned;
 mod reader;

@@ -1,6 +1,6 @@
 //! The page itself.
 
-use super::{figures::of, made::small};
+use super::{figures::of, fixtures::small};
 use crate::StudyTask;
 
 #[test]

@@ -1,5 +1,5 @@
 use super::super::StudyOutlook;
-use super::made::{add_item, add_route, empty, small};
+use super::fixtures::{add_item, add_route, empty, small};
 use crate::{ConditionKind, StudyData, StudyTask};
 
 fn of(data: &StudyData) -> StudyOutlook {

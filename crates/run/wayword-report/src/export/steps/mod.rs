@@ -1,7 +1,7 @@
 //! Writes trajectories for training policies: the walks of a run as single actions (forward, left, right, stop), with the picture
 //! that the agent sees before each. The command can be repeated after an interruption: it keeps the walks that are done.
 
-mod parts;
+mod instruction_parts;
 mod replay;
 mod settings;
 mod store;

@@ -1,6 +1,6 @@
 //! Collects the walks of a run's records, and divides each into single actions on the ground of its scene.
 
-use super::{super::items, parts::split_instruction, settings::StepExportSettings};
+use super::{super::items, instruction_parts::split_instruction, settings::StepExportSettings};
 use crate::walking::{WalkingScenes, floor_positions};
 use std::collections::BTreeMap;
 use wayword_core::{FailureKind, Heading, Path};

@@ -1,13 +1,13 @@
 //! Replays of agents' walks, step by step: the scores of the views, the choices, and where the agent went back.
 
-mod choose;
 mod steps;
+mod walk_sample;
 
-pub use choose::WalkSample;
+pub use walk_sample::WalkSample;
 
 use super::{
+    link_targets::frame_anchor,
     map::{BADGE_RADIUS, MapTrail, MapView},
-    places::frame_anchor,
 };
 use serde::Serialize;
 use steps::{StepView, step_views};

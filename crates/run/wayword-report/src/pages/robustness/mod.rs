@@ -3,7 +3,7 @@
 
 mod curve;
 pub mod results;
-mod words;
+mod text_diff;
 
 use super::{load_templates, replace_page, template_error};
 use curve::CurveDrawing;
@@ -11,9 +11,9 @@ use minijinja::context;
 use results::{ChangeResults, ExpectationResult, RobustnessFigure, RobustnessResults, StyleResults, TextPairExample};
 use serde::Serialize;
 use std::path::Path;
+use text_diff::{ComparedWords, compare_words};
 use wayword_metrics::MeanEstimate;
 use wayword_run::{count::count_phrase, error::CommandError};
-use words::{ComparedWords, compare_words};
 
 /// The kinds of statements, in the order of the table.
 const STATEMENT_KINDS: [&str; 5] = ["landmarks", "turns", "rooms", "floors", "mean"];

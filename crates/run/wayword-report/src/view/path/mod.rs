@@ -1,10 +1,10 @@
 //! `wayword view path`: draws the view ahead along a path, as a folder of pictures, a GIF or a video.
 
-pub mod between;
+pub mod film_steps;
 
 use super::{WrittenView, film, open_platform, walk};
 use crate::view::args::ViewPath;
-use between::FilmStep;
+use film_steps::FilmStep;
 use image::imageops::{self, FilterType};
 use std::sync::Arc;
 use wayword_core::{Image, Platform, PlatformError, SceneId, ViewGaze};
@@ -30,7 +30,7 @@ pub(super) fn write_path(args: &ViewPath, output: &CommandOutput) -> Result<Writ
     let place = film::FilmPlace::from_out(&args.out, args.platform.data.as_deref())?;
     let platform = open_platform(&args.platform)?;
     let path = walk::choose_path(&args.walk, &args.platform, &*platform)?;
-    let steps = between::film_steps(&path, args.smooth.unwrap_or(0))?;
+    let steps = film_steps::film_steps(&path, args.smooth.unwrap_or(0))?;
     if steps.len() > MOST_STEPS {
         let problem = format!("the path would need {} pictures, but at most {MOST_STEPS} are allowed", steps.len());
         return Err(CommandError::usage(problem, "ask for a shorter path, or a smaller --smooth"));

@@ -3,8 +3,8 @@
 pub mod args;
 mod board;
 mod chunk;
-mod planned;
-mod told;
+mod plan_file;
+mod summaries;
 
 use super::{ItemWorkshop, refuse_impossible_paths, warn_of_no_effect};
 use crate::{
@@ -13,19 +13,19 @@ use crate::{
     follow::KnownScenes,
     generate::workers::args::AskedWorkers,
     interrupt,
-    looking_for::DetectorLookout,
+    lookout::DetectorLookout,
     output::CommandOutput,
     plan::RunPlan,
-    platforms,
+    platforms, scene_selection,
     settings::{RunJob, RunSettings},
     stores::RunPlace,
     team::RoleTeam,
-    usable, watch,
+    watch,
 };
 pub use board::ChunkHandout;
 use board::WorkerBoard;
 use std::path::Path;
-use told::{PlanSummary, WorkerSummary};
+use summaries::{PlanSummary, WorkerSummary};
 use wayword_queue::{PLAN, WorkSummary, work_chunks};
 
 /// Why a worker stops although chunks are left.
@@ -44,9 +44,9 @@ pub fn run_worker(
     let place = RunPlace::open_named(out)?;
     let out = place.folder();
     warn_of_no_effect(&job.settings, output);
-    planned::refuse_other_folder(out)?;
+    plan_file::refuse_other_folder(out)?;
     let kept = wayword_queue::ChunkPlan::find_plan(out)?;
-    let before = kept.as_ref().map(|kept| planned::settings_of(out, kept)).transpose()?;
+    let before = kept.as_ref().map(|kept| plan_file::settings_of(out, kept)).transpose()?;
     let service = board::part_of(&job.service, asked, output)?;
     // The list of recordings is filled in once this worker has its part.
     let mut job = RunJob { service, keeping: CallKeeping::Chunks(Vec::new()), ..job.clone() };
@@ -58,20 +58,20 @@ pub fn run_worker(
     }
     let platform = platforms::open_platform(&job.settings)?;
     if before.is_none() {
-        job.settings = usable::settle_left_out(&job.settings, platform.as_ref(), output)?;
+        job.settings = scene_selection::settle_left_out(&job.settings, platform.as_ref(), output)?;
     }
     let plan = RunPlan::for_writing(&job, platform.as_ref())?;
     let settings = plan.settings_with_hashes()?;
     if before.is_none() {
-        usable::tell_of_episodes(&settings, &plan.items, platform.as_ref(), output)?;
+        scene_selection::tell_of_episodes(&settings, &plan.items, platform.as_ref(), output)?;
         refuse_impossible_paths(&plan.items, &settings, platform.as_ref())?;
         place.check_store()?;
-        planned::write_plan(out, &plan, &settings, asked)?;
+        plan_file::write_plan(out, &plan, &settings, asked)?;
         place.publish_file(PLAN)?;
     }
     // Another worker may have written the plan meanwhile, and the plan in the folder counts.
     let kept = kept.map_or_else(|| wayword_queue::ChunkPlan::for_folder(out), Ok)?;
-    planned::check_agreement(place.shown_path(), &kept, &plan, &settings, asked)?;
+    plan_file::check_agreement(place.shown_path(), &kept, &plan, &settings, asked)?;
     if asked.plan {
         let told = PlanSummary::from_plan(place.shown_path(), &kept);
         output.print_result(&told, &told);

@@ -6,7 +6,7 @@ use crate::{
         AHEAD, GROUPS, LAST_ROOM, LAST_THING, NAMED_ROOM, NAMED_THING, NEAREST, RELATIONS, ROOM, ROOM_MOVE,
         SIDE_OF_PLACE, THING, TOWARDS, TURN_AT, UNNAMED_END, UNNAMED_PASSED,
     },
-    near::CLASSES,
+    nearness::CLASSES,
 };
 use wayword_language::reading::steps::StepRelation;
 

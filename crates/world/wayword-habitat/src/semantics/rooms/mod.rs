@@ -10,7 +10,7 @@ mod rules;
 pub(super) use rules::shell_part;
 
 use super::SemanticThing;
-use crate::columns::TriangleColumns;
+use crate::triangle_columns::TriangleColumns;
 use glam::Vec3;
 use rules::{RoomVerdict, room_verdict};
 use std::collections::BTreeMap;

@@ -109,7 +109,7 @@ impl RoomRules {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use wayword_world::{object_names::plain_name, region};
+    use wayword_world::{object_names::plain_name, region_letters};
 
     /// The verdict on things as the annotators write them, separated by commas.
     fn verdict_on(things: &str) -> RoomVerdict {
@@ -120,7 +120,7 @@ mod tests {
     #[test]
     fn every_line_is_understood_and_names_a_room_that_other_scenes_have_too() {
         assert_eq!(ROOM_RULES.odd, [""; 0]);
-        let known: BTreeSet<&str> = ('a'..='z').chain('A'..='Z').filter_map(region::room_for_letter).collect();
+        let known: BTreeSet<&str> = ('a'..='z').chain('A'..='Z').filter_map(region_letters::room_for_letter).collect();
         for rule in &ROOM_RULES.rooms {
             assert!(known.contains(rule.room), "{}", rule.room);
             for other in &rule.also {

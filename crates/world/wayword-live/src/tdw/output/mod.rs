@@ -3,7 +3,7 @@
 
 mod read;
 
-use super::flat::FlatBufferError;
+use super::flatbuffer_reader::FlatBufferError;
 pub(super) use read::id_of;
 
 /// One frame of output data. All positions and rotations are Unity's (see [`crate::unity`]).

@@ -1,7 +1,7 @@
 //! Reads output data from the bytes of a frame, one function per kind of frame.
 
 use super::{
-    super::flat::{FlatBufferError, FlatBufferTable},
+    super::flatbuffer_reader::{FlatBufferError, FlatBufferTable},
     AvatarImages, AvatarPose, AvatarSensor, BuildOutput, NavMeshPath, OnNavMesh, OutputError, PicturePass,
     SegmentedObject, TdwCameraMatrices, TdwObjectBounds, TdwObjectTransform, TdwOccupancyMap, TdwRegion, VersionOutput,
 };

@@ -1,7 +1,7 @@
 //! The stand-in's answers to commands: frames in the same layout as those of the genuine build.
 
 use super::{
-    flat::{FlatBufferField, write_buffer},
+    flatbuffer_writer::{FlatBufferField, write_buffer},
     pictures,
     state::{BuildState, PictureDemand, StandInAvatar, point_from_json},
     world::unity_f32,

@@ -6,7 +6,7 @@
 //! added an object.
 
 mod answers;
-mod flat;
+mod flatbuffer_writer;
 mod pictures;
 mod state;
 mod world;
@@ -208,7 +208,7 @@ fn run_commands(state: &mut BuildState, message: &[Vec<u8>]) -> Vec<Vec<u8>> {
 /// An `imag` frame with one raw pass of a size, for [`StandInOptions::canned`]: the build's largest picture.
 #[must_use]
 pub fn canned_picture(width: u32, height: u32) -> Vec<u8> {
-    use flat::FlatBufferField;
+    use flatbuffer_writer::FlatBufferField;
     let pixels = (0..width as usize * height as usize * 3).map(|index| (index % 251) as u8).collect();
     let pass = vec![FlatBufferField::I32(16), FlatBufferField::Bytes(pixels), FlatBufferField::U8(1)];
     let fields = vec![
@@ -218,7 +218,7 @@ pub fn canned_picture(width: u32, height: u32) -> Vec<u8> {
         FlatBufferField::I32(height as i32),
         FlatBufferField::Tables(vec![pass]),
     ];
-    flat::write_buffer(b"imag", fields)
+    flatbuffer_writer::write_buffer(b"imag", fields)
 }
 
 /// A small frame of every kind that the stand-in sends, with its id; `vers` in both layouts.

@@ -13,7 +13,7 @@ use std::{
         atomic::{AtomicU64, Ordering::Relaxed},
     },
 };
-use wayword_core::contain::run_decoder;
+use wayword_core::contain_panics::run_decoder;
 
 /// A column in a row group, with the position up to which it was read.
 pub(super) struct ParquetColumn {

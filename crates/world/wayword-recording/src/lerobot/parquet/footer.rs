@@ -18,7 +18,7 @@ use std::{
     io::{Read, Seek, SeekFrom},
     sync::Arc,
 };
-use wayword_core::contain::run_decoder;
+use wayword_core::contain_panics::run_decoder;
 
 const PARQUET_MAGIC: &[u8; 4] = b"PAR1";
 const MAX_FOOTER_BYTES: u64 = 64 << 20;

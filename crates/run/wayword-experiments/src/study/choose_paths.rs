@@ -1,0 +1,311 @@
+//! Chooses the paths of a study, with one text for each condition.
+
+use crate::{
+    demands::{PlatformDemands, SAME_GOAL_M},
+    episodes,
+    similarity::args::TextPairing,
+    study_args::{StudyControl, StudyNew},
+    text_sets,
+};
+use rand::{Rng as _, seq::SliceRandom as _};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::PathBuf,
+    sync::Arc,
+};
+use wayword_core::{Heading, Path, Platform, SceneId, ViewpointId, seeded_rng};
+use wayword_formats::{DatasetFormat, detect_format, jsonl};
+use wayword_metrics::SceneDistances;
+use wayword_navigation::swap::{SwapCandidate, other_path};
+use wayword_run::{count::count_phrase, error::CommandError, output::CommandOutput};
+use wayword_study::{ConditionKind, StudyCondition, StudyTask, StudyText};
+use wayword_world::path_of;
+
+/// The names of the two control conditions.
+const PEOPLE_CONDITION: &str = "people";
+const OTHER_PATH: &str = "other-path";
+
+/// A path with one text for each condition, in the order of the conditions.
+#[derive(Debug)]
+pub(super) struct StudyWalk {
+    pub(super) name: String,
+    pub(super) path: Path,
+    pub(super) viewpoints: Vec<ViewpointId>,
+    pub(super) start_heading: Heading,
+    pub(super) told: Vec<StudyText>,
+}
+
+/// A path that may become part of the study. It has no texts of the conditions yet.
+struct CandidatePath {
+    id: String,
+    name: String,
+    path: Path,
+    viewpoints: Vec<ViewpointId>,
+    people: Vec<String>,
+}
+
+/// The conditions of a study: one for each `--run` and each control.
+///
+/// # Errors
+/// When two have the same name, a control needs `--episodes`, or a pair lacks a second condition.
+pub(super) fn study_conditions(args: &StudyNew) -> Result<Vec<StudyCondition>, CommandError> {
+    let condition = |name: &str, kind, source: String| StudyCondition {
+        name: name.to_owned(),
+        kind,
+        source,
+        shows_doubts: args.doubts.iter().any(|shown| shown == name),
+    };
+    let run = |set: &crate::study_args::NamedSet| condition(&set.name, ConditionKind::Run, set.source.clone());
+    let mut all: Vec<StudyCondition> = args.run.iter().map(run).collect();
+    if args.include.contains(&StudyControl::People) {
+        let Some(file) = &args.episodes else {
+            let problem = "--include people: it is not known which texts people wrote";
+            return Err(CommandError::usage(problem, "give the dataset's file with --episodes"));
+        };
+        all.push(condition(PEOPLE_CONDITION, ConditionKind::People, file.display().to_string()));
+    }
+    if args.include.contains(&StudyControl::OtherPath) {
+        let of = if args.include.contains(&StudyControl::People) { PEOPLE_CONDITION } else { &args.run[0].name };
+        all.push(condition(OTHER_PATH, ConditionKind::OtherPath, of.to_owned()));
+    }
+    check_doubts(args, &all)?;
+    let names: BTreeSet<&str> = all.iter().map(|condition| condition.name.as_str()).collect();
+    if names.len() < all.len() {
+        return Err(CommandError::usage(
+            "two conditions have one name",
+            "give each --run its own name, and none that of a control",
+        ));
+    }
+    if args.mode == crate::study_args::StudyMode::Pair && all.len() < 2 {
+        return Err(CommandError::usage(
+            "--mode pair: there is one condition, so nothing to choose between",
+            "give a second --run, or --include",
+        ));
+    }
+    Ok(all)
+}
+
+/// Refuses marks for a set that does not exist, and marks in a study in which people do not walk.
+fn check_doubts(args: &StudyNew, all: &[StudyCondition]) -> Result<(), CommandError> {
+    if let Some(name) = args.doubts.iter().find(|name| all.iter().all(|condition| condition.name != **name)) {
+        let names: Vec<&str> = all.iter().map(|condition| condition.name.as_str()).collect();
+        return Err(CommandError::usage(
+            format!("--doubts {name}: there is no such set"),
+            format!("there are: {}", names.join(", ")),
+        ));
+    }
+    if !args.doubts.is_empty() && args.mode != crate::study_args::StudyMode::Follow {
+        let problem = "--doubts: words are marked only for people who walk by a text";
+        return Err(CommandError::usage(problem, "use --mode follow, or leave out --doubts"));
+    }
+    Ok(())
+}
+
+/// Chooses the paths that have a text of every condition, each path once, in an order drawn by the seed.
+///
+/// # Errors
+/// When files cannot be read, or no path has texts of all conditions.
+pub(super) fn choose_walks(
+    args: &StudyNew,
+    mode: StudyTask,
+    conditions: &[StudyCondition],
+    platform: &dyn Platform,
+    output: &CommandOutput,
+) -> Result<Vec<StudyWalk>, CommandError> {
+    let demands = PlatformDemands::new(platform);
+    let mut bare = read_candidates(args, mode, platform)?;
+    if mode == StudyTask::Follow {
+        let before = bare.len();
+        bare = keep_walkable(bare, platform, &demands)?;
+        if bare.len() < before {
+            let left = count_phrase(before - bare.len(), "path");
+            output.say(format_args!(
+                "left out: {left} whose viewpoints do not lead from the start to a goal 3 m away or more"
+            ));
+        }
+    }
+    let sets = read_run_texts(conditions)?;
+    let mut drawn = seeded_rng(args.seed, &["study", "texts"]);
+    // If an item has several texts of a condition, one is drawn.
+    let mut texts: Vec<BTreeMap<&str, String>> = Vec::new();
+    for item in &bare {
+        let mut of_item = BTreeMap::new();
+        // Two conditions of one source have the same text, because they are to differ only in their marks.
+        let mut of_source: BTreeMap<&str, String> = BTreeMap::new();
+        for condition in conditions {
+            let found = match condition.kind {
+                ConditionKind::Run => sets.get(condition.name.as_str()).and_then(|set| set.get(&item.id)),
+                ConditionKind::People => Some(&item.people),
+                ConditionKind::OtherPath => None,
+            };
+            if let Some(found) = found.filter(|found| !found.is_empty()) {
+                let draw = || found[drawn.random_range(0..found.len())].clone();
+                let text = of_source.entry(condition.source.as_str()).or_insert_with(draw).clone();
+                of_item.insert(condition.name.as_str(), text);
+            }
+        }
+        texts.push(of_item);
+    }
+    // Only a path that has a text can lend it to another path.
+    let source = conditions
+        .iter()
+        .find(|condition| condition.kind == ConditionKind::OtherPath)
+        .map(|condition| &condition.source);
+    let has_source = |at: usize| source.is_some_and(|source| texts[at].contains_key(source.as_str()));
+    let elsewhere = match source {
+        Some(_) => find_other_paths(&bare, &demands, args.seed, &has_source)?,
+        None => vec![None; bare.len()],
+    };
+    let told = |at: usize| -> Option<Vec<StudyText>> {
+        let text = |condition: &StudyCondition| {
+            let text = match condition.kind {
+                ConditionKind::OtherPath => {
+                    texts.get(elsewhere.get(at).copied().flatten()?)?.get(condition.source.as_str())
+                }
+                _ => texts[at].get(condition.name.as_str()),
+            };
+            Some(StudyText { condition: condition.name.clone(), text: text?.clone(), marks: Vec::new() })
+        };
+        conditions.iter().map(text).collect()
+    };
+    let mut order: Vec<usize> = (0..bare.len()).collect();
+    order.shuffle(&mut seeded_rng(args.seed, &["study", "paths"]));
+    let told: BTreeMap<usize, Vec<StudyText>> = order.iter().filter_map(|at| Some((*at, told(*at)?))).collect();
+    let mut seen = BTreeSet::new();
+    order.retain(|at| told.contains_key(at) && seen.insert(bare[*at].name.clone()));
+    if order.is_empty() {
+        let problem = format!("none of {} has a text of every condition", count_phrase(bare.len(), "path"));
+        let hint =
+            "items are matched by id: give runs of the same paths; other-path needs a second path in the same scene";
+        return Err(CommandError::usage(problem, hint));
+    }
+    let mut told = told;
+    let mut bare: Vec<Option<CandidatePath>> = bare.into_iter().map(Some).collect();
+    let walk = |at: usize| {
+        let CandidatePath { name, path, viewpoints, .. } = bare[at].take()?;
+        let start_heading = path.frames.first().map_or(Heading::NORTH, |frame| frame.pose.heading);
+        Some(StudyWalk { name, path, viewpoints, start_heading, told: told.remove(&at)? })
+    };
+    Ok(order.into_iter().filter_map(walk).collect())
+}
+
+/// Keeps the paths that can be walked over the viewpoint graph and end far enough from their start. With a nearer goal, a
+/// participant who stops at once would have arrived.
+fn keep_walkable(
+    bare: Vec<CandidatePath>,
+    platform: &dyn Platform,
+    demands: &PlatformDemands<'_>,
+) -> Result<Vec<CandidatePath>, CommandError> {
+    let mut all = Vec::new();
+    for item in bare {
+        let scene = &item.path.scene;
+        let distances = demands.scene_distances(scene)?;
+        let ends = item.viewpoints.first().zip(item.viewpoints.last());
+        let apart_m = ends.and_then(|(start, goal)| distances.metres_between(start, goal));
+        let graph = platform.graph_for_scene(scene)?;
+        let is_known = item.viewpoints.iter().all(|viewpoint| graph.position_of(viewpoint).is_some());
+        if is_known && apart_m.is_some_and(|apart_m| apart_m >= SAME_GOAL_M) {
+            all.push(item);
+        }
+    }
+    Ok(all)
+}
+
+/// Reads the texts of each run, by item.
+fn read_run_texts(
+    conditions: &[StudyCondition],
+) -> Result<BTreeMap<&str, BTreeMap<String, Vec<String>>>, CommandError> {
+    let runs = conditions.iter().filter(|condition| condition.kind == ConditionKind::Run);
+    let read = |condition: &'_ StudyCondition| -> Result<_, CommandError> {
+        let set = text_sets::read_text_set(&condition.source, None, TextPairing::Item)?;
+        Ok(set.into_iter().map(|(item, texts)| (item, texts.texts)).collect())
+    };
+    runs.map(|condition| Ok((condition.name.as_str(), read(condition)?))).collect()
+}
+
+/// Reads the paths of the episodes, or, without `--episodes`, of the first run.
+fn read_candidates(
+    args: &StudyNew,
+    mode: StudyTask,
+    platform: &dyn Platform,
+) -> Result<Vec<CandidatePath>, CommandError> {
+    let file: PathBuf = args.episodes.clone().unwrap_or_else(|| text_sets::file_of(&args.run[0].source));
+    let is_walked = mode == StudyTask::Follow;
+    if detect_format(&file)? != DatasetFormat::Wayword {
+        let read = if is_walked {
+            episodes::read_episodes(&file, platform)?
+        } else {
+            wayword_formats::read_any_format(&file)?
+        };
+        let bare = |episode: wayword_formats::Episode| {
+            let object = episode.target_object.as_ref();
+            let path =
+                path_of(platform, &*episode.id, &episode.scene, &episode.viewpoints, episode.start_heading, object)?;
+            let name = episodes::episode_path_name(&episode);
+            Ok(CandidatePath {
+                id: episode.id,
+                name,
+                path,
+                viewpoints: episode.viewpoints,
+                people: episode.instructions,
+            })
+        };
+        return read.into_iter().map(bare).collect();
+    }
+    let viewpoints: BTreeMap<String, Vec<ViewpointId>> = if is_walked {
+        episodes::read_episodes(&file, platform)?.into_iter().map(|episode| (episode.id, episode.viewpoints)).collect()
+    } else {
+        BTreeMap::new()
+    };
+    let mut all: Vec<CandidatePath> = Vec::new();
+    let mut index: BTreeMap<String, usize> = BTreeMap::new();
+    for record in jsonl::read_records(&file)? {
+        let at = *index.entry(record.path.id.clone()).or_insert_with(|| {
+            let id = record.path.id.clone();
+            let name = episodes::path_name(&record.path.scene, &record.path_id());
+            let viewpoints = viewpoints.get(&id).cloned().unwrap_or_default();
+            all.push(CandidatePath { id, name, path: record.path.clone(), viewpoints, people: Vec::new() });
+            all.len() - 1
+        });
+        all[at].people.push(record.instruction.text);
+    }
+    Ok(all)
+}
+
+/// For each path, the index of another one in the same scene with another goal, among those for which `may_stand` is true.
+fn find_other_paths(
+    bare: &[CandidatePath],
+    demands: &PlatformDemands<'_>,
+    seed: u64,
+    may_stand: &dyn Fn(usize) -> bool,
+) -> Result<Vec<Option<usize>>, CommandError> {
+    let mut distances: BTreeMap<SceneId, Arc<SceneDistances>> = BTreeMap::new();
+    let mut candidates = Vec::new();
+    for item in bare {
+        let scene = item.path.scene.clone();
+        let goal =
+            item.viewpoints.last().or_else(|| item.path.frames.last().and_then(|frame| frame.viewpoint.as_ref()));
+        if goal.is_some() {
+            distances.insert(scene.clone(), demands.scene_distances(&scene)?);
+        }
+        // A path without viewpoints ends at a place of its own.
+        let goal = goal.cloned().or_else(|| ViewpointId::new(format!("end-of-{}", item.id)).ok());
+        let Some(goal) = goal else {
+            return Err(CommandError::usage(format!("item {}: it has no usable id", item.id), "give it another"));
+        };
+        candidates.push(SwapCandidate { id: item.id.clone(), scene, goal, cluster: item.name.clone() });
+    }
+    let is_far = |a: &SwapCandidate, b: &SwapCandidate| {
+        let apart_m = distances.get(&a.scene).and_then(|distances| distances.metres_between(&a.goal, &b.goal));
+        apart_m.is_none_or(|apart_m| apart_m >= SAME_GOAL_M)
+    };
+    let standing: Vec<usize> = (0..bare.len()).filter(|at| may_stand(*at)).collect();
+    let other = |at: usize| {
+        // The path itself comes first, and the others after it.
+        let among: Vec<usize> =
+            std::iter::once(at).chain(standing.iter().copied().filter(|other| *other != at)).collect();
+        let candidates: Vec<SwapCandidate> = among.iter().map(|index| candidates[*index].clone()).collect();
+        other_path(&candidates, 0, seed, &is_far).map(|found| among[found])
+    };
+    Ok((0..bare.len()).map(other).collect())
+}

@@ -1,0 +1,198 @@
+//! `wayword study new`: chooses paths and texts, draws the pictures, and writes the folder of a study.
+
+use super::{
+    choose_paths::{StudyWalk, choose_walks, study_conditions},
+    marks, pictures,
+};
+use crate::study_args::{StudyMode, StudyNew, StudyRecruiter};
+use serde::Serialize;
+use std::{fmt, fs, path::PathBuf};
+use wayword_core::Platform;
+use wayword_report::view;
+use wayword_run::{count::count_phrase, error::CommandError, interrupt, output::CommandOutput, terms};
+use wayword_study::{
+    CompletionCodes, RecruiterSettings, Study, StudyCondition, StudyDesign, StudyItem, StudyRoute, StudySettings,
+    StudyTask, StudyText,
+};
+use wayword_synthesis::style::built_in;
+
+/// Most examples of a style that raters see.
+const MAX_STYLE_EXAMPLES: usize = 3;
+
+/// A summary of the study that was made.
+#[derive(Debug, Serialize)]
+struct NewStudySummary {
+    study: PathBuf,
+    mode: StudyTask,
+    conditions: Vec<String>,
+    routes: usize,
+    items: usize,
+    answers: u64,
+    pictures: usize,
+    has_practice: bool,
+}
+
+impl fmt::Display for NewStudySummary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (routes, items) = (count_phrase(self.routes, "path"), count_phrase(self.items, "item"));
+        writeln!(f, "{}: {routes}, {items}, {} wanted", self.study.display(), count_phrase(self.answers, "answer"))?;
+        writeln!(f, "conditions: {}", self.conditions.join(", "))?;
+        if !self.has_practice {
+            writeln!(f, "no path was left for practice: give more paths, or fewer --items")?;
+        }
+        write!(
+            f,
+            "next: word study.toml (title, contact, consent), then `wayword study serve {} --links 1`",
+            self.study.display()
+        )
+    }
+}
+
+pub(super) fn make_study(args: &StudyNew, output: &CommandOutput) -> Result<(), CommandError> {
+    let _graceful = interrupt::finish_first(None);
+    let mode = match args.mode {
+        StudyMode::Follow => StudyTask::Follow,
+        StudyMode::Rate => StudyTask::Rate,
+        StudyMode::Pair => StudyTask::Pair,
+    };
+    let platform = view::open_platform(&args.platform)?;
+    check_pictures(args, mode, &*platform)?;
+    if Study::is_in(&args.out) {
+        let problem = format!("{}: there is a study already", args.out.display());
+        return Err(CommandError::usage(problem, "give another --out; a study that people see is not changed"));
+    }
+    let conditions = study_conditions(args)?;
+    let mut walks = choose_walks(args, mode, &conditions, &*platform, output)?;
+    let asked = args.items as usize;
+    // One more path than the user asked for is for practice.
+    walks.truncate(asked + 1);
+    let has_practice = walks.len() > 1;
+    let routes = walks.len() - usize::from(has_practice);
+    if routes < asked {
+        output.say(format_args!("there are only {} with a text of every condition", count_phrase(routes, "path")));
+    }
+    marks::mark_doubts(&mut walks, &conditions, &*platform, output)?;
+    let folder = args.out.join("pictures");
+    fs::create_dir_all(&folder).map_err(CommandError::io(&folder, "make the folder"))?;
+    let scenes = match mode {
+        StudyTask::Follow => pictures::draw_scenes(&walks, &*platform, &folder, output)?,
+        StudyTask::Rate | StudyTask::Pair => Vec::new(),
+    };
+    let made = routes_of(&walks, mode, &*platform, &folder, output)?;
+    let pictures = scenes.iter().map(|scene| scene.places.len()).sum::<usize>()
+        + made.iter().map(|route| route.film.len()).sum::<usize>();
+    let items = study_items(&walks, mode, has_practice);
+    let style = first_style(args);
+    let per_participant = args.per_participant.min(u32::try_from(routes).unwrap_or(u32::MAX));
+    let mut settings = StudySettings::for_mode(mode, per_participant);
+    settings.recruiter = recruiter_settings(args.recruiter);
+    settings.codes = completion_codes(args.recruiter);
+    settings.examples = style_examples(&style);
+    let plan = StudyDesign { mode, seed: args.seed, per_item: args.per_item, per_participant, conditions, style };
+    let wanted = items.iter().filter(|item| !item.is_practice).count();
+    let told = NewStudySummary {
+        study: args.out.clone(),
+        mode,
+        conditions: plan.conditions.iter().map(|condition: &StudyCondition| condition.name.clone()).collect(),
+        routes,
+        items: wanted,
+        answers: wanted as u64 * u64::from(args.per_item),
+        pictures,
+        has_practice,
+    };
+    Study { folder: args.out.clone(), plan, settings, items, routes: made, scenes }.create()?;
+    output.print_result(&told, &told);
+    Ok(())
+}
+
+fn check_pictures(args: &StudyNew, mode: StudyTask, platform: &dyn Platform) -> Result<(), CommandError> {
+    let name = platform.name();
+    if mode == StudyTask::Follow && name == "recording" {
+        let problem = "--mode follow: a recording shows one way only, and has no viewpoint graph that one could walk";
+        return Err(CommandError::usage(problem, "use --mode rate or --mode pair"));
+    }
+    let problem = format!("the pictures of platform {name} are somebody's, and participants would see them");
+    terms::check_right(name, args.i_have_the_right, problem, "show")
+}
+
+/// The routes of the study. The last one is for practice.
+fn routes_of(
+    walks: &[StudyWalk],
+    mode: StudyTask,
+    platform: &dyn Platform,
+    folder: &std::path::Path,
+    output: &CommandOutput,
+) -> Result<Vec<StudyRoute>, CommandError> {
+    let is_watched = mode != StudyTask::Follow;
+    let bar = output.progress_bar(walks.len(), "paths");
+    let route = |(id, walk): (u32, &StudyWalk)| {
+        let film = if is_watched { pictures::draw_film(walk, platform, folder)? } else { Vec::new() };
+        bar.inc(1);
+        Ok(StudyRoute {
+            id,
+            name: walk.name.clone(),
+            scene: walk.path.scene.clone(),
+            viewpoints: walk.viewpoints.clone(),
+            start_heading: walk.start_heading,
+            film,
+        })
+    };
+    let routes = (0..).zip(walks).map(route).collect();
+    bar.finish_and_clear();
+    routes
+}
+
+/// The items of the study: each route with each of its texts, or, if people compare pairs, with each two of them. The last route
+/// is for practice, and gets only one item.
+fn study_items(walks: &[StudyWalk], mode: StudyTask, has_practice: bool) -> Vec<StudyItem> {
+    let mut items: Vec<StudyItem> = Vec::new();
+    for (route, walk) in (0..).zip(walks) {
+        let is_practice = has_practice && route as usize == walks.len() - 1;
+        let each: Vec<Vec<StudyText>> = match mode {
+            StudyTask::Pair => text_pairs(&walk.told),
+            StudyTask::Follow | StudyTask::Rate => walk.told.iter().map(|told| vec![told.clone()]).collect(),
+        };
+        let each = if is_practice { &each[..1] } else { &each[..] };
+        for texts in each {
+            let id = u32::try_from(items.len()).unwrap_or(u32::MAX);
+            items.push(StudyItem { id, route, is_practice, texts: texts.clone() });
+        }
+    }
+    items
+}
+
+fn text_pairs(told: &[StudyText]) -> Vec<Vec<StudyText>> {
+    let later = |at: usize| told[at + 1..].iter().map(move |other| vec![told[at].clone(), other.clone()]);
+    (0..told.len()).flat_map(later).collect()
+}
+
+/// The style of the first run, if its source names one; otherwise empty.
+fn first_style(args: &StudyNew) -> String {
+    args.run.first().and_then(|set| set.source.rsplit_once('#')).map(|(_, style)| style.to_owned()).unwrap_or_default()
+}
+
+fn style_examples(style: &str) -> Vec<String> {
+    built_in(style).map(|style| style.references.into_iter().take(MAX_STYLE_EXAMPLES).collect()).unwrap_or_default()
+}
+
+fn recruiter_settings(recruiter: StudyRecruiter) -> RecruiterSettings {
+    let parameters = |person: &str, session: &str, study: &str| RecruiterSettings::Parameters {
+        person: person.to_owned(),
+        session: session.to_owned(),
+        study: study.to_owned(),
+        only_study: String::new(),
+    };
+    match recruiter {
+        StudyRecruiter::Links => RecruiterSettings::Links,
+        StudyRecruiter::Prolific => parameters("PROLIFIC_PID", "SESSION_ID", "STUDY_ID"),
+        StudyRecruiter::Mturk => parameters("workerId", "assignmentId", "hitId"),
+    }
+}
+
+fn completion_codes(recruiter: StudyRecruiter) -> CompletionCodes {
+    let return_url = match recruiter {
+        StudyRecruiter::Prolific => "https://app.prolific.com/submissions/complete?cc={code}".to_owned(),
+        StudyRecruiter::Links | StudyRecruiter::Mturk => String::new(),
+    };
+    CompletionCodes { return_url, ..CompletionCodes::default() }
+}

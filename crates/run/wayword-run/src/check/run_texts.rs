@@ -1,0 +1,183 @@
+//! Checks texts that were edited after `wayword export` against the captions of their own run, which needs no platform.
+
+use super::{
+    CheckOptions,
+    path_texts::{FileText, StyleReference},
+    report::{CheckReport, CheckedText},
+    styles::CheckStyles,
+};
+use crate::{
+    check::args::AskedWorld,
+    error::CommandError,
+    run_folder::{WalkRecord, file, lines, settings_of},
+};
+use serde::Deserialize;
+use std::{collections::BTreeMap, path::Path as FilePath};
+use wayword_checks::{CheckSubject, Evidence, TurnJudge, WorldReach, check_own};
+use wayword_core::{CheckFinding, ObjectId, Path, SceneId, ViewpointId};
+use wayword_formats::{DatasetFormat, jsonl};
+use wayword_synthesis::walk::ObservedWalk;
+
+/// A text, and how its path is found in the run.
+struct RunText {
+    text: FileText,
+    path: RunPathKey,
+}
+
+/// How a text in a file refers to a path of the run.
+enum RunPathKey {
+    /// Its name.
+    Id(String),
+    /// The fields of a dataset. The names count only if the dataset has no viewpoints.
+    Way { scene: SceneId, viewpoints: Vec<ViewpointId>, object: Option<ObjectId>, names: [String; 2] },
+}
+
+/// Checks every text of a file against the captions of a run.
+///
+/// # Errors
+/// When the file or the run cannot be read, or a text is about a path that the run does not have.
+pub(super) fn check_file(texts: &FilePath, run: &FilePath, how: CheckOptions<'_>) -> Result<CheckReport, CommandError> {
+    let held = CheckStyles::of_run(how.style, &settings_of(run)?)?;
+    // The finds of a detector are part of the captions.
+    let captions_were_evidence = matches!(checked_against(run)?.as_deref(), Some("captions" | "detector"));
+    let mut wanted: Vec<Option<RunText>> = read_texts(texts)?.into_iter().map(Some).collect();
+    let mut found: Vec<(usize, CheckedText, Vec<CheckFinding>)> = Vec::new();
+    let mut report = CheckReport::default();
+    lines::each_line(&run.join(file::WALKS), |line| {
+        let record: WalkRecord = line.parse()?;
+        let mut mine = Vec::new();
+        for slot in &mut wanted {
+            mine.extend(slot.take_if(|wanted| wanted.path.matches_path(&record.path)));
+        }
+        if mine.is_empty() {
+            return Ok(());
+        }
+        let walk = ObservedWalk::new(record.path, record.observations);
+        let evidence = walk.evidence().unwrap_or_else(|| Evidence::of_path_alone(&walk.path));
+        let source = evidence.source.name();
+        if !report.checked_against.iter().any(|other| other == source) {
+            report.checked_against.push(source.to_owned());
+        }
+        for RunText { text, .. } in mine {
+            held.count_text(&text, &mut report);
+            let known = held.style_of(&text);
+            let target = walk.path.target.as_ref();
+            // If labels were the evidence, the captions show less than the texts were written from, so the world is open.
+            let is_closed = match how.world {
+                AskedWorld::Closed => true,
+                AskedWorld::Open => false,
+                AskedWorld::Auto => captions_were_evidence,
+            };
+            let subject = if is_closed {
+                CheckSubject::closed_world(&evidence, &known.style, target)
+            } else {
+                CheckSubject::open_world(&evidence, &known.style, WorldReach::default())
+            };
+            let turns = TurnJudge::NotJudged("without the platform the text is not followed");
+            let subject = CheckSubject { tag: text.tag.as_deref(), turns, ..subject.with_copies(&known.copies) };
+            let checked = check_own(&text.words, subject);
+            found.push((text.at, CheckedText::from_text(&text, &checked), checked.findings));
+        }
+        Ok(())
+    })?;
+    if let Some(lost) = wanted.iter().flatten().next() {
+        let problem = format!("{}: the run {} has no path {}", texts.display(), run.display(), lost.text.path);
+        return Err(CommandError::usage(problem, "give the run that the texts were exported from"));
+    }
+    found.sort_by_key(|(at, _, _)| *at);
+    found.into_iter().for_each(|(_, text, findings)| report.add_text(text, &findings));
+    Ok(report)
+}
+
+/// The captions of a run as evidence, by the ids of its paths.
+///
+/// # Errors
+/// When the run cannot be read.
+pub(super) fn read_captions(run: &FilePath) -> Result<BTreeMap<String, Evidence>, CommandError> {
+    let mut captions = BTreeMap::new();
+    lines::each_line(&run.join(file::WALKS), |line| {
+        let record: WalkRecord = line.parse()?;
+        let walk = ObservedWalk::new(record.path, record.observations);
+        captions.extend(walk.evidence().map(|evidence| (walk.path.id.clone(), evidence)));
+        Ok(())
+    })?;
+    Ok(captions)
+}
+
+impl RunPathKey {
+    fn matches_path(&self, path: &Path) -> bool {
+        match self {
+            Self::Id(id) => path.id == *id,
+            Self::Way { scene, viewpoints, object, names } => {
+                let along: Option<Vec<&ViewpointId>> =
+                    path.frames.iter().map(|frame| frame.viewpoint.as_ref()).collect();
+                let is_same_way = match along {
+                    Some(along) if !viewpoints.is_empty() => along.into_iter().eq(viewpoints.iter()),
+                    _ => names.contains(&path.id),
+                };
+                let target = path.target.as_ref().map(|target| &target.object);
+                path.scene == *scene
+                    && is_same_way
+                    && object.as_ref().is_none_or(|object| target.is_none_or(|target| target == object))
+            }
+        }
+    }
+}
+
+/// The texts of a file.
+fn read_texts(file: &FilePath) -> Result<Vec<RunText>, CommandError> {
+    let mut all = Vec::new();
+    if wayword_formats::detect_format(file)? == DatasetFormat::Wayword {
+        for (at, jsonl::InstructionRecord { path, instruction, platform, .. }) in
+            jsonl::read_records(file)?.into_iter().enumerate()
+        {
+            let style = StyleReference { name: instruction.style, hash: instruction.provenance.style_hash.clone() };
+            let (words, made) = (instruction.text, Some((platform, instruction.provenance)));
+            let text = FileText { at, path: path.id.clone(), words, tag: None, style: Some(style), made };
+            all.push(RunText { text, path: RunPathKey::Id(path.id) });
+        }
+        return Ok(all);
+    }
+    for episode in wayword_formats::read_any_format(file)? {
+        for (at, words) in episode.instructions.iter().enumerate() {
+            let tag = episode.language_of(at).map(str::to_owned);
+            let text = FileText {
+                at: all.len(),
+                path: episode.id.clone(),
+                words: words.clone(),
+                tag,
+                style: None,
+                made: None,
+            };
+            let path = RunPathKey::Way {
+                scene: episode.scene.clone(),
+                viewpoints: episode.viewpoints.clone(),
+                object: episode.target_object.clone(),
+                names: [episode.id.clone(), episode.path_id.clone()],
+            };
+            all.push(RunText { text, path });
+        }
+    }
+    Ok(all)
+}
+
+/// The evidence that the first text of a run was checked against.
+fn checked_against(run: &FilePath) -> Result<Option<String>, CommandError> {
+    #[derive(Deserialize)]
+    struct FirstInstructionLine {
+        provenance: FirstInstructionProvenance,
+    }
+    #[derive(Deserialize)]
+    struct FirstInstructionProvenance {
+        checked_against: String,
+    }
+    let mut first = None;
+    lines::each_line(&run.join(file::INSTRUCTIONS), |line| {
+        if first.is_none() {
+            let FirstInstructionLine { provenance } = line.parse()?;
+            first = Some(provenance.checked_against);
+        }
+        Ok(())
+    })?;
+    Ok(first)
+}
