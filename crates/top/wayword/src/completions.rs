@@ -5,7 +5,7 @@ use clap::CommandFactory;
 use std::io::{self, Write};
 use wayword_run::error::{CommandError, Exit};
 
-pub fn print_completions(shell: clap_complete::Shell) -> Result<Exit, CommandError> {
+pub(crate) fn print_completions(shell: clap_complete::Shell) -> Result<Exit, CommandError> {
     // `clap_complete` panics when it cannot write. A closed pipe is not an error.
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut WaywordCli::command(), "wayword", &mut script);

@@ -31,7 +31,7 @@ pub struct DemoArgs {
 /// The report of a demo shows its one path.
 const DEMO_ITEMS: usize = 1;
 
-pub fn run_demo(args: &DemoArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
+pub(crate) fn run_demo(args: &DemoArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
     let asked = AskedSettings {
         walks: Walks { scan: Some(vec![scene_name(args.seed)]), paths: Some(1), ..Walks::default() },
         draw: Draw { seed: Some(args.seed), ..Draw::default() },

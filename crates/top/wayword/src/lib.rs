@@ -22,11 +22,7 @@ mod runs;
 use clap::Parser;
 use cli::WaywordCli;
 use std::ffi::OsString;
-use wayword_run::{
-    error::Exit,
-    interrupt,
-    output::{self, CommandOutput},
-};
+use wayword_run::{error::Exit, interrupt, output::CommandOutput};
 /// Runs the program; `arguments` begins with its name. Returns the exit code.
 #[must_use]
 pub fn main(arguments: Vec<OsString>) -> u8 {

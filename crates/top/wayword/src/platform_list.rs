@@ -7,7 +7,7 @@ use wayword_run::{
     platforms::PLATFORMS,
 };
 
-pub fn list_platforms(output: &CommandOutput) -> Result<Exit, CommandError> {
+pub(crate) fn list_platforms(output: &CommandOutput) -> Result<Exit, CommandError> {
     let mut text = String::new();
     for platform in PLATFORMS {
         let absent = if platform.is_here { "" } else { " (not in this build: --features full)" };

@@ -39,7 +39,7 @@ const MAX_REPORT_WALKS: usize = 100;
 /// Most runs below a folder that an error names.
 const MAX_NAMED_ITEMS: usize = 3;
 
-pub fn run_report(args: &ReportArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
+pub(crate) fn run_report(args: &ReportArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
     expect_run(&args.run)?;
     let out = args.out.clone().unwrap_or_else(|| args.run.join(file::REPORT));
     if compare::is_comparison(&args.run) {

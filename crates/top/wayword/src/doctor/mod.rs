@@ -1,7 +1,7 @@
 //! `wayword doctor`: tries out platform, models, keys and prompts, and reports for each whether it works, with a hint if it does
 //! not.
 
-pub mod args;
+pub(crate) mod args;
 mod scenes;
 
 use crate::doctor::args::DoctorArgs;
@@ -53,7 +53,7 @@ struct DoctorReport {
     scenes: Vec<SceneCondition>,
 }
 
-pub fn run_doctor(args: &DoctorArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
+pub(crate) fn run_doctor(args: &DoctorArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
     let mut job = args.to_asked().or_file(config::read_settings(args.config.as_deref())?).into_job()?;
     let mut findings = Vec::new();
     let mut examined = Ok(Vec::new());

@@ -1,6 +1,6 @@
 //! `wayword house`: generated houses as a set of scenes that Habitat reads, with episodes that its agents walk.
 
-pub mod args;
+pub(crate) mod args;
 #[cfg(feature = "habitat")]
 mod episodes;
 
@@ -51,7 +51,7 @@ struct WrittenEpisodes {
     failed: Vec<String>,
 }
 
-pub fn run_house(args: &HouseArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
+pub(crate) fn run_house(args: &HouseArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
     let given = args.run.as_deref().map(|run| read_records(run, args.style.as_deref())).transpose()?;
     let seeds = match &given {
         Some(records) => seeds_of(records)?,

@@ -1,6 +1,6 @@
 //! `wayword launch`: prints the script (Slurm) or manifest (Kubernetes) that starts many workers, or submits it.
 
-pub mod args;
+pub(crate) mod args;
 use crate::launch::args::{LaunchArgs, LaunchCommand, LaunchKubernetes, LaunchSlurm};
 use serde_json::json;
 use std::{
@@ -18,7 +18,7 @@ use wayword_run::{
     output::CommandOutput,
 };
 
-pub fn run_launch(args: &LaunchArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
+pub(crate) fn run_launch(args: &LaunchArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
     match &args.command {
         LaunchCommand::Slurm(args) => launch_slurm(args, output),
         LaunchCommand::Kubernetes(args) => launch_kubernetes(args, output),

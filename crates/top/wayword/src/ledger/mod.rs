@@ -1,6 +1,6 @@
 //! `wayword ledger`: lists the calls that the ledger keeps, sums their cost, exports and drops them.
 
-pub mod args;
+pub(crate) mod args;
 use crate::ledger::args::{LedgerArgs as Args, LedgerCommand};
 use serde::Serialize;
 use std::fmt;
@@ -15,7 +15,7 @@ use wayword_run::{
 
 const SECONDS_PER_DAY: u64 = 86_400;
 
-pub fn run_ledger(args: &Args, output: &CommandOutput) -> Result<Exit, CommandError> {
+pub(crate) fn run_ledger(args: &Args, output: &CommandOutput) -> Result<Exit, CommandError> {
     let path = ledger_path(&Service { ledger: args.ledger.clone(), ..Service::default() })?;
     if !path.exists() {
         return Err(CommandError::usage(

@@ -15,7 +15,7 @@ use wayword_run::{
 /// Digits of a commit that are shown.
 const SHOWN_DIGITS: usize = 12;
 
-pub fn run_models(args: &ModelsArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
+pub(crate) fn run_models(args: &ModelsArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
     let mut config = HubConfig::from_env()?;
     match &args.command {
         ModelsCommand::List => {

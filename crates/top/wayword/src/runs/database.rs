@@ -7,7 +7,7 @@ use wayword_run::{
 };
 
 #[cfg(feature = "queue")]
-pub fn run_database(args: &RunsDatabase, output: &CommandOutput) -> Result<Exit, CommandError> {
+pub(super) fn run_database(args: &RunsDatabase, output: &CommandOutput) -> Result<Exit, CommandError> {
     use wayword_database::{ConnectionPool, PostgresDatabase, prepare_tables};
     let database = PostgresDatabase::from_name(&args.database, args.password_env.as_deref())?;
     let tables = [wayword_queue::QUEUE_TABLES, wayword_ledger::LEDGER_TABLES];

@@ -32,7 +32,7 @@ struct MergeSummary {
     failed: usize,
 }
 
-pub fn run_merge(args: &RunsMerge, output: &CommandOutput) -> Result<Exit, CommandError> {
+pub(super) fn run_merge(args: &RunsMerge, output: &CommandOutput) -> Result<Exit, CommandError> {
     let folder = args.to.as_ref().unwrap_or(&args.run);
     match &args.to {
         Some(to) => RunPlace::fetch_run(&args.run, to, output)?,

@@ -1,6 +1,6 @@
 //! `wayword runs`: shows, merges and retries a run that many workers make.
 
-pub mod args;
+pub(crate) mod args;
 mod database;
 mod merge;
 mod prometheus;
@@ -13,7 +13,7 @@ use wayword_run::{
     output::CommandOutput,
 };
 
-pub fn run_runs(args: &RunsArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
+pub(crate) fn run_runs(args: &RunsArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
     match &args.command {
         RunsCommand::Status(args) => status::run_status(args, output),
         RunsCommand::Merge(args) => merge::run_merge(args, output),

@@ -17,7 +17,7 @@ struct RetrySummary {
     chunks: Vec<usize>,
 }
 
-pub fn run_retry(args: &RunsRetry, output: &CommandOutput) -> Result<Exit, CommandError> {
+pub(super) fn run_retry(args: &RunsRetry, output: &CommandOutput) -> Result<Exit, CommandError> {
     let place = RunPlace::open_named(&args.run)?;
     let (folder, plan) = (place.folder(), ChunkPlan::for_folder(place.folder())?);
     place.fetch_marks(&plan)?;

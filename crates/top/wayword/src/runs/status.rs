@@ -102,7 +102,7 @@ pub(super) struct AtWork {
     pub(super) is_fresh: bool,
 }
 
-pub fn run_status(args: &RunsStatus, output: &CommandOutput) -> Result<Exit, CommandError> {
+pub(super) fn run_status(args: &RunsStatus, output: &CommandOutput) -> Result<Exit, CommandError> {
     let place = RunPlace::open_named(&args.run)?;
     let (folder, plan) = (place.folder(), ChunkPlan::for_folder(place.folder())?);
     let queue = queue_of(&place, &plan, &args.database)?;

@@ -6,8 +6,8 @@
 pub(crate) mod collector;
 pub(crate) mod scans;
 
-pub mod models;
-pub mod submissions;
+pub(crate) mod models;
+pub(crate) mod submissions;
 
 use serde_json::Value;
 use std::{
