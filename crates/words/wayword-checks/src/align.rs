@@ -249,4 +249,70 @@ mod tests {
         assert!(align_steps(&steps, &walk(&back_and_forth)).is_ok_and(|frames| frames.iter().all(Option::is_some)));
         assert!(began.elapsed() < Duration::from_secs(20), "{:?}", began.elapsed());
     }
+
+    fn places(frames: &[usize]) -> AlignmentStep {
+        AlignmentStep::Place(frames.to_vec())
+    }
+
+    #[test]
+    fn align_steps_gives_the_first_frame_that_fits_each_step() {
+        let turn = AlignmentStep::Turn;
+        let steps = [places(&[1, 4]), turn(Side::Right), AlignmentStep::Free, places(&[0, 3]), AlignmentStep::Onward];
+        let path = walk(&[0.0, 0.0, 90.0, 0.0]);
+        assert_eq!(align_steps(&steps, &path), Ok(vec![Some(1), Some(2), None, Some(3), None]));
+        assert_eq!(align_steps(&[places(&[2]), places(&[1])], &path), Err(1));
+        assert_eq!(align_steps(&[places(&[1]), turn(Side::Left), places(&[2])], &path), Err(1));
+        assert_eq!(align_steps(&[], &path), Ok(vec![]));
+        // The later frame is taken where the earlier one leaves no way on.
+        assert_eq!(
+            align_steps(&[places(&[0]), turn(Side::Right), places(&[2, 3])], &path),
+            Ok(vec![Some(0), Some(2), Some(2)])
+        );
+    }
+
+    #[test]
+    fn a_place_may_be_one_hop_ahead_of_the_turn_and_no_more() {
+        let steps = |place: usize| [places(&[place]), AlignmentStep::Turn(Side::Right)];
+        let path = walk(&[0.0, 90.0, 0.0, 0.0]);
+        assert_eq!(align_steps(&steps(2), &path), Ok(vec![Some(2), Some(1)]));
+        assert_eq!(align_steps(&steps(3), &path), Err(1));
+        // A place behind a turn is not before the frame of the turn.
+        let behind = |place: usize| [AlignmentStep::Turn(Side::Right), places(&[place])];
+        assert_eq!(align_steps(&behind(1), &path), Ok(vec![Some(1), Some(1)]));
+        assert_eq!(align_steps(&behind(0), &path), Err(1));
+    }
+
+    #[test]
+    fn each_turn_takes_its_moves_away_from_the_next() {
+        let twice = [AlignmentStep::Turn(Side::Right), AlignmentStep::Turn(Side::Right)];
+        assert_eq!(align_steps(&twice, &walk(&[90.0, 90.0])), Ok(vec![Some(0), Some(1)]));
+        assert_eq!(align_steps(&twice, &walk(&[90.0, 0.0])), Err(1));
+        // A bend of two moves is one turn.
+        assert_eq!(align_steps(&twice, &walk(&[29.0, 35.0])), Err(1));
+    }
+
+    #[test]
+    fn is_turn_has_these_limits() {
+        for (side, sign) in [(Side::Right, 1.0), (Side::Left, -1.0)] {
+            let turns = |bend: &[f64]| is_turn(side, &bend.iter().map(|deg| deg * sign).collect::<Vec<_>>());
+            assert!(turns(&[30.0]) && !turns(&[29.9]) && turns(&[180.0]));
+            // Nearly around to the other side ends up the same way.
+            assert!(turns(&[-150.0]) && !turns(&[-149.9]));
+            assert!(turns(&[30.0, 30.0]) && !turns(&[30.0, 29.9]));
+            assert!(turns(&[10.0, 40.0, 10.0]) && !turns(&[9.9, 40.0, 20.0]));
+            assert!(!turns(&[-10.0, 80.0]) && !turns(&[-40.0, -40.0]));
+        }
+        for side in [Side::Ahead, Side::Behind] {
+            assert!(is_turn(side, &[120.0]) && is_turn(side, &[-120.0]) && !is_turn(side, &[119.9]));
+            assert!(
+                is_turn(side, &[60.0, 60.0]) && !is_turn(side, &[40.0, 40.0, 40.0]) && !is_turn(side, &[60.0, -60.0])
+            );
+        }
+    }
+
+    #[test]
+    fn align_steps_goes_on_only_on_a_path_that_moves() {
+        assert_eq!(align_steps(&[AlignmentStep::Onward], &walk(&[0.0])), Ok(vec![None]));
+        assert_eq!(align_steps(&[AlignmentStep::Onward], &walk(&[])), Err(0));
+    }
 }

@@ -23,3 +23,41 @@ pub(super) fn check_coverage(reading: &TextReading, language: Language) -> Vec<C
     }
     if findings.is_empty() { vec![pass_finding(CheckKind::Coverage)] } else { findings }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+    use wayword_language::reading::read_instruction;
+
+    fn findings(text: &str, language: Language) -> Vec<(Verdict, String, Option<String>)> {
+        let reading = read_instruction(text, &BTreeSet::new());
+        let of = |finding: CheckFinding| {
+            assert_eq!(finding.check, CheckKind::Coverage);
+            (finding.verdict, finding.reason, finding.span.map(|[from, to]| text[from..to].to_owned()))
+        };
+        check_coverage(&reading, language).into_iter().map(of).collect()
+    }
+
+    #[test]
+    fn check_coverage_passes_what_is_understood_and_lists_the_rest() {
+        let pass = (Verdict::Pass, String::new(), None);
+        assert_eq!(findings("Walk past the sofa and stop.", Language::English), [pass]);
+        let unclear = findings("Walk past the sofa. Frobnicate the quux bazingly.", Language::English);
+        assert_eq!(unclear.len(), 1, "{unclear:?}");
+        assert_eq!(
+            (unclear[0].0, unclear[0].1.as_str()),
+            (Verdict::Unverified, "the program does not understand this")
+        );
+        assert!(unclear[0].2.as_ref().is_some_and(|words| words.contains("Frobnicate")), "{unclear:?}");
+    }
+
+    #[test]
+    fn check_coverage_names_a_foreign_language() {
+        let text = "Walk past the sofa and stop.";
+        let whole = "the text is in Hindi, and the program reads English".to_owned();
+        assert_eq!(findings(text, Language::Other("Hindi")), [(Verdict::Unverified, whole, None)]);
+        let part = "a part of the text is in Hindi, and the program reads English".to_owned();
+        assert_eq!(findings(text, Language::Partly("Hindi")), [(Verdict::Unverified, part, None)]);
+    }
+}

@@ -23,3 +23,38 @@ pub(super) fn check_form(text: &str, constraints: &StyleConstraints) -> Vec<Chec
     }
     or_pass(CheckKind::Form, wrong)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn reasons(text: &str, constraints: &StyleConstraints) -> Vec<String> {
+        let wrong = check_form(text, constraints).into_iter().filter(|finding| finding.verdict == Verdict::Fail);
+        wrong.map(|finding| finding.reason).collect()
+    }
+
+    #[test]
+    fn sentences_and_words_have_their_limits() {
+        let none = StyleConstraints::default();
+        let least = |min: usize| StyleConstraints { min_sentences: Some(min), ..none.clone() };
+        let most = |max: usize| StyleConstraints { max_sentences: Some(max), ..none.clone() };
+        let fewer = |limit: usize| StyleConstraints { fewer_words_than: Some(limit), ..none.clone() };
+        let text = "Walk on. Stop here now.";
+        for right in [&none, &least(1), &least(2), &most(2), &most(3), &fewer(6)] {
+            assert!(reasons(text, right).is_empty(), "{right:?}");
+        }
+        assert_eq!(reasons(text, &least(3)), ["2 sentences where the style asks for 3 or more"]);
+        assert_eq!(reasons(text, &most(1)), ["2 sentences where the style asks for 1 at most"]);
+        assert_eq!(reasons(text, &fewer(5)), ["5 words where the style asks for fewer than 5"]);
+        assert_eq!(reasons("Stop.", &least(2)), ["1 sentence where the style asks for 2 or more"]);
+        assert_eq!(reasons("Stop.", &fewer(1)), ["1 word where the style asks for fewer than 1"]);
+    }
+
+    #[test]
+    fn a_text_without_words_fails() {
+        assert_eq!(reasons("", &StyleConstraints::default()), ["it has no words"]);
+        assert_eq!(reasons(" ... ", &StyleConstraints::default()), ["it has no words"]);
+        let passed = check_form("Stop.", &StyleConstraints::default());
+        assert_eq!((passed.len(), passed[0].check, passed[0].verdict), (1, CheckKind::Form, Verdict::Pass));
+    }
+}

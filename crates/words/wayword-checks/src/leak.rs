@@ -166,4 +166,69 @@ mod tests {
         let references = ["It is at the end of the one on the left."];
         assert_eq!(copied("It is at the end of the rug", &references, TextTopic::default()), None);
     }
+
+    #[test]
+    fn ten_words_of_the_way_are_a_copy_and_nine_are_not() {
+        let reference = ["Turn left and walk on and turn right and go on then stop"];
+        let none = TextTopic::default();
+        // All words are of walking and turning, so only their number counts.
+        let ten = "Turn left and walk on and turn right and go";
+        assert_eq!(copied(&format!("{ten} back"), &reference, none), Some(ten));
+        assert_eq!(copied("Turn left and walk on and turn right and back", &reference, none), None);
+    }
+
+    #[test]
+    fn words_of_storeys_and_numbers_are_no_content() {
+        let copied_in = |word: &str, topic: TextTopic<'_>| {
+            let text = format!("and go on to the {word}");
+            let reference = text.clone();
+            copied(&text, &[&reference], topic).is_some()
+        };
+        let none = TextTopic::default();
+        for word in ["level", "floor", "upstairs", "downstairs", "second", "3", "room"] {
+            assert!(!copied_in(word, none), "{word}");
+        }
+        for word in ["altar", "kitchen", "lamp"] {
+            assert!(copied_in(word, none), "{word}");
+        }
+        let rooms = ["living room".to_owned()];
+        let topic = TextTopic { target: Some("table lamp"), rooms: &rooms };
+        for word in ["lamp", "table", "lamps", "living", "lounge"] {
+            assert!(!copied_in(word, topic), "{word}");
+        }
+        for word in ["kitchen", "altar"] {
+            assert!(copied_in(word, topic), "{word}");
+        }
+    }
+
+    #[test]
+    fn find_avoidable_copy_finds_the_first_eight_words() {
+        let references = ["Now go to the old oak table and wait there".to_owned()];
+        let runs = ReferenceRuns::from_references(&references);
+        let text = "Please go to the old oak table and wait there.";
+        let found = runs.find_avoidable_copy(text).map(|[from, to]| &text[from..to]);
+        assert_eq!(found, Some("go to the old oak table and wait"));
+        assert_eq!(runs.find_avoidable_copy("Please go to the old oak table and stop."), None);
+    }
+
+    #[test]
+    fn check_leak_uses_the_index_or_the_references_of_the_style() {
+        let references = vec!["Walk past the old oak table, then stop.".to_owned()];
+        let style = wayword_core::InstructionStyle { name: "s".into(), references, ..Default::default() };
+        let evidence = crate::tests::to_the_bedroom();
+        let subject = CheckSubject::closed_world(&evidence, &style, None);
+        let text = "Now walk past the old oak table";
+        let found = check_leak(text, subject);
+        assert_eq!((found.check, found.verdict, found.span), (CheckKind::Leak, Verdict::Fail, Some([4, text.len()])));
+        assert_eq!(found.reason, "\"walk past the old oak table\" is in a reference text too");
+        let empty = ReferenceRuns::default();
+        assert_eq!(check_leak(text, subject.with_copies(&empty)), pass_finding(CheckKind::Leak));
+        assert_eq!(check_leak("Walk past the bed", subject), pass_finding(CheckKind::Leak));
+        // The rooms of the last frame are the text's own matter.
+        let rooms = vec!["Go on and go into the bedroom.".to_owned(), "Go on and go into the hallway.".to_owned()];
+        let style = wayword_core::InstructionStyle { references: rooms, ..style };
+        let subject = CheckSubject::closed_world(&evidence, &style, None);
+        assert_eq!(check_leak("Go on and go into the bedroom.", subject).verdict, Verdict::Pass);
+        assert_eq!(check_leak("Go on and go into the hallway.", subject).verdict, Verdict::Fail);
+    }
 }

@@ -5,6 +5,20 @@
 //! `align` maps the statements of a text to the frames of the path, for the checks that need their order.
 //!
 //! Architecture invariant: this crate knows no writer, prompt or plan.
+//!
+//! # Where things are
+//!
+//! Each check is one file, which [`check_text`] calls; its name is in `wayword_core::verdict`.
+//!
+//! - `evidence/`: the knowledge of a path, one file for each source; `building.rs` and `surroundings.rs` for the things listed around it.
+//! - [`detection`]: what a detector's finds and misses prove, by its measured figures.
+//! - [`memory`]: what stays in mind of a walk. Writers and prompts get it.
+//! - `align`: which frames the statements of a text are about.
+//! - `goal`: where a text ends the walk. `coverage`: what was not understood. `leak`: what was copied from a style's references.
+//! - `world`: whether a text is held against a closed or an open world.
+//! - `open/claims.rs`, `relation.rs`: what a text of another author claims; `features.rs` and `claim_sight.rs`: what the labels mean for that.
+//! - `open/weights.toml`: the weights and thresholds of that, fitted by `wayword-measure fit-evidence`.
+//! - `open/climbs.rs`, `repeats.rs`, `motions.rs`, `distances.rs`: fixed rules.
 
 mod align;
 mod coverage;

@@ -1,12 +1,19 @@
 //! Tests of the checks, on texts about invented paths.
 
+mod findings;
+mod goal;
+mod landmarks;
+mod order;
+mod storeys;
+mod tasks;
+
 use super::{CheckSubject, check_own, check_text, objects_meant};
 use crate::evidence::{Evidence, EvidenceSource, FrameEvidence, SeenThing};
 use wayword_core::{CheckKind, InstructionStyle, PathMotion, PathMove, StyleConstraints, Verdict};
 
 /// A frame in a room (empty where it is not known), with things (`None` where they are not known), on a storey (0 where
 /// it is not known).
-fn frame(room: &str, things: Option<&[&str]>, level: u32) -> FrameEvidence {
+pub(crate) fn frame(room: &str, things: Option<&[&str]>, level: u32) -> FrameEvidence {
     let seen = |name: &&str| SeenThing { name: (*name).to_owned(), ..SeenThing::default() };
     FrameEvidence {
         rooms: Some(room).filter(|room| !room.is_empty()).map(str::to_owned).into_iter().collect(),
@@ -18,7 +25,7 @@ fn frame(room: &str, things: Option<&[&str]>, level: u32) -> FrameEvidence {
 }
 
 /// The evidence of a path: frames, with a turn (degrees) and a rise (metres) before each but the first.
-fn walk(frames: Vec<FrameEvidence>, moves: &[(f64, f64)]) -> Evidence {
+pub(crate) fn walk(frames: Vec<FrameEvidence>, moves: &[(f64, f64)]) -> Evidence {
     let step = |(deg, rise_m): &(f64, f64)| PathMove { turn_rad: deg.to_radians(), distance_m: 2.0, rise_m: *rise_m };
     let knows = frames.iter().any(|frame| !frame.rooms.is_empty() || frame.knows_things);
     let source = if knows { EvidenceSource::Labels } else { EvidenceSource::Nothing };
@@ -32,7 +39,7 @@ fn walk(frames: Vec<FrameEvidence>, moves: &[(f64, f64)]) -> Evidence {
 }
 
 /// Through the hallway past a sofa, and right into the bedroom with a lamp and a bed.
-fn to_the_bedroom() -> Evidence {
+pub(crate) fn to_the_bedroom() -> Evidence {
     let frames = vec![
         frame("hallway", Some(&["rug"]), 1),
         frame("hallway", Some(&["sofa"]), 1),
@@ -41,17 +48,44 @@ fn to_the_bedroom() -> Evidence {
     walk(frames, &[(0.0, 0.0), (90.0, 0.0)])
 }
 
-fn style(ends_in_task: bool) -> InstructionStyle {
+/// The smallest angle that is at least this many degrees after the conversion back, for thresholds in degrees.
+pub(crate) fn exact_rad(deg: f64) -> f64 {
+    let near = deg.abs().to_radians();
+    let found = [near.next_down(), near, near.next_up()].into_iter().find(|rad| rad.to_degrees() >= deg.abs());
+    found.map_or(deg.to_radians(), |rad| rad.copysign(deg))
+}
+
+/// The findings of one check: the verdict, the words and the reason of each.
+pub(crate) fn findings_of(check: CheckKind, text: &str, evidence: &Evidence) -> Vec<(Verdict, String, String)> {
+    let checked = check_text(text, CheckSubject::closed_world(evidence, &style(false), None));
+    let of_check = checked.findings.into_iter().filter(|finding| finding.check == check);
+    let words = |span: Option<[usize; 2]>| span.map_or("", |[from, to]| &text[from..to]).to_owned();
+    of_check.map(|finding| (finding.verdict, words(finding.span), finding.reason)).collect()
+}
+
+/// A text without a mistake of this check has one finding, which passes.
+#[track_caller]
+pub(crate) fn has_no_mistake(check: CheckKind, text: &str, evidence: &Evidence) {
+    assert_eq!(findings_of(check, text, evidence), [(Verdict::Pass, String::new(), String::new())], "{text}");
+}
+
+/// The only finding of a check has this verdict, these words and this reason.
+#[track_caller]
+pub(crate) fn finds(check: CheckKind, verdict: Verdict, words: &str, reason: &str, text: &str, evidence: &Evidence) {
+    assert_eq!(findings_of(check, text, evidence), [(verdict, words.to_owned(), reason.to_owned())], "{text}");
+}
+
+pub(crate) fn style(ends_in_task: bool) -> InstructionStyle {
     let constraints = StyleConstraints { ends_in_task, ..StyleConstraints::default() };
     InstructionStyle { name: "any".into(), constraints, ..InstructionStyle::default() }
 }
 
 /// The verdict on a text, with the checks that it fails, or where it fails none, those that are unverified.
-fn told(text: &str, evidence: &Evidence) -> (Verdict, Vec<CheckKind>) {
+pub(crate) fn told(text: &str, evidence: &Evidence) -> (Verdict, Vec<CheckKind>) {
     told_in(text, evidence, &style(false))
 }
 
-fn told_in(text: &str, evidence: &Evidence, style: &InstructionStyle) -> (Verdict, Vec<CheckKind>) {
+pub(crate) fn told_in(text: &str, evidence: &Evidence, style: &InstructionStyle) -> (Verdict, Vec<CheckKind>) {
     let checked = check_text(text, CheckSubject::closed_world(evidence, style, None));
     let verdict = checked.verdict();
     let worst = checked.findings.iter().filter(|finding| finding.verdict == verdict && verdict != Verdict::Pass);
@@ -61,17 +95,17 @@ fn told_in(text: &str, evidence: &Evidence, style: &InstructionStyle) -> (Verdic
 }
 
 #[track_caller]
-fn passes(text: &str, evidence: &Evidence) {
+pub(crate) fn passes(text: &str, evidence: &Evidence) {
     assert_eq!(told(text, evidence), (Verdict::Pass, vec![]), "{text}");
 }
 
 #[track_caller]
-fn fails(check: CheckKind, text: &str, evidence: &Evidence) {
+pub(crate) fn fails(check: CheckKind, text: &str, evidence: &Evidence) {
     assert_eq!(told(text, evidence), (Verdict::Fail, vec![check]), "{text}");
 }
 
 #[track_caller]
-fn is_unverified(check: CheckKind, text: &str, evidence: &Evidence) {
+pub(crate) fn is_unverified(check: CheckKind, text: &str, evidence: &Evidence) {
     assert_eq!(told(text, evidence), (Verdict::Unverified, vec![check]), "{text}");
 }
 
@@ -158,13 +192,13 @@ fn a_place_that_only_locates_a_goal_is_free_in_the_order() {
 }
 
 /// A level path on one storey.
-fn flat(level: u32) -> Evidence {
+pub(crate) fn flat(level: u32) -> Evidence {
     let frames = vec![frame("hallway", Some(&[]), level), frame("bathroom", Some(&["sink"]), level)];
     walk(frames, &[(0.0, 0.0)])
 }
 
 /// A path from one storey to the next by stairs.
-fn by_stairs(from: u32, to: u32) -> Evidence {
+pub(crate) fn by_stairs(from: u32, to: u32) -> Evidence {
     let rise_m = if to > from { 3.0 } else { -3.0 };
     let frames = vec![frame("hallway", Some(&[]), from), frame("bathroom", Some(&["sink"]), to)];
     walk(frames, &[(0.0, rise_m)])
@@ -235,7 +269,7 @@ fn walking_on_fails_on_a_path_without_moves() {
 }
 
 /// The path to the bedroom as a video shows it: without poses.
-fn on_video() -> Evidence {
+pub(crate) fn on_video() -> Evidence {
     let mut path = to_the_bedroom();
     path.frames.iter_mut().for_each(|frame| frame.level = None);
     Evidence { moves: Vec::new(), motion: PathMotion::Unknown, ..path }

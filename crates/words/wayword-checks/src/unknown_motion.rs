@@ -66,3 +66,55 @@ fn distance_spans(tokens: &[TextToken]) -> impl Iterator<Item = [usize; 2]> {
     });
     pairs.map(|pair| [pair[0].span[0], pair[1].span[1]]).chain(one.map(|token| token.span))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn made_up(text: &str) -> Vec<(CheckKind, &str)> {
+        let found = find_made_up(text, &BTreeSet::new());
+        assert!(found.iter().all(|finding| finding.verdict == Verdict::Fail), "{found:?}");
+        found.iter().map(|finding| (finding.check, finding.span.map_or("", |[from, to]| &text[from..to]))).collect()
+    }
+
+    #[test]
+    fn find_made_up_lists_distances_with_a_number_and_a_unit() {
+        for (text, words) in [
+            ("Walk past the sofa for 3 metres", "3 metres"),
+            ("Walk past the sofa for three yards", "three yards"),
+            ("Walk past the sofa for several paces", "several paces"),
+            ("Walk past the sofa for 1.5 m", "1.5 m"),
+            ("Walk past the sofa for 1.5m", "1.5m"),
+            ("Walk past the sofa for 10ft", "10ft"),
+        ] {
+            assert_eq!(made_up(text), [(CheckKind::Turns, words)], "{text}");
+        }
+        for text in
+            ["Walk past 2 sofas", "Walk to the foot of the bed", "Walk past the sofa on foot", "Walk to room 3a"]
+        {
+            assert_eq!(made_up(text), [], "{text}");
+        }
+    }
+
+    #[test]
+    fn find_made_up_gives_the_fact_that_is_not_known() {
+        let reason = |text: &str| find_made_up(text, &BTreeSet::new()).remove(0).reason;
+        for (text, words, fact) in [
+            ("Go straight to the sofa", "straight", "which way the path goes"),
+            ("Go 3 metres to the sofa", "3 metres", "how far the path goes"),
+            ("Go upstairs to the sofa", "upstairs", "whether the path goes up or down"),
+            ("Go to the sofa on your left", "sofa", "on which side of the walker that is"),
+        ] {
+            let wanted = format!("{words:?}: it is not known {fact}; describe the way by rooms and objects alone");
+            assert_eq!(reason(text), wanted, "{text}");
+        }
+        assert!(reason("Turn left").contains("how the path turns"));
+        assert!(reason("Go to the sofa on the second floor").contains("on which storey the path is"));
+    }
+
+    #[test]
+    fn find_made_up_keeps_places_without_a_side() {
+        assert_eq!(made_up("Walk past the sofa into the bedroom and stop facing the bed."), []);
+        assert_eq!(made_up("Pass the sofa on your left."), [(CheckKind::Landmarks, "sofa")]);
+    }
+}

@@ -64,3 +64,51 @@ impl Default for TurnJudge {
         Self::NotJudged("no walks are compared")
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::EvidenceSource;
+
+    fn provenance(answerer: &str, checked_against: &str) -> TextProvenance {
+        let text = |text: &str| text.to_owned();
+        TextProvenance {
+            wayword: text("1"),
+            asker: text("rules"),
+            answerer: text(answerer),
+            detector: None,
+            summariser: text("rules"),
+            writer: text("rules"),
+            checked_against: text(checked_against),
+            seed: 1,
+            style_hash: String::new(),
+            prompts_hash: None,
+            repairs: 0,
+            finished_for: None,
+            chosen: None,
+            target_undescribed: false,
+        }
+    }
+
+    #[test]
+    fn a_record_is_closed_only_with_its_platform_its_evidence_and_its_answers() {
+        use EvidenceSource::{Captions, Labels};
+        let world = |answerer: &str, against: &str, made_on: &str, source| {
+            CheckWorld::of_record(&provenance(answerer, against), made_on, "matterport", source)
+        };
+        assert_eq!(world("labels", "labels", "matterport", Labels), CheckWorld::Closed);
+        assert_eq!(world("labels", "labels", "habitat", Labels), CheckWorld::Open);
+        assert_eq!(world("labels", "captions", "matterport", Labels), CheckWorld::Open);
+        assert_eq!(world("some/model", "labels", "matterport", Labels), CheckWorld::Open);
+        // Captions hold the answers of any model.
+        assert_eq!(world("some/model", "captions", "matterport", Captions), CheckWorld::Closed);
+        assert_eq!(world("some/model", "labels", "matterport", Captions), CheckWorld::Open);
+    }
+
+    #[test]
+    fn worlds_have_names_and_the_first_is_closed() {
+        assert_eq!([CheckWorld::Closed, CheckWorld::Open].map(CheckWorld::name), ["closed", "open"]);
+        assert_eq!(CheckWorld::default(), CheckWorld::Closed);
+        assert_eq!(TurnJudge::default(), TurnJudge::NotJudged("no walks are compared"));
+    }
+}

@@ -5,6 +5,8 @@ mod building;
 mod from_captions;
 mod from_labels;
 mod surroundings;
+#[cfg(test)]
+mod tests;
 
 use from_captions::denies_name;
 

@@ -29,4 +29,12 @@ mod tests {
         assert!(!is_expected("dining table", "bathroom") && !is_expected("bathtub", "office"));
         assert!(!is_expected("candle", "dining room"), "nobody sees a candle from afar");
     }
+
+    #[test]
+    fn is_expected_needs_a_thing_of_the_lexicon_that_is_seen_from_afar() {
+        assert!(!is_expected("zorble", "bedroom"), "no lexicon has it");
+        // Chairs make no dining room, because they are no landmark of it; a dining table does by its name.
+        assert!(!is_expected("dining chair", "dining room"));
+        assert!(is_expected("king bed", "guest room"), "both are other names");
+    }
 }

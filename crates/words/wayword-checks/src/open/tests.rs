@@ -1,5 +1,8 @@
 //! Tests of the open world, on an invented building.
 
+mod judgement;
+mod rules;
+
 use crate::{
     BuildingInventory, CheckSubject, Evidence, PathSurroundings, Testimony, TurnJudge, WorldReach, check_text,
     lift_confirmed,
