@@ -1,6 +1,9 @@
 //! The follower's knowledge of a building: all of it from a survey, or the part that was seen on the way.
 
-use crate::nearness::{PlaceNearness, PlaceQuery};
+use crate::{
+    building_parts::{BuildingThing, BuildingViewpoint},
+    nearness::{PlaceNearness, PlaceQuery},
+};
 use std::{
     cmp::Reverse,
     collections::BTreeMap,
@@ -17,29 +20,6 @@ pub struct KnownBuilding {
     /// Number of storeys, where the platform knows them; else 0.
     pub(crate) levels: u32,
     near: Mutex<BTreeMap<PlaceQuery, Arc<PlaceNearness>>>,
-}
-
-/// A viewpoint.
-#[derive(Debug, Clone)]
-pub(crate) struct BuildingViewpoint {
-    pub(crate) position: DVec3,
-    pub(crate) neighbours: Vec<usize>,
-    pub(crate) room: Option<String>,
-    /// Its storey, the lowest being 1, where the platform knows it.
-    pub(crate) level: Option<u32>,
-    /// Whether its room, its things and all its neighbours are known.
-    pub(crate) is_known: bool,
-    /// Whether a way up begins here, and a way down.
-    pub(crate) climbs: [bool; 2],
-}
-
-/// An object.
-#[derive(Debug, Clone)]
-pub(crate) struct BuildingThing {
-    pub(crate) name: String,
-    pub(crate) position: DVec3,
-    /// The viewpoints from which it is seen.
-    pub(crate) seen_from: Vec<usize>,
 }
 
 /// A place on a path.
@@ -158,7 +138,7 @@ impl KnownBuilding {
         if let Some(known) = near.get(what) {
             return Arc::clone(known);
         }
-        let found = Arc::new(PlaceNearness::for_query(self, what));
+        let found = Arc::new(PlaceNearness::for_query(&self.viewpoints, &self.things, what));
         near.insert(what.clone(), Arc::clone(&found));
         found
     }
@@ -222,3 +202,6 @@ pub(crate) fn wrap_angle(rad: f64) -> f64 {
     let rad = rad.rem_euclid(TAU);
     if rad > PI { rad - TAU } else { rad }
 }
+
+#[cfg(test)]
+mod tests;

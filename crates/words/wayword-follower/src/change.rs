@@ -111,3 +111,6 @@ fn other_side(side: Side) -> Side {
         side => side,
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -271,3 +271,6 @@ impl<'a> GuideTrial<'a> {
         Self { guide, building, found, tells_room }
     }
 }
+
+#[cfg(test)]
+mod tests;

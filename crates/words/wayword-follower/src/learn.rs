@@ -189,3 +189,6 @@ impl AdamDescent {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

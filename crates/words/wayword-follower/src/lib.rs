@@ -3,17 +3,28 @@
 //! [`Guide`] is an instruction, step by step, [`KnownBuilding`] the known part of the place, and [`WalkTree`] the set of
 //! possible walks. [`WalkFit`] scores each walk: it cuts the walk into stretches, one for each step of the text, in all
 //! possible ways, and adds up weights of features such as "a left turn is described and the stretch bends left".
-//! [`learn_decision`] fits these weights to texts of known walks.
+//! [`learn`] fits these weights to texts of known walks.
 //!
 //! Architecture invariant: no module here knows an agent, a writer or a file.
+//!
+//! # Where things are
+//! - [`change`], [`swap`]: wrong turns and swapped places. [`route`] has the gains from which they count, and texts that lead elsewhere.
+//! - [`doubt`]: `mod.rs`, `ways.rs` and `other_places.rs` find words to doubt and others for them; `bounds.rs` has the gains, `from_checks.rs` the
+//!   doubts that come from checks and ambiguity.
+//! - `guide`: the steps of a text. `features/`: the features of a step on a walk. `tree`: the walks that a text may mean.
+//! - [`online`]: the same without a map, and going on to the unknown.
+//! - `weights/fitted.json`, `online/fitted.json`: the weights, fitted by [`learn`] and `wayword-measure fit-follower`.
 
 mod building;
+mod building_parts;
 pub mod change;
 pub mod doubt;
 mod features;
 mod fit;
 mod guide;
 pub mod learn;
+#[cfg(test)]
+mod made_buildings;
 mod nearness;
 mod one_walk;
 pub mod online;

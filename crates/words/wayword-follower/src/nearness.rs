@@ -1,6 +1,6 @@
 //! Computes for each viewpoint of a building how near it is to a room or thing that a text names.
 
-use crate::building::{BuildingThing, KnownBuilding};
+use crate::building_parts::{BuildingThing, BuildingViewpoint};
 use std::collections::BTreeSet;
 use wayword_core::DVec3;
 use wayword_language::lexicon::{names_agree, room_name, same_room};
@@ -37,15 +37,18 @@ pub(crate) const CLASSES: usize = 7;
 const STOREY_M: f64 = 6.0;
 
 impl PlaceNearness {
-    pub(crate) fn for_query(building: &KnownBuilding, what: &PlaceQuery) -> Self {
-        if what.is_room { Self::for_room(building, &what.name) } else { Self::for_thing(building, &what.name) }
+    pub(crate) fn for_query(viewpoints: &[BuildingViewpoint], things: &[BuildingThing], what: &PlaceQuery) -> Self {
+        match what.is_room {
+            true => Self::for_room(viewpoints, &what.name),
+            false => Self::for_thing(viewpoints, things, &what.name),
+        }
     }
 
-    fn for_thing(building: &KnownBuilding, name: &str) -> Self {
-        let names: BTreeSet<&str> = building.things.iter().map(|thing| thing.name.as_str()).collect();
+    fn for_thing(viewpoints: &[BuildingViewpoint], things: &[BuildingThing], name: &str) -> Self {
+        let names: BTreeSet<&str> = things.iter().map(|thing| thing.name.as_str()).collect();
         let meant: BTreeSet<&str> = names.into_iter().filter(|other| names_agree(other, name)).collect();
-        let things: Vec<&BuildingThing> = building.things.iter().filter(|thing| meant.contains(&*thing.name)).collect();
-        let mut seen = vec![false; building.len()];
+        let things: Vec<&BuildingThing> = things.iter().filter(|thing| meant.contains(&*thing.name)).collect();
+        let mut seen = vec![false; viewpoints.len()];
         for at in things.iter().flat_map(|thing| &thing.seen_from) {
             seen[*at] = true;
         }
@@ -57,28 +60,27 @@ impl PlaceNearness {
             far_m if far_m < 8.0 => 4,
             _ => FAR_CLASS,
         };
-        let found: Vec<(usize, Option<DVec3>)> = (0..building.len())
+        let found: Vec<(usize, Option<DVec3>)> = (0..viewpoints.len())
             .map(|at| {
                 let places = things.iter().map(|thing| (thing.position, thing.seen_from.contains(&at)));
                 // The eye is above most things: only things well above it, or below its feet, are on another storey.
-                let (far_m, place) = nearest_place(building.viewpoints[at].position, places, [-2.2, 1.0]);
+                let (far_m, place) = nearest_place(viewpoints[at].position, places, [-2.2, 1.0]);
                 (class(at, far_m), place)
             })
             .collect();
-        Self::from_classes(building, found, !things.is_empty(), 3)
+        Self::from_classes(viewpoints, found, !things.is_empty(), 3)
     }
 
-    fn for_room(building: &KnownBuilding, name: &str) -> Self {
+    fn for_room(viewpoints: &[BuildingViewpoint], name: &str) -> Self {
         let is_stairs = room_name(name) == Some("stairs");
-        let room = |at: usize| building.viewpoints[at].room.as_deref();
+        let room = |at: usize| viewpoints[at].room.as_deref();
         let is_exact = |at: usize| room(at).is_some_and(|room| room_name(room) == room_name(name));
         let is_same: Vec<bool> =
-            (0..building.len()).map(|at| room(at).is_some_and(|room| same_room(room, name))).collect();
-        let places =
-            || (0..building.len()).filter(|at| is_same[*at]).map(|at| (building.viewpoints[at].position, false));
-        let found: Vec<(usize, Option<DVec3>)> = (0..building.len())
+            (0..viewpoints.len()).map(|at| room(at).is_some_and(|room| same_room(room, name))).collect();
+        let places = || (0..viewpoints.len()).filter(|at| is_same[*at]).map(|at| (viewpoints[at].position, false));
+        let found: Vec<(usize, Option<DVec3>)> = (0..viewpoints.len())
             .map(|at| {
-                let viewpoint = &building.viewpoints[at];
+                let viewpoint = &viewpoints[at];
                 let (far_m, place) = nearest_place(viewpoint.position, places(), [-1.5, 1.5]);
                 let class = match far_m {
                     _ if is_stairs && viewpoint.climbs.contains(&true) || is_exact(at) => 0,
@@ -92,12 +94,17 @@ impl PlaceNearness {
             })
             .collect();
         let exists = is_stairs || is_same.contains(&true);
-        Self::from_classes(building, found, exists, 1)
+        Self::from_classes(viewpoints, found, exists, 1)
     }
 
     /// Viewpoints where the walker was not have an unknown distance if their class would be `least` or more.
-    fn from_classes(building: &KnownBuilding, found: Vec<(usize, Option<DVec3>)>, exists: bool, least: usize) -> Self {
-        let known = |(at, (class, _)): (usize, &(usize, Option<DVec3>))| match building.viewpoints[at].is_known {
+    fn from_classes(
+        viewpoints: &[BuildingViewpoint],
+        found: Vec<(usize, Option<DVec3>)>,
+        exists: bool,
+        least: usize,
+    ) -> Self {
+        let known = |(at, (class, _)): (usize, &(usize, Option<DVec3>))| match viewpoints[at].is_known {
             false if *class >= least => UNKNOWN_CLASS,
             _ => *class,
         };
@@ -127,3 +134,6 @@ fn nearest_place(
     }
     best
 }
+
+#[cfg(test)]
+mod tests;

@@ -266,3 +266,6 @@ pub fn judge_route(
 fn fault_span(changes: &[StepChange]) -> Option<[usize; 2]> {
     changes.first().filter(|change| change.gain > 0.0).map(|change| change.span)
 }
+
+#[cfg(test)]
+mod tests;

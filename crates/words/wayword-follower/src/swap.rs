@@ -94,3 +94,6 @@ fn met_places(guide: &Guide, building: &KnownBuilding) -> Vec<GuidePlace> {
     places.truncate(MOST_PLACES);
     places
 }
+
+#[cfg(test)]
+mod tests;

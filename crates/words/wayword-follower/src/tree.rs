@@ -226,3 +226,6 @@ impl WalkTree {
         (0..self.nodes.len()).filter(|at| self.nodes[*at].viewpoint == *end).find(is_it)
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -90,3 +90,6 @@ fn words_instead(spelt: &TokenisedText<'_>, old: [usize; 2], told: [usize; 2], n
     };
     in_capitals_of(spelt.words_of(told), &name)
 }
+
+#[cfg(test)]
+mod tests;

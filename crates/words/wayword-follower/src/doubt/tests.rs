@@ -134,3 +134,286 @@ fn doubts_never_overlap_and_are_few() {
         }
     }
 }
+
+fn alternative(words: Option<&str>, gain: Option<f64>) -> DoubtAlternative {
+    DoubtAlternative { words: words.map(str::to_owned), gain }
+}
+
+fn site(source: DoubtSource, span: [usize; 2], gains: &[f64]) -> DoubtSite {
+    let alternatives = gains.iter().map(|gain| alternative(Some("w"), Some(*gain))).collect();
+    DoubtSite { source, span, alternatives }
+}
+
+/// The sites of one source in a text about the walk to the kitchen: the words, and each alternative with its gain.
+fn sites_of(text: &str, source: DoubtSource) -> Vec<(&str, Vec<(String, f64)>)> {
+    let building = KnownBuilding::from_survey(&surveyed());
+    let known = KnownWalk { building: &building, walk: &WALK, heading_rad: 0.0 };
+    let sites = find_sites(text, &Guide::read_text(text), known, FeatureWeights::fitted());
+    let words = |one: DoubtAlternative| (one.words.unwrap_or_else(|| "-".to_owned()), one.gain.unwrap());
+    sites
+        .into_iter()
+        .filter(|site| site.source == source)
+        .map(|site| (&text[site.span[0]..site.span[1]], site.alternatives.into_iter().map(words).collect()))
+        .collect()
+}
+
+/// How well a text fits the walk to the kitchen. Its steps count as having the marking words of another text, because a
+/// change of a step leaves these.
+fn score(text: &str, marks_of: &str) -> f64 {
+    let building = KnownBuilding::from_survey(&surveyed());
+    let (mut guide, other) = (Guide::read_text(text), Guide::read_text(marks_of));
+    assert_eq!(guide.len(), other.len());
+    guide.steps.iter_mut().zip(other.steps).for_each(|(told, other)| told.step.marks = other.step.marks);
+    OneWalk::new(&building, &WALK, 0.0, FeatureWeights::fitted()).score(&guide)
+}
+
+/// Checks that each alternative for some words gains what the whole text with it gains.
+fn assert_gains(text: &str, source: DoubtSource, words: &str) {
+    let sites = sites_of(text, source).into_iter().filter(|site| site.0 == words).collect::<Vec<_>>();
+    assert_eq!(sites.len(), 1, "{text} {source:?}");
+    for (words, alternatives) in sites {
+        for (other, gain) in alternatives {
+            let changed = text.replacen(words, &other, 1);
+            let expected = score(&changed, text) - score(text, text);
+            assert!((expected - gain).abs() < 1e-9, "{changed}: {gain} {expected}");
+        }
+    }
+}
+
+#[test]
+fn doubt_source_has_a_name_and_a_reason_for_each_kind() {
+    let names = [
+        "turn",
+        "turn left out",
+        "side",
+        "climb",
+        "step left out",
+        "way by a place",
+        "place",
+        "unknown place",
+        "places swapped",
+    ];
+    assert_eq!(DoubtSource::ALL.map(DoubtSource::name), names);
+    let reasons = [
+        "other side here",
+        "not turn",
+        "it may be on the other",
+        "stairs",
+        "no stretch",
+        "go by it",
+        "something else",
+        "not have this",
+        "two places",
+    ];
+    for (source, words) in DoubtSource::ALL.into_iter().zip(reasons) {
+        assert!(source.doubt_reason().contains(words), "{source:?}");
+    }
+}
+
+#[test]
+fn grade_gain_needs_more_than_the_bounds() {
+    let bounds = DoubtBounds::default();
+    let expected =
+        [(1.0, 2.0), (2.0, 2.7), (1.4, 1.7), (0.1, 0.2), (5.3, 5.7), (1.8, 2.2), (3.6, 4.2), (2.0, 2.2), (2.4, 3.0)];
+    for (source, (uncertain, likely)) in DoubtSource::ALL.into_iter().zip(expected) {
+        assert_eq!(bounds.for_source(source), DoubtBound { uncertain, likely });
+        let grades = [uncertain, uncertain + 0.01, likely, likely + 0.01].map(|gain| bounds.grade_gain(source, gain));
+        let (unsure, sure) = (Some(DoubtGrade::Uncertain), Some(DoubtGrade::Likely));
+        assert_eq!(grades, [None, unsure, unsure, sure]);
+    }
+}
+
+#[test]
+fn to_doubt_keeps_the_alternatives_that_gain() {
+    let site = site(DoubtSource::Turn, [3, 7], &[2.0, 0.5, 0.0, -1.0]);
+    let doubt = site.to_doubt(DoubtGrade::Likely);
+    assert_eq!((doubt.span, doubt.grade, doubt.cause), ([3, 7], DoubtGrade::Likely, DoubtCause::Change));
+    assert_eq!(doubt.alternatives.iter().filter_map(|one| one.gain).collect::<Vec<_>>(), [2.0, 0.5]);
+    assert_eq!(doubt.reason, DoubtSource::Turn.doubt_reason());
+    assert_eq!(site.best_gain(), 2.0);
+    let worse = DoubtSite { alternatives: vec![alternative(None, Some(-3.0)), alternative(None, None)], ..site };
+    assert_eq!(worse.best_gain(), -3.0);
+    assert_eq!(DoubtSite::from_alternatives(DoubtSource::Turn, [0, 1], Vec::new()), None);
+    assert!(DoubtSite::from_alternatives(DoubtSource::Turn, [0, 1], worse.alternatives).is_some());
+}
+
+#[test]
+fn is_within_needs_both_ends_inside() {
+    assert!(is_within([3, 5], [3, 5]) && is_within([3, 5], [2, 6]));
+    assert!(!is_within([2, 5], [3, 5]) && !is_within([3, 6], [3, 5]) && !is_within([0, 1], [3, 5]));
+}
+
+#[test]
+fn best_first_sorts_by_gain_and_drops_what_has_none() {
+    let gains = [Some(1.0), None, Some(f64::NAN), Some(3.0), Some(f64::INFINITY), Some(-2.0), Some(2.0)];
+    let best = best_first(gains.into_iter().map(|gain| alternative(None, gain)));
+    assert_eq!(best.iter().filter_map(|one| one.gain).collect::<Vec<_>>(), [3.0, 2.0, 1.0]);
+}
+
+#[test]
+fn offered_doubt_depends_on_the_source_and_on_the_cause() {
+    use DoubtSource::{Climb, NoStep, NoTurn, Place, Side, Swap, Turn, Unknown, Way};
+    let doubt = |cause| TextDoubt {
+        span: [3, 7],
+        grade: DoubtGrade::Uncertain,
+        cause,
+        reason: "r".into(),
+        alternatives: Vec::new(),
+    };
+    let offers = |source, span, cause| offered_doubt(&site(source, span, &[1.0]), &doubt(cause)).is_some();
+    for (cause, is_wrong) in [(DoubtCause::Wrong, true), (DoubtCause::Unverified, false)] {
+        for source in [Place, Unknown] {
+            assert!(offers(source, [3, 7], cause) && offers(source, [4, 5], cause));
+        }
+        for source in [Turn, NoTurn, Climb] {
+            assert_eq!((offers(source, [3, 7], cause), offers(source, [4, 5], cause)), (is_wrong, is_wrong));
+        }
+        for source in [Side, NoStep, Swap, Way] {
+            assert_eq!((offers(source, [3, 7], cause), offers(source, [4, 5], cause)), (is_wrong, false), "{source:?}");
+        }
+    }
+    let way = offered_doubt(&site(Way, [3, 7], &[-1.0, -2.0]), &doubt(DoubtCause::Wrong)).unwrap();
+    assert_eq!(way.alternatives, [alternative(Some("w"), None)], "the best one, even if it gains nothing");
+    let place = offered_doubt(&site(Place, [3, 7], &[-1.0, -2.0]), &doubt(DoubtCause::Wrong)).unwrap();
+    assert_eq!((place.alternatives, place.grade), (vec![], DoubtGrade::Uncertain));
+}
+
+#[test]
+fn find_sites_finds_none_in_an_empty_or_too_long_text() {
+    let building = KnownBuilding::from_survey(&surveyed());
+    let known = KnownWalk { building: &building, walk: &WALK, heading_rad: 0.0 };
+    let count = |text: &str| {
+        let guide = Guide::read_text(text);
+        (is_too_long(&guide), find_sites(text, &guide, known, FeatureWeights::fitted()).is_empty())
+    };
+    assert_eq!(count(""), (false, true));
+    assert_eq!(count(&"Turn left. ".repeat(60)), (false, false));
+    assert_eq!(count(&"Turn left. ".repeat(61)), (true, true));
+}
+
+#[test]
+fn find_sites_changes_turns_sides_climbs_and_steps_in_the_text_s_own_words() {
+    let text = "Turn Left. Go up the stairs. Stop by the oven on your right.";
+    let words = |source| {
+        let sites = sites_of(text, source).into_iter();
+        sites.map(|(words, others)| (words, others[0].0.clone())).collect::<std::collections::BTreeSet<_>>()
+    };
+    let all = |pairs: &[(&'static str, &str)]| pairs.iter().map(|(a, b)| (*a, (*b).to_owned())).collect();
+    assert_eq!(words(DoubtSource::Turn), all(&[("Turn Left", "Turn Right")]));
+    assert_eq!(words(DoubtSource::NoTurn), all(&[("Turn Left", "-")]));
+    assert_eq!(words(DoubtSource::Climb), all(&[("up", "down")]));
+    assert_eq!(words(DoubtSource::Side), all(&[("on your right", "on your left")]));
+    let steps = words(DoubtSource::NoStep);
+    assert!(steps.len() == 3 && steps.iter().all(|(_, other)| other == "-"), "{steps:?}");
+    assert_gains(text, DoubtSource::Turn, "Turn Left");
+    assert_gains(text, DoubtSource::Climb, "up");
+    assert_gains(text, DoubtSource::Side, "on your right");
+    let down = "Go down the stairs. Stop by the oven.";
+    assert_eq!(sites_of(down, DoubtSource::Climb)[0].1[0].0, "up");
+}
+
+#[test]
+fn way_sites_try_the_other_prepositions_that_a_place_allows() {
+    let text = "Walk past the plant. Turn right. Walk through the kitchen.";
+    let sites = sites_of(text, DoubtSource::Way);
+    assert_eq!(sites.iter().map(|(words, _)| *words).collect::<Vec<_>>(), ["Walk past", "Walk through"]);
+    assert_eq!(sites[0].1.iter().map(|(words, _)| &**words).collect::<Vec<_>>(), ["Walk to"]);
+    assert_eq!(sites[1].1.len(), 3, "the best of five");
+    assert!(
+        sites[1]
+            .1
+            .iter()
+            .all(|(words, _)| ["Walk to", "Walk past", "Walk into", "Walk out of", "Walk along"].contains(&&**words))
+    );
+    assert!(sites[1].1.windows(2).all(|pair| pair[0].1 >= pair[1].1));
+    assert_gains(text, DoubtSource::Way, "Walk past");
+    assert!(sites_of("Go to the kitchen and clean the oven.", DoubtSource::Way).is_empty(), "it describes no way");
+    let beside = "Turn right. Stop next to the oven.";
+    assert!(sites_of(beside, DoubtSource::Way).is_empty());
+}
+
+#[test]
+fn other_place_sites_try_the_rooms_and_things_along_the_walk() {
+    let text = "Walk past the bed. Turn right. Walk into the bedroom and stop by an oven.";
+    let words = |source| {
+        let sites = sites_of(text, source).into_iter();
+        sites
+            .map(|(words, others)| (words, others.into_iter().map(|(other, _)| other).collect::<Vec<_>>()))
+            .collect::<Vec<_>>()
+    };
+    let places = words(DoubtSource::Place);
+    assert_eq!(places.iter().map(|(words, _)| *words).collect::<Vec<_>>(), ["bed", "bedroom", "an oven"]);
+    let sorted = |mut names: Vec<String>| {
+        names.sort();
+        names
+    };
+    assert_eq!(sorted(places[1].1.clone()), ["hallway", "kitchen"]);
+    assert!(words(DoubtSource::Unknown).is_empty());
+    assert_gains(text, DoubtSource::Place, "bed");
+    assert_gains(text, DoubtSource::Place, "an oven");
+    let unknown = sites_of("Walk past the piano and turn right.", DoubtSource::Unknown);
+    assert_eq!(unknown[0].0, "piano");
+    assert!(sites_of("Walk past the bright piano and turn right.", DoubtSource::Unknown).is_empty(), "of it alone");
+}
+
+#[test]
+fn swap_sites_offer_each_of_two_places_for_the_other() {
+    let text = "Walk past the Oven. Turn right and stop at the plant.";
+    let sites = sites_of(text, DoubtSource::Swap);
+    assert_eq!(
+        sites.iter().map(|(words, others)| (*words, &*others[0].0)).collect::<Vec<_>>(),
+        [("Oven", "Plant"), ("plant", "oven")]
+    );
+    let swapped = score("Walk past the plant. Turn right and stop at the oven.", text) - score(text, text);
+    assert!(sites.iter().all(|(_, others)| (others[0].1 - swapped).abs() < 1e-9));
+    assert!(swapped > 0.0);
+}
+
+#[test]
+fn a_turn_that_a_check_could_not_decide_keeps_its_words_and_is_not_left_out() {
+    let building = KnownBuilding::from_survey(&surveyed());
+    let known = KnownWalk { building: &building, walk: &WALK, heading_rad: 0.0 };
+    let doubt = |text: &str, words: &str, verdict| {
+        let from = text.find(words).unwrap();
+        let finding = CheckFinding {
+            check: CheckKind::Turns,
+            verdict,
+            reason: "r".into(),
+            span: Some([from, from + words.len()]),
+        };
+        let (bounds, guide) = (DoubtBounds::default(), Guide::read_text(text));
+        let doubts = find_doubts(text, &guide, known, FeatureWeights::fitted(), (&bounds, &[finding]));
+        let words = doubts[0].alternatives.iter().map(|one| one.words.clone()).collect::<Vec<_>>();
+        (text[doubts[0].span[0]..doubts[0].span[1]].to_owned(), words)
+    };
+    let text = TO_KITCHEN.replace("turn right", "turn left");
+    assert_eq!(doubt(&text, "left", Verdict::Unverified), ("left".to_owned(), vec![]));
+    let (words, others) = doubt(&text, "left", Verdict::Fail);
+    assert_eq!((&*words, others[0].as_deref()), ("turn left", Some("turn right")));
+    // Where the other side gains nothing, the turn may be left out.
+    let (words, others) = doubt(TO_KITCHEN, "right", Verdict::Fail);
+    assert_eq!((&*words, others[0].as_deref()), ("turn right", None));
+    // A whole text cannot be left out.
+    assert_eq!(doubt("Walk on.", "Walk on", Verdict::Fail).1, []);
+}
+
+#[test]
+fn doubts_from_ambiguity_mark_the_last_step_where_no_step_stops() {
+    let doubts = |text: &str, ends, by: Option<&str>| {
+        let reading = wayword_language::reading::read_instruction(text, &std::collections::BTreeSet::new());
+        let guide = Guide::from_reading(text, &reading);
+        let ambiguity = TextAmbiguity { ends, objects: 1, told_apart_by: by.map(str::to_owned), unverified: None };
+        let doubts = from_checks::doubts_from_ambiguity(text, &guide, &reading, &ambiguity);
+        assert!(doubts.iter().all(|doubt| doubt.reason.contains("3 places") && doubt.cause == DoubtCause::Ambiguous));
+        told(text, &doubts).into_iter().map(|(words, other)| (words.to_owned(), other.concat())).collect::<Vec<_>>()
+    };
+    let named = |words: &str, other: &str| vec![(words.to_owned(), other.to_owned())];
+    assert_eq!(doubts("Walk past the sofa. Walk on.", Some(3), None), named("Walk on", ""));
+    assert_eq!(
+        doubts("Wait by the sofa. Walk to the lamp.", Some(3), Some("piano")),
+        named("sofa", "sofa by the piano")
+    );
+    assert_eq!(doubts("Walk to the lamp.", Some(3), Some("attic")), named("lamp", "lamp in the attic"));
+    assert_eq!(doubts("Walk to the lamp.", None, Some("attic")), []);
+    assert_eq!(doubts("Walk to the lamp.", Some(1), Some("attic")), []);
+}

@@ -53,3 +53,6 @@ fn is_way_by(mention: &GuideMention, relation: StepRelation) -> bool {
     let is_room = mention.meanings.first().is_some_and(|what| what.is_room && !is_stairs(&what.name));
     is_room || matches!(relation, StepRelation::To | StepRelation::Past)
 }
+
+#[cfg(test)]
+mod tests;

@@ -9,10 +9,23 @@ mod stretch;
 pub(crate) mod tables;
 
 pub(crate) use ending::ending_features;
-pub(crate) use stretch::{MOST_HOPS, WalkStretch, stretch_features};
+pub(crate) use stretch::{MOST_HOPS, WalkStretch};
+
+use crate::guide::GuideTrial;
 
 /// The number of a feature, by which its weight is found.
 pub(crate) type FeatureNumber = u32;
+
+/// Finds the features of a step of the text over a stretch.
+pub(crate) fn stretch_features(
+    trial: &GuideTrial<'_>,
+    step: usize,
+    stretch: &WalkStretch<'_>,
+    found: &mut Vec<FeatureNumber>,
+) {
+    stretch::motion_features(trial, step, stretch, found);
+    places::place_features(trial, step, stretch, found);
+}
 
 /// Which of twelve classes of 30 degrees an angle (radians) falls into, half of them negative.
 fn angle_twelfth(rad: f64) -> usize {
@@ -28,3 +41,6 @@ fn angle_class(rad: f64) -> usize {
 fn limit_class(value: f64, limits: &[f64]) -> usize {
     limits.iter().filter(|limit| value >= **limit).count()
 }
+
+#[cfg(test)]
+mod tests;

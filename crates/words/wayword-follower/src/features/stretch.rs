@@ -1,7 +1,7 @@
 //! Features of a step over a stretch of a walk: its length, turns, stairs, doors and marking words.
 
 use super::{
-    FeatureNumber, angle_class, angle_twelfth, limit_class, places,
+    FeatureNumber, angle_class, angle_twelfth, limit_class,
     tables::{
         ANGLES, BORDER, CONDITION, CROSSING_ENDS, CROSSINGS, FIRST_TURN, HOPS, HOPS_CLASSES, HOPS_OF_MENTIONS,
         HOPS_OF_STEPS, LATER_TURNS, LENGTH, LEVEL, LEVEL_RISE, LEVELS, MARK_CROSSINGS, MARK_HOPS, MARK_TURN, MARKS,
@@ -10,7 +10,8 @@ use super::{
     },
 };
 use crate::{
-    building::{BuildingViewpoint, wrap_angle},
+    building::wrap_angle,
+    building_parts::BuildingViewpoint,
     guide::{GuideStep, GuideStepKind, GuideTrial},
     tree::WalkTree,
 };
@@ -73,8 +74,8 @@ impl<'a> WalkStretch<'a> {
     }
 }
 
-/// Finds the features of a step of the text over a stretch.
-pub(crate) fn stretch_features(
+/// Finds the features of a step of the text over a stretch that no place in the step decides.
+pub(super) fn motion_features(
     trial: &GuideTrial<'_>,
     step: usize,
     stretch: &WalkStretch<'_>,
@@ -117,7 +118,6 @@ pub(crate) fn stretch_features(
             found.push(MARK_TURN.feature_at([(*mark, MARKS), (bend, 4)]));
         }
     }
-    places::place_features(trial, step, stretch, found);
 }
 
 fn length_features(told: &GuideStep, is_last: bool, stretch: &WalkStretch<'_>, found: &mut Vec<FeatureNumber>) {

@@ -1,6 +1,9 @@
 //! A walker's own map of a building: the viewpoints where it was and their neighbours, in the frame of its start.
 
-use crate::building::{BuildingThing, BuildingViewpoint, KnownBuilding};
+use crate::{
+    building::KnownBuilding,
+    building_parts::{BuildingThing, BuildingViewpoint},
+};
 use wayword_core::{DVec3, Heading};
 use wayword_language::lexicon::normalise_name;
 

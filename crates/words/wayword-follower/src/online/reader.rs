@@ -161,3 +161,6 @@ impl<'a> WalkingFollower<'a> {
         slope.add_decision(&trial, &options.tree, (&options.fit, &options.onward), [&by_stop, &by_going]);
     }
 }
+
+#[cfg(test)]
+mod tests;

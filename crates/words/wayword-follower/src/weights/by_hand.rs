@@ -210,3 +210,6 @@ fn set_storeys(set: &mut WeightSetter<'_>) {
         set(&LEVEL_RISE, &[(5, LEVELS), (rise, 7)], (-up).clamp(-1.5, 1.5));
     }
 }
+
+#[cfg(test)]
+mod tests;

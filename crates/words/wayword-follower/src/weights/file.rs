@@ -131,3 +131,42 @@ fn of_tables(tables: &BTreeMap<String, Vec<f64>>) -> Result<FeatureWeights, Weig
     }
     Ok(weights)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_tables_refuses_weights_that_are_not_finite() {
+        let mut tables = to_tables(&FeatureWeights::by_hand());
+        assert!(of_tables(&tables).is_ok());
+        tables.get_mut("HOPS").unwrap()[3] = f64::NAN;
+        assert!(matches!(of_tables(&tables), Err(WeightsError::NotFinite("HOPS"))));
+    }
+
+    #[test]
+    fn parse_refuses_a_walker_s_weights_of_the_wrong_size() {
+        let weights = OnwardWeights::fitted();
+        let text = weights.to_json("some data", "some command");
+        assert_eq!(OnwardWeights::parse(&text).unwrap(), *weights);
+        let wrong = |from: &str, to: &str| {
+            let error = OnwardWeights::parse(&text.replace(from, to)).unwrap_err();
+            let WeightsError::Table { table, found, needed } = error else { panic!("{error}") };
+            (table, found, needed)
+        };
+        assert_eq!(wrong("\"left\":[", "\"left\":[0.5,"), ("left", 9, 8));
+        assert_eq!(wrong("\"away\":[", "\"away\":[0.5,"), ("away", 17, 16));
+        assert_eq!(wrong("\"going\"", "\"gone\"").1, 0);
+        assert!(text.contains("\"origin\":\"some data\",\"command\":\"some command\""));
+    }
+
+    #[test]
+    fn to_json_keeps_every_part_of_a_walker_s_weights() {
+        let mut weights = OnwardWeights::by_hand();
+        weights.left = std::array::from_fn(|at| at as f64 + 0.1234);
+        weights.away = [0, 1].map(|which| std::array::from_fn(|at| -(at as f64) - f64::from(which) * 100.0));
+        let again = OnwardWeights::parse(&weights.to_json("", "")).unwrap();
+        assert_eq!((again.left[3], again.left[7]), (3.123, 7.123));
+        assert_eq!((again.away[0][2], again.away[1][7]), (-2.0, -107.0));
+    }
+}
