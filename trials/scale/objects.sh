@@ -60,9 +60,9 @@ PYTHON
 python3 trials/scale/container.py "$blob" wayword
 
 WAYWORD_TEST_S3=s3://wayword/tests WAYWORD_TEST_AZURE=az://wayword/tests \
-    cargo test -p wayword-queue --features cloud --locked --test cloud -- "${@:2}"
+    cargo test -p wayword-queue --features cloud --locked --test it cloud:: -- "${@:2}"
 # Runs whose workers send what they make.
 for store in s3://wayword/runs az://wayword/runs; do
     WAYWORD_TEST_STORE=$store WAYWORD_TEST_POSTGRES=1 \
-        cargo test -p wayword --no-default-features --features queue,cloud --locked --test workers in_stores -- "${@:2}"
+        cargo test -p wayword --no-default-features --features queue,cloud --locked --test it workers::in_stores -- "${@:2}"
 done
