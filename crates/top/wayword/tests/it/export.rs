@@ -166,7 +166,11 @@ fn vlnce_names_the_command_that_gives_habitat_a_generated_house() {
     for (episode, record) in episodes.iter().zip(&records) {
         corners += episode.floor_positions.len() - record.path.frames.len();
         for hop in episode.floor_positions.windows(2) {
-            let way = houses.ground_route(&record.path.scene, &standing(hop[0]), &standing(hop[1])).unwrap().unwrap();
+            let way = houses
+                .ground()
+                .ground_route(&record.path.scene, &standing(hop[0]), &standing(hop[1]))
+                .unwrap()
+                .unwrap();
             assert!(way.length_m <= hop[0].distance(hop[1]) + 0.08, "{hop:?} is no straight walk");
         }
     }

@@ -40,8 +40,9 @@ fn vlnce_has_every_corner_of_the_way_and_the_distance_over_the_navmesh() {
         let pose = Pose::looking_level(floor + DVec3::Z * 1.5, Heading::NORTH);
         Frame { pose, viewpoint: None, level: None }
     };
-    let length_m =
-        |from: DVec3, to: DVec3| world.ground_route(&scene, &standing(from), &standing(to)).unwrap().unwrap().length_m;
+    let length_m = |from: DVec3, to: DVec3| {
+        world.ground().ground_route(&scene, &standing(from), &standing(to)).unwrap().unwrap().length_m
+    };
     let dataset: Value = serde_json::from_slice(&std::fs::read(building.path("run.json")).unwrap()).unwrap();
     let episodes = DatasetFormat::Vlnce.read_file(&building.path("run.json")).unwrap();
     let records = building.records("run");

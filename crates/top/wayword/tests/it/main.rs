@@ -1,5 +1,7 @@
 //! The integration tests of `wayword`, one program: a module for each topic.
 
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 mod check;
 mod check_edited;
 mod children;
