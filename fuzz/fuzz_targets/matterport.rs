@@ -41,7 +41,7 @@ fuzz_target!(init: begin("matterport", &words::building()), |data: &[u8]| {
         let _ = labels_around(&platform, &scene, &frames[0]);
         let _ = platform.look(&scene, &frames[0], Gaze::quarter(Heading::NORTH));
         for object in ["5", "6"].map(|name| wayword_core::ObjectId::new(name).expect("a name")) {
-            let _ = platform.visible_from(&scene, &object);
+            let _ = platform.catalogue().visible_from(&scene, &object);
         }
     });
 });

@@ -42,7 +42,7 @@ fuzz_target!(init: begin("process", &seeds()), |data: &[u8]| {
         let _ = platform.look_without_picture(&scene, &frame, Gaze::quarter(Heading::NORTH));
         let _ = platform.sample_path(&scene, &PathRequest { hops: 1..=4, length_m: 0.5..=9.0 }, 3);
         let object = ObjectId::new("7").expect("a name");
-        let _ = platform.object_name(&scene, &frame, &object);
-        let _ = platform.visible_from(&scene, &object);
+        let _ = platform.catalogue().object_name(&scene, &frame, &object);
+        let _ = platform.catalogue().visible_from(&scene, &object);
     });
 });

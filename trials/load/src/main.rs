@@ -1,4 +1,8 @@
 //! Trials of load and parity, one command each: see `wayword-trials --help`.
+//!
+//! # Where things are
+//! - `calls.rs`, `storm.rs`: calls under load, and with a provider that fails often.
+//! - `parity/` (feature `full`): a detector beside PyTorch on the same random weights.
 
 mod calls;
 #[cfg(feature = "full")]

@@ -1,5 +1,9 @@
 //! Fits the weights that ship with the program to people's texts of training splits, and prints how they do on buildings that were left
 //! out.
+//!
+//! # Where things are
+//! - [`fit_evidence`]: the weights of the checks in an open world, `open/weights.toml` of `wayword-checks`.
+//! - [`fit_follower`]: those of the follower, with the map and without, and the table by which its thresholds are chosen.
 
 pub mod fit_evidence;
 pub mod fit_follower;

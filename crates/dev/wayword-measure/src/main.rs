@@ -1,4 +1,6 @@
 //! The measurements that the documents quote, one command each: see `wayword-measure --help`.
+//!
+//! Each measurement is a module of `wayword-quality` or `wayword-fit`; this crate is their command line.
 
 use clap::{Parser, Subcommand};
 use std::{path::PathBuf, process::ExitCode};

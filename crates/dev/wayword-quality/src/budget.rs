@@ -19,6 +19,10 @@ struct BudgetFigures {
     spent: CallSpending,
 }
 
+/// Makes a run that a budget of `max_usd` US dollars stops, and prints its spending next to the budget.
+///
+/// # Errors
+/// When the platform cannot be opened, a path cannot be found, or the calls cannot be set up.
 pub fn measure_budget(
     world: &MeasuredWorldArgs,
     paths: usize,

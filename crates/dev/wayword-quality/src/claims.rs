@@ -18,7 +18,7 @@ use wayword_run::{
     plan::RunPlan,
     platforms::RememberingPlatform,
     run_folder::fresh_id,
-    settings::{EvidenceSources, LABELS_ROLE, Perception, RULES_ROLE, RunJob, RunSettings},
+    settings::{EvidenceSources, Perception, RolePlayer, RunJob, RunSettings},
     team::RoleTeam,
 };
 use wayword_synthesis::{observe::observe_path, walk::ObservedWalk};
@@ -57,6 +57,10 @@ struct SeededClaimCount {
 /// Counts by the source of the evidence (`labels` or `captions`) and the kind of claim.
 type SeededClaimCounts = BTreeMap<(&'static str, SeededClaimKind), SeededClaimCount>;
 
+/// Checks true and false claims about paths, and prints how many the checks refuse and catch, by labels and by captions.
+///
+/// # Errors
+/// When the platform cannot be opened, a view cannot be had, or no more calls are possible.
 pub fn measure_claims(flags: &ClaimsArgs, output: &CommandOutput) -> Result<(), CommandError> {
     let stage = MeasurementStage::new(&flags.world, flags.hallucinated)?;
     let job = claims_job(&stage, flags)?;
@@ -99,8 +103,8 @@ pub fn measure_claims(flags: &ClaimsArgs, output: &CommandOutput) -> Result<(), 
 fn claims_job(stage: &MeasurementStage, flags: &ClaimsArgs) -> Result<RunJob, CommandError> {
     let mut job = stage.writing_job(flags.paths)?;
     let roles = &mut job.settings.roles;
-    (roles.ask, roles.summarise, roles.write) = (RULES_ROLE.to_owned(), RULES_ROLE.to_owned(), RULES_ROLE.to_owned());
-    debug_assert!(roles.see != LABELS_ROLE);
+    (roles.ask, roles.summarise, roles.write) = (RolePlayer::Rules, RolePlayer::Rules, RolePlayer::Rules);
+    debug_assert!(roles.see != RolePlayer::Labels);
     let RunSettings { perception, evidence, .. } = &mut job.settings;
     (*perception, *evidence) = (Perception::Structured, EvidenceSources::default());
     if flags.episodes.is_some() {

@@ -20,6 +20,7 @@ use wayword_run::{error::CommandError, output::CommandOutput};
 /// The flags of `found`.
 #[derive(Debug, Args)]
 pub struct CorruptionFindingArgs {
+    /// How the file is checked.
     #[command(flatten)]
     pub judging: JudgingArgs,
     /// The key of the file. [default: FILE.key.json next to FILE.json]
@@ -64,6 +65,10 @@ struct CorruptionRow {
     fails_before: Option<ClusteredShare>,
 }
 
+/// Checks corrupted texts and their originals, and prints how many corruptions were found, by kind.
+///
+/// # Errors
+/// When the texts or their key cannot be read or do not belong together, and as `wayword check`.
 pub fn measure_corruption_findings(flags: CorruptionFindingArgs, output: &CommandOutput) -> Result<(), CommandError> {
     let file = flags.judging.check.file.clone();
     let key = CorruptionKey::read(&flags.key.unwrap_or_else(|| CorruptionKey::path_for_texts(&file)))?;

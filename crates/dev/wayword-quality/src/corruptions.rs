@@ -30,6 +30,10 @@ struct LabelledRun {
     names: BTreeMap<SceneId, BTreeSet<String>>,
 }
 
+/// Corrupts good instructions of runs `count` times, and prints how many corruptions of each kind the checks catch.
+///
+/// # Errors
+/// When a run or its platform cannot be read.
 pub fn measure_corruptions(
     folders: &[PathBuf],
     count: usize,

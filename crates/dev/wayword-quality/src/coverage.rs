@@ -25,6 +25,10 @@ pub struct CoverageArgs {
     show: usize,
 }
 
+/// Prints for each file how many words and clauses the reader understands, and those that it does not.
+///
+/// # Errors
+/// When a file cannot be read.
 pub fn measure_coverage(flags: &CoverageArgs, output: &CommandOutput) -> Result<(), CommandError> {
     for file in &flags.files {
         let mut counts = UnderstandingCounts::default();

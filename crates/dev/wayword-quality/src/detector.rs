@@ -66,6 +66,10 @@ struct LandmarkVerdictCount {
     passed: usize,
 }
 
+/// Measures the figures of a played detector, and prints how the checks judge right and wrong landmarks by it.
+///
+/// # Errors
+/// When the platform cannot be opened, a view cannot be had, or an item fails.
 pub fn measure_played_detector(flags: &DetectorArgs, output: &CommandOutput) -> Result<(), CommandError> {
     let stage = MeasurementStage::new(&flags.world, flags.hallucinated)?;
     let job = stage.writing_job(flags.paths)?;

@@ -20,6 +20,7 @@ use wayword_run::{error::CommandError, output::CommandOutput};
 /// The table shows which gain these shares of the words exceed.
 const EXCEEDING_SHARES: [f64; 5] = [0.005, 0.01, 0.02, 0.05, 0.1];
 
+/// The flags of `doubts`.
 #[derive(Debug, Args)]
 pub struct DoubtsArgs {
     /// File with people's texts, as R2R_train.json.
@@ -44,6 +45,10 @@ struct TextDoubtSites {
     flipped: Option<Option<DoubtGrade>>,
 }
 
+/// Prints how many words of people's texts the follower would doubt, by kind of change, and how often it doubts a flipped turn.
+///
+/// # Errors
+/// When the data or the texts cannot be read.
 pub fn measure_doubts(flags: &DoubtsArgs, output: &CommandOutput) -> Result<(), CommandError> {
     let (scenes, files) = read_texts(&flags.data, std::slice::from_ref(&flags.file))?;
     let all: Vec<WalkedText> = files.into_iter().flatten().collect();

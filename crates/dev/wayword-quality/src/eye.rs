@@ -26,6 +26,10 @@ pub(super) struct NamedObjectCounts {
     pub(super) with_hallucinations: usize,
 }
 
+/// Prints how many hallucinated objects captions and instructions have, for each way of asking a flawed eye.
+///
+/// # Errors
+/// When the platform cannot be opened, a view cannot be had, or an item fails.
 pub fn measure_eye(
     world: &MeasuredWorldArgs,
     views: usize,

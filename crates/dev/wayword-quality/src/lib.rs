@@ -1,5 +1,14 @@
 //! Instruments of quality: what the checks catch and refuse, how generated texts compare with people's, and how far followers, critics
 //! and studies can be believed. `wayword-measure` is their command line.
+//!
+//! # Where things are
+//! - [`corrupt_people`]: how people's texts are made wrong to measure the checks. Its word lists (`lists/`) are its own, so that it does not share the
+//!   errors of the reader.
+//! - [`corruptions`], [`corruption_findings`], [`claims`], [`doubts`], [`people`]: what the checks and the follower find of that.
+//! - [`texts`], [`tell_apart`]: figures of texts, and a classifier that separates generated ones from people's; `texts/listener/` finds a target by labels.
+//! - [`detector`], [`eye`]: what a detector or a flawed eye with given figures does to texts.
+//! - [`reader_figures`], [`critics`], [`sweep`], [`walker`]: followers, critics and agents.
+//! - [`study_coverage`]: how often the intervals of studies cover the truth.
 
 pub mod budget;
 pub mod checked_texts;

@@ -21,6 +21,7 @@ const BINS: usize = 10;
 /// Bounds of ambiguity that are tried: another walk's share of the annotated one's.
 const AMBIGUITY_BOUNDS: [f64; 7] = [0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 0.8];
 
+/// The flags of `reader-figures`.
 #[derive(Debug, Args)]
 pub struct ReaderFiguresArgs {
     /// File with the texts: a dataset, or the instructions of a run over its paths.
@@ -65,6 +66,10 @@ struct BestWalk {
     is_right: bool,
 }
 
+/// Prints how far the follower can be believed: its calibration, wrong turns, other paths' texts and ambiguity.
+///
+/// # Errors
+/// When the data or the texts cannot be read.
 pub fn measure_reader_figures(flags: &ReaderFiguresArgs, output: &CommandOutput) -> Result<(), CommandError> {
     let (scenes, files) = read_texts(&flags.data, std::slice::from_ref(&flags.file))?;
     let mut all: Vec<WalkedText> = files.into_iter().flatten().collect();

@@ -18,6 +18,10 @@ struct ReuseFigures {
     here: u64,
 }
 
+/// Makes instructions for paths of one building, and prints the calls next to those of the paper's method.
+///
+/// # Errors
+/// When the platform cannot be opened, or an item fails.
 pub fn measure_reuse(world: &MeasuredWorldArgs, paths: usize, output: &CommandOutput) -> Result<(), CommandError> {
     output.print_result(&(), reuse_figures(&MeasurementStage::new(world, 0.15)?, paths)?.report_lines().join("\n"));
     Ok(())

@@ -10,6 +10,10 @@ use wayword_run::{
     run_folder::{WalkRecord, file, read_lines},
 };
 
+/// Prints `count` instructions of each style of a run, picked by seed, next to people's texts.
+///
+/// # Errors
+/// When the walks or the instructions of the run cannot be read.
 pub fn show_sample(run: &Path, count: usize, seed: u64, output: &CommandOutput) -> Result<(), CommandError> {
     let walks: Vec<WalkRecord> = read_lines(&run.join(file::WALKS))?;
     let originals = walks.into_iter().map(|walk| (walk.path.id, walk.originals)).collect();

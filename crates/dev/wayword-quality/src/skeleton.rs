@@ -5,6 +5,10 @@ use wayword_core::{Instruction, MentionKind};
 use wayword_formats::jsonl;
 use wayword_run::{error::CommandError, output::CommandOutput, run_folder::file};
 
+/// Prints the most frequent sentence skeletons of each style in the runs, `show` of each.
+///
+/// # Errors
+/// When the instructions of a run cannot be read.
 pub fn measure_skeletons(folders: &[PathBuf], show: usize, output: &CommandOutput) -> Result<(), CommandError> {
     let mut instructions = Vec::new();
     for folder in folders {

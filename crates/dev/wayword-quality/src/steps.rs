@@ -18,6 +18,10 @@ pub struct StepsArgs {
     every: usize,
 }
 
+/// Takes the walks of an export of steps again, and prints how many end elsewhere and how many pictures differ.
+///
+/// # Errors
+/// When the export or its run cannot be read, or a picture cannot be drawn again.
 pub fn replay_steps(flags: &StepsArgs, output: &CommandOutput) -> Result<(), CommandError> {
     let told = replay_export(&flags.steps, &flags.run, flags.every)?;
     output.print_result(

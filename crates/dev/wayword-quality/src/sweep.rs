@@ -52,6 +52,10 @@ struct SweptSetting {
 const SUMMED_METRICS: [TrajectoryMetric; 3] =
     [TrajectoryMetric::SuccessRate, TrajectoryMetric::OracleSuccessRate, TrajectoryMetric::Spl];
 
+/// Tries settings of agents on episodes, and prints the best for whole views and for boxes.
+///
+/// # Errors
+/// When the data, the episodes or the encoder cannot be read.
 pub fn sweep_settings(flags: &SweepArgs, output: &CommandOutput) -> Result<(), CommandError> {
     let platform = platforms::open_named("matterport", Some(&flags.data), None, None)?;
     let mut episodes = episodes::read_episodes(&flags.episodes, platform.as_ref())?;

@@ -43,6 +43,9 @@ impl FromStr for GaitArg {
 }
 
 /// Walks every item of the episodes by one instruction that only names the item. The scripted model knows the routes by these texts.
+///
+/// # Errors
+/// When the episodes or the platform cannot be read, the provider cannot be started, and as `wayword compare`.
 pub fn measure_walker(
     ScriptedWalkerArgs { gait: GaitArg(gait), mut compare }: ScriptedWalkerArgs,
     output: &CommandOutput,

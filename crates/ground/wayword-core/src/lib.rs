@@ -6,6 +6,16 @@
 //!
 //! Architecture invariant: this crate reads no file, clock or network, and does not depend on a particular model or
 //! platform.
+//!
+//! # Where things are
+//! - [`platform`], [`model`], [`detector`], [`encoder`], [`ViewAnswerer`]: the traits between layers.
+//! - [`motion`]: the words for turns and climbs, and their limits in degrees and metres.
+//! - [`verdict`]: the name of each check. The checks themselves are in `wayword-checks`.
+//! - [`failure`]: what decides between missing, broken and lost. [`platform`] and [`model`] do this for their errors.
+//! - [`condition`]: what can be known of a scene before a run.
+//! - [`depth`]: how far away a detector's find is.
+//! - [`doubt`]: what a doubt consists of, and how doubts about the same words are put together.
+//! - [`id`]: which names from outside are refused.
 
 pub mod action;
 pub mod ambiguity;
@@ -20,6 +30,7 @@ pub mod failure;
 pub mod graph;
 pub mod ground;
 pub mod heading;
+pub mod hex;
 pub mod id;
 pub mod image;
 pub mod instruction;
@@ -55,6 +66,7 @@ pub use glam::{DMat3, DVec3};
 pub use graph::{ViewpointGraph, ViewpointRoute};
 pub use ground::{GroundCover, GroundIsland, GroundRoute};
 pub use heading::{CompassPoint, Heading, Side};
+pub use hex::hex_text;
 pub use id::{ObjectId, SceneId, ViewpointId};
 pub use image::Image;
 pub use instruction::{
@@ -68,7 +80,7 @@ pub use model::{
 pub use motion::{ClimbDirection, PathMotion, PathMove, TurnKind};
 pub use observation::{CaptionedView, FrameObservation};
 pub use path::{Frame, ObjectDescription, ObjectDistinction, ObjectRelation, Path, PathTarget};
-pub use platform::{PathRequest, Platform, PlatformError};
+pub use platform::{Ground, PathRequest, Platform, PlatformError, SceneCatalogue, SceneFiles};
 pub use pose::Pose;
 pub use recent_cache::RecentCache;
 pub use seed::seeded_rng;

@@ -5,6 +5,16 @@
 //! field. A file is written completely or not at all.
 //!
 //! Architecture invariant: this crate depends on no platform, model or network.
+//!
+//! # Where things are
+//! - `format`: the list of formats, from which `export`, `check` and `--episodes` take them. Each has a file of its own, as [`r2r`];
+//!   `matterport` has the fields that R2R, REVERIE and RxR share.
+//! - `limits`: all limits on a file. `input`, `bounded_tokens` and `strict_json` keep to them.
+//! - [`jsonl`]: Wayword's own records, with their version.
+//! - [`trajectories`]: walks in single actions, and their shards. [`vlnce_actions`] has VLN-CE's files of them.
+//! - `official`: the official splits of scenes.
+//! - `table`, with the feature `parquet`: the columns of tables, in `schema.txt` and in `columns.rs` in the same order.
+//! - [`habitat`]: where poses change between Wayword's frame and Habitat's.
 
 mod bounded_tokens;
 mod episode;

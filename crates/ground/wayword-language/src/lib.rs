@@ -7,6 +7,20 @@
 //! [`rewording`] finds the words for a turn or a way, and gives other words for it. The lists are data, in `words/`.
 //!
 //! Architecture invariant: this crate depends on no path, model or writer.
+//!
+//! # Where things are
+//!
+//! A new word goes into a list in `words/`, a new construction into the code that reads the list. A new list is also named in the file that
+//! uses it, as `reading/vocabulary.rs`.
+//!
+//! - `reading/`: one file for each thing that is recognised, as `turns/`, `climbs.rs`, `places.rs`, `stops.rs`, `denial.rs`, `task.rs`.
+//! - `reading/steps.rs`, `words/steps.txt`: the steps of a text.
+//! - `reading/coverage.rs`, `words/roles.txt`: the role of each word, and which clauses count as understood.
+//! - `words/motions.txt`: how a motion is meant, for the checks.
+//! - `words/objects.txt`, `rooms.txt`, `colours.txt`: names of things, rooms and colours, and which of them mean the same.
+//! - `lexicon/normal_spelling.rs`, `forms.rs`: plurals, articles and numbers of a name.
+//! - `words/languages.txt`: the languages that are recognised.
+//! - `words/answers.txt`, `chatter.txt`, `directions.txt`, `rewording.txt`: the lists of the modules of these names.
 
 pub mod answers;
 pub mod chatter;

@@ -1,5 +1,5 @@
-//! Finds the words of a text for a turn, a side, a climb or a way by a place, and gives their opposites. Repairs and
-//! alternatives replace just these words.
+//! Finds the words of a text for a turn, a side, a climb, or the way past or through a place, and exchanges left with right and
+//! up with down. Repairs and alternatives replace just these words.
 
 use crate::text::{TextToken, split_tokens};
 
@@ -9,24 +9,24 @@ crate::data::lists! {
     phrases:;
 }
 
-/// How far before its side the words of a turn may begin, tokens.
+/// Most words between the verb of a turn and its side, as "a sharp" in "take a sharp right".
 const TURN_REACH: usize = 6;
-/// How far before a place the words for the walk's way by it may be, tokens.
+/// The words for the way past a place are looked for among this many tokens before it.
 const WAY_REACH: usize = 5;
 
-/// A text with its tokens. Byte ranges that do not fit it have no words.
+/// A text with its tokens. The methods take byte ranges of it, and find no words in a range that does not fit it.
 #[derive(Debug)]
 pub struct TokenisedText<'a> {
     text: &'a str,
     tokens: Vec<TextToken>,
 }
 
-/// Words for the way by which a walk goes by a place.
+/// The words before a place for how the walk passes it: "walk past", "head out of", "leave".
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct WayWords {
     /// Their byte range: "walk past".
     pub span: [usize; 2],
-    /// The verb that stays before another preposition, with a blank behind it; empty where there is none.
+    /// The verb to write before a new preposition, with a space behind it: "walk "; empty where there is none.
     pub verb: String,
 }
 
@@ -80,17 +80,17 @@ impl<'a> TokenisedText<'a> {
     /// The last word of a step for up or down, and its opposite. In "walk down the hall and up the stairs" it is "up".
     #[must_use]
     pub fn climb_word(&self, step: [usize; 2], is_up: bool) -> Option<([usize; 2], String)> {
-        let says = |token: &&TextToken| CLIMBS.chunks_exact(2).any(|pair| pair[usize::from(!is_up)] == token.word);
-        let span = self.tokens_within(step).iter().rev().find(says)?.span;
+        let is_climb = |token: &&TextToken| CLIMBS.chunks_exact(2).any(|pair| pair[usize::from(!is_up)] == token.word);
+        let span = self.tokens_within(step).iter().rev().find(is_climb)?.span;
         Some((span, self.exchange_opposites(span, &CLIMBS)?))
     }
 
     /// A step without the marks and words that join it to others; `None` where no other words are left.
     #[must_use]
     pub fn step_words(&self, step: [usize; 2]) -> Option<[usize; 2]> {
-        let tells = |token: &&TextToken| token.is_word() && !LINKING.contains(&&*token.word);
+        let is_content = |token: &&TextToken| token.is_word() && !LINKING.contains(&&*token.word);
         let tokens = self.tokens_within(step);
-        Some([tokens.iter().find(tells)?.span[0], tokens.iter().rev().find(tells)?.span[1]])
+        Some([tokens.iter().find(is_content)?.span[0], tokens.iter().rev().find(is_content)?.span[1]])
     }
 
     /// The words before a place for the way by it: "walk past", "exit". `None` where there are none.
@@ -98,13 +98,13 @@ impl<'a> TokenisedText<'a> {
     pub fn way_words(&self, step: [usize; 2], place: [usize; 2]) -> Option<WayWords> {
         let before = self.tokens_within([step[0], place[0]]);
         let near = &before[before.len().saturating_sub(WAY_REACH)..];
-        let says = |list: &[&str], token: &TextToken| list.contains(&&*token.word);
-        let last = near.iter().rposition(|token| says(&PREPOSITIONS, token) || says(&WAY_VERBS, token))?;
-        if says(&WAY_VERBS, &near[last]) {
+        let is_in = |list: &[&str], token: &TextToken| list.contains(&&*token.word);
+        let last = near.iter().rposition(|token| is_in(&PREPOSITIONS, token) || is_in(&WAY_VERBS, token))?;
+        if is_in(&WAY_VERBS, &near[last]) {
             return Some(WayWords { span: near[last].span, verb: "walk ".into() });
         }
-        let first = near[..last].iter().rposition(|token| !says(&PREPOSITIONS, token)).map_or(0, |at| at + 1);
-        let verb = near[..first].last().filter(|token| says(&WALKING, token));
+        let first = near[..last].iter().rposition(|token| !is_in(&PREPOSITIONS, token)).map_or(0, |at| at + 1);
+        let verb = near[..first].last().filter(|token| is_in(&WALKING, token));
         let from = verb.map_or(near[first].span[0], |verb| verb.span[0]);
         let verb = verb.map_or_else(String::new, |verb| format!("{} ", verb.word));
         Some(WayWords { span: [from, near[last].span[1]], verb })
@@ -129,15 +129,15 @@ impl<'a> TokenisedText<'a> {
 
     /// The words of a byte range with their opposites; `None` where they have none.
     fn exchange_opposites(&self, [from, to]: [usize; 2], pairs: &[&str]) -> Option<String> {
-        let (mut told, mut done) = (String::new(), from);
+        let (mut exchanged, mut done) = (String::new(), from);
         for token in self.tokens_within([from, to]) {
             let Some(other) = opposite_word(&token.word, pairs) else { continue };
-            told.push_str(self.words_of([done, token.span[0]]));
-            told.push_str(&in_capitals_of(self.words_of(token.span), other));
+            exchanged.push_str(self.words_of([done, token.span[0]]));
+            exchanged.push_str(&in_capitals_of(self.words_of(token.span), other));
             done = token.span[1];
         }
-        told.push_str(self.words_of([done, to]));
-        (done > from).then_some(told)
+        exchanged.push_str(self.words_of([done, to]));
+        (done > from).then_some(exchanged)
     }
 }
 

@@ -5,6 +5,13 @@
 //! There are stand-ins for services as well: [`provider`] serves models over HTTP that answer from scripts and fail in every
 //! way that real services fail; [`PlayedDetector`] detects things by script; [`PostgresServer`] starts a PostgreSQL server.
 //! [`documents`] extracts the commands that the repository's documents ask their readers to type.
+//!
+//! # Where things are
+//! - `test_house.rs`, `episodes.rs`: the building and its paths; a file each for the formats that they are written in.
+//! - `provider/faults.rs`, `fault_response.rs`: the faults of services. If a real service shows a new one, it goes here first.
+//! - `provider/dialect/`: the requests and replies of each API.
+//! - `provider/scripts/`: scripted models that see, ask, summarise, write and walk, and their mistakes.
+//! - `documents/`: which lines of a document are commands.
 
 pub mod documents;
 mod episodes;

@@ -58,7 +58,7 @@ fn walk(graph: &ViewpointGraph, start: &ViewpointId, hops: usize) -> Vec<Viewpoi
 fn trajectories(criterion: &mut Criterion) {
     let graph = building();
     criterion.bench_function("all distances of 350 viewpoints", |bench| {
-        bench.iter(|| SceneDistances::new(black_box(&graph)))
+        bench.iter(|| SceneDistances::new(black_box(&graph)));
     });
 
     let distances = SceneDistances::new(&graph);

@@ -1,6 +1,5 @@
 //! Bootstrap intervals for means of values that come in clusters, as several instructions about one path do.
 
-use crate::ResamplingOptions;
 use rand::Rng;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -8,6 +7,17 @@ use wayword_core::seeded_rng;
 
 /// Most resamples that are drawn; more would not change the digits that reports show.
 const MOST_RESAMPLES: usize = 100_000;
+
+/// How intervals and random pairs are drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ResamplingOptions {
+    /// Resamples of the intervals.
+    pub resamples: usize,
+    /// The share that the intervals cover, as 0.95.
+    pub level: f64,
+    /// Seed of the intervals and of the random pairs.
+    pub seed: u64,
+}
 
 /// A mean with its interval.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

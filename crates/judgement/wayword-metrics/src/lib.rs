@@ -3,22 +3,32 @@
 //!
 //! Architecture invariant: this crate does not read files or run models, and uses only the graph of a platform; vectors come
 //! from the caller. Distances are computed once and cached ([`DistanceAtlas`]), and equal input gives equal figures.
+//!
+//! # Where things are
+//! - `trajectory/mod.rs`: the rules of success; `fidelity.rs`, `score.rs`: the other figures of trajectories.
+//! - [`captions`]: BLEU, ROUGE-L, CIDEr-D, their tokenizers, diversity. [`picture_scores`]: agreement with pictures.
+//! - `similarity`: vectors of texts, with both anchors. `bootstrap`: intervals clustered by path.
+//! - `latex`: the escapes of LaTeX tables.
+//! - `study/crossed/`: shares, means and differences over persons and items; `bradley_terry/` preferences, `agreement.rs`, `power.rs`.
+//! - `fixtures/make_*.py` make the figures of other programs that the tests compare with.
 
 mod bootstrap;
 pub mod captions;
 mod correlation;
 mod hashed_words;
+mod latex;
 mod mcnemar;
 pub mod picture_scores;
 mod similarity;
 mod study;
 mod trajectory;
 
-pub use bootstrap::{MeanEstimate, clustered_interval, clustered_interval_of, percentile_interval};
+pub use bootstrap::{MeanEstimate, ResamplingOptions, clustered_interval, clustered_interval_of, percentile_interval};
 pub use correlation::{kendall_tau_b, pearson_correlation, spearman_correlation};
 pub use hashed_words::HashedWordEncoder;
+pub use latex::escape_latex;
 pub use mcnemar::McNemar;
-pub use similarity::{ItemVectors, ResamplingOptions, SetSimilarity, compare_sets};
+pub use similarity::{ItemVectors, SetSimilarity, compare_sets};
 pub use study::{
     AnswerScale, BradleyTerry, ConfidenceInterval, DetectableShareDifference, FigureDifference, FittedTerm,
     IntervalMethod, NoStrength, PairPreference, PowerPlan, RaterAgreement, StudyAnswer, StudyFigure, SystemComparison,

@@ -1,7 +1,7 @@
 //! How alike two sets of instructions are, by the cosines of their text vectors. A cosine has no meaning by itself, so two
 //! anchors come with it: two people's texts about the same item, and texts about different paths.
 
-use crate::{MeanEstimate, clustered_interval};
+use crate::{MeanEstimate, ResamplingOptions, clustered_interval};
 use rand::Rng;
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
@@ -17,17 +17,6 @@ pub struct ItemVectors<'a> {
     pub cluster: String,
     /// A vector per text. All vectors of a comparison have the same length.
     pub vectors: Vec<&'a [f32]>,
-}
-
-/// How intervals and random pairs are drawn.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ResamplingOptions {
-    /// Resamples of the intervals.
-    pub resamples: usize,
-    /// The share that the intervals cover, as 0.95.
-    pub level: f64,
-    /// Seed of the intervals and of the random pairs.
-    pub seed: u64,
 }
 
 /// How alike two sets are.

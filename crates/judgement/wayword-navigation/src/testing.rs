@@ -128,12 +128,4 @@ impl Platform for Cross {
         let truth = self.has_labels.then_some(GroundTruth { labels, lists_objects: true, room });
         Ok(View::new(Pose::looking_level(from.pose.position, gaze.heading), gaze.horizontal_fov_rad, None, truth))
     }
-
-    fn object_name(&self, _: &SceneId, _: &Frame, _: &ObjectId) -> Result<Option<String>, PlatformError> {
-        Ok(None)
-    }
-
-    fn visible_from(&self, _: &SceneId, _: &ObjectId) -> Result<Option<BTreeSet<ViewpointId>>, PlatformError> {
-        Ok(None)
-    }
 }

@@ -14,7 +14,7 @@ use std::{
 use wayword_checks::{Evidence, WalkMemory};
 use wayword_core::{
     Frame, Heading, Instruction, InstructionStyle, MentionKind, ObjectId, ObjectLabel, Path, PathRequest, Platform,
-    PlatformError, SceneId, TextMention, View, ViewGaze, ViewpointGraph, ViewpointId, path::PathStop,
+    PlatformError, SceneId, TextMention, View, ViewGaze, ViewpointGraph, path::PathStop,
 };
 use wayword_house::{HouseOptions, HousePlatform};
 use wayword_language::{
@@ -83,16 +83,8 @@ impl Platform for Drawn {
         Ok(view)
     }
 
-    fn look_without_picture(&self, scene: &SceneId, from: &Frame, gaze: ViewGaze) -> Result<View, PlatformError> {
-        self.look_from(scene, from, gaze)
-    }
-
-    fn object_name(&self, scene: &SceneId, near: &Frame, object: &ObjectId) -> Result<Option<String>, PlatformError> {
-        self.platform.object_name(scene, near, object)
-    }
-
-    fn visible_from(&self, scene: &SceneId, object: &ObjectId) -> Result<Option<BTreeSet<ViewpointId>>, PlatformError> {
-        self.platform.visible_from(scene, object)
+    fn inner(&self) -> Option<&dyn Platform> {
+        Some(&*self.platform)
     }
 }
 

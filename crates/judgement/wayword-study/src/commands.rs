@@ -1,4 +1,4 @@
-//! The commands of the researcher: progress, links, closing, forgetting, exports. They work on the study's folder, also while the
+//! The commands of the researcher: making a study, progress, links, closing, forgetting, exports. They work on the study's folder, also while the
 //! site is being served.
 
 use crate::{
@@ -11,6 +11,17 @@ use std::path::{Path, PathBuf};
 const MOST_LINKS: u32 = 100_000;
 
 impl Study {
+    /// Writes a new study. Its folder `pictures` already has the pictures. The plan is written last, so a folder without a plan is not
+    /// a complete study.
+    ///
+    /// # Errors
+    /// When there is one already, or a file cannot be written.
+    pub fn create(&self) -> Result<(), StudyError> {
+        self.write_contents()?;
+        StudyStore::open(&self.database_file())?;
+        self.write_plan()
+    }
+
     /// Reads the study with all answers of its participants.
     ///
     /// # Errors

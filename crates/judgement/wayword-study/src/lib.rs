@@ -5,6 +5,15 @@
 //!
 //! Architecture invariants: an async runtime lives in the folder `site` alone, and no page contains the name of a goal, a path, a scene
 //! or a condition, because a participant could guess from it which text is expected to be the better one.
+//!
+//! # Where things are
+//! - `study/plan.rs`, `settings.rs`, `data.rs`: the fixed part of a study, the settings of `study.toml`, and the answers of people.
+//! - `wording`: the questions and scales.
+//! - `store/assign.rs`, `stage.rs`: who gets which item, and what comes next. `store/schema.sql`: the tables.
+//! - `store/people.rs`, `recruits.rs`: consent, links, withdrawal, forgetting; the recruiter's list.
+//! - `site/pages/`, `site/assets/`: the pages; `site/pages.rs`: what they are given.
+//! - `site/routes.rs`, `request_guard.rs`, `listen.rs`, `tls.rs`: addresses, headers and pace, connections.
+//! - `results/`: tables, plots and files. Their statistics are in `wayword-metrics`.
 
 mod commands;
 pub mod results;

@@ -2,9 +2,9 @@
 //!
 //! A key is a hash over everything that could change the answer. So equal calls have equal keys, and an answer is found again by its key.
 
+use crate::checksum::sha256_text;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
-use sha2::{Digest, Sha256};
 use std::fmt;
 
 /// Everything that could change a call's answer.
@@ -74,7 +74,7 @@ impl ModelCall {
             Value::from(self.replicate),
         ];
         write_canonical(&Value::Array(parts.into()), &mut canonical);
-        CallKey(Sha256::digest(canonical).iter().map(|byte| format!("{byte:02x}")).collect())
+        CallKey(sha256_text(canonical))
     }
 }
 

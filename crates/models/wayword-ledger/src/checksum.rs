@@ -13,5 +13,10 @@ pub(crate) fn answer_checksum(key: &CallKey, answer: &CallAnswer) -> String {
     let counts = [count(tokens_in), count(tokens_out), count(latency_ms)];
     let usd = usd.map(|usd| (usd + 0.0).to_bits());
     let all = json!([key.as_str(), text, finish, counts, usd, attempts]).to_string();
-    Sha256::digest(all).iter().map(|byte| format!("{byte:02x}")).collect()
+    sha256_text(all)
+}
+
+/// The SHA-256 of bytes, in hexadecimal digits.
+pub(crate) fn sha256_text(bytes: impl AsRef<[u8]>) -> String {
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }

@@ -12,6 +12,16 @@
 //!   limits of a run and the rates of providers hold for all programs together.
 //!
 //! Architecture invariant: this crate does not interpret calls, and its interface does not expose the database.
+//!
+//! # Where things are
+//! - `call`: the fields that are kept of a call, and its key.
+//! - `budget`: how much a run may spend.
+//! - `claim`, and `presence.rs` of each store: how programs share calls, and notice that another one has ended.
+//! - `rate`, `store/postgres/rates.rs`: how many requests all workers together send.
+//! - `disk`: which file systems are network file systems.
+//! - `store/mod.rs`: what a store does. `store/sqlite/schema.rs` and `store/postgres/tables.rs` have the tables, `store/chunks/line.rs` the lines of
+//!   a recording.
+//! - `span`: what a trace has of a call.
 
 mod budget;
 mod call;
@@ -28,6 +38,7 @@ mod rate;
 mod recording;
 mod run;
 mod span;
+mod spending;
 mod stopper;
 mod store;
 
@@ -38,10 +49,10 @@ pub use disk::network_at;
 pub use error::LedgerError;
 pub use ledger::Ledger;
 pub use location::LedgerLocation;
-pub use queries::{CostGrouping, CostLine, LedgerFilter, RunSpending};
 pub use rate::ProviderRates;
 pub use run::{CallAttempts, LedgerRun, OnceError, RunTotals};
 pub use span::SPAN_TARGET;
+pub use spending::{CostGrouping, CostLine, LedgerFilter, RunSpending};
 pub use stopper::RunStopper;
 #[cfg(feature = "postgres")]
 pub use store::LEDGER_TABLES;

@@ -5,14 +5,19 @@ use crate::{
     budget::{RunBudget, SpentBudget, valid_amount},
     claim::{ABANDONED_CLAIM_TIMEOUT, CallClaim, ClaimOutcome},
     ledger::{Ledger, now_unix_s},
-    queries::LedgerFilter,
+    rate::{ProviderRates, wait_until},
     span::CallSpan,
-    store::{PendingRequest, RequestEnd},
+    spending::LedgerFilter,
+    store::{PendingRequest, RequestEnd, SentRequest},
 };
 use std::{
     path::{Path, PathBuf},
     sync::{Arc, Mutex, PoisonError},
+    time::Instant,
 };
+
+/// How many turns in a row may be missed. If a request misses more, the database is too slow for a common rate.
+const MOST_MISSED: usize = 100;
 
 /// A run's use of a ledger: its limits, its spending, and whether it was stopped. Clones share one run.
 #[derive(Debug, Clone)]
@@ -66,15 +71,6 @@ pub struct CallAttempts<'a> {
     sent: u32,
     /// The kind of failure that the span reports if the call fails.
     failure: &'static str,
-}
-
-/// A request that the store has written down.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct SentRequest {
-    /// Its number in the store.
-    pub(crate) number: i64,
-    /// Its upper bound, US dollars.
-    pub(crate) most_usd: Option<f64>,
 }
 
 /// A call was not answered.
@@ -214,10 +210,6 @@ impl LedgerRun {
         self.state.stopper.clone()
     }
 
-    pub(crate) fn ledger(&self) -> &Ledger {
-        &self.ledger
-    }
-
     /// The requests and the spending of the run in this process.
     #[must_use]
     pub fn totals(&self) -> RunTotals {
@@ -230,6 +222,43 @@ impl LedgerRun {
     /// When the ledger cannot be read or the file cannot be written.
     pub fn record_calls(&self, path: &Path) -> Result<usize, LedgerError> {
         self.ledger.export_to(&LedgerFilter { run: Some(self.state.id.clone()), ..LedgerFilter::default() }, path)
+    }
+
+    /// Whether the ledger keeps rates for all programs together, see [`LedgerRun::wait_turn`].
+    #[must_use]
+    pub fn shares_rates(&self) -> bool {
+        self.ledger.store().shares_rates()
+    }
+
+    /// Waits until a request of about so many tokens may be sent to a provider, if the ledger keeps rates for all
+    /// programs together; otherwise returns at once. Returns false if `stopped` became true first.
+    ///
+    /// Requests leave in the order in which they asked. In any second, at most a tenth more than the rate leave, or one more where a
+    /// tenth is less than one. A request that comes too late for its turn gives it up and takes another.
+    ///
+    /// # Errors
+    /// When the ledger cannot be used, or answers too slowly.
+    pub fn wait_turn(
+        &self,
+        provider: &str,
+        rates: ProviderRates,
+        tokens: u64,
+        stopped: impl Fn() -> bool,
+    ) -> Result<bool, LedgerError> {
+        let store = self.ledger.store();
+        for _ in 0..MOST_MISSED {
+            if stopped() {
+                return Ok(false);
+            }
+            let Some(slot) = store.next_slot(provider, rates, tokens)? else { return Ok(true) };
+            if !wait_until(slot.from, &stopped) {
+                return Ok(false);
+            }
+            if Instant::now() <= slot.until {
+                return Ok(true);
+            }
+        }
+        Err(LedgerError::Slow { place: store.ledger_location() })
     }
 
     fn update_totals(&self, change: impl FnOnce(&mut RunTotals)) {

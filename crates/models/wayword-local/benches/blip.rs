@@ -32,7 +32,7 @@ fn blip(criterion: &mut Criterion) {
                 .unwrap();
         let picture = picture(0);
         group.bench_function("vision", |bencher| {
-            bencher.iter(|| captioner.picture_states(black_box(&picture)).unwrap())
+            bencher.iter(|| captioner.picture_states(black_box(&picture)).unwrap());
         });
         group.bench_function("caption of 20 tokens", |bencher| {
             bencher.iter(|| {

@@ -7,22 +7,23 @@ use std::{
     sync::{Arc, Mutex, PoisonError},
     time::Instant,
 };
-use wayword_core::{ChatMessage, FinishReason, Image, LanguageModel, ModelError, ModelReply, ModelRequest};
+use wayword_core::{ChatMessage, FinishReason, Image, LanguageModel, ModelError, ModelReply, ModelRequest, hex_text};
 use wayword_ledger::{CallAnswer, LedgerRun, ModelCall, OnceError, RequestRefusedError};
 
 /// An in-process model behind the ledger: a request that was answered before gets the answer from there.
 pub struct LocalModel {
     kept: CallLedger,
+    /// The model itself. An "eye" is a model that looks at pictures (the role `see`).
     eye: Arc<dyn PictureModel>,
 }
 
 /// Makes the calls of one in-process model, each once, through the ledger.
 pub(crate) struct CallLedger {
-    /// `hf/ORG/NAME`.
+    /// The model's name, `hf/ORG/NAME`.
     pub(crate) name: String,
     /// The identity of the weights and their precision. It is part of a call's key, because it may change the answer.
     pub(crate) origin: String,
-    /// Held during a call: each call uses all threads, and two at once would need twice the memory.
+    /// Locked during a call: each call uses all threads, and two at once would need twice the memory.
     turn: Mutex<()>,
     run: LedgerRun,
 }
@@ -30,8 +31,10 @@ pub(crate) struct CallLedger {
 /// The reason why a call was not answered.
 #[derive(Debug, thiserror::Error)]
 enum LocalCallError {
+    /// The model could not compute an answer.
     #[error(transparent)]
     Failed(ModelError),
+    /// The ledger did not allow another call: a limit of the run is reached, or the ledger cannot be written.
     #[error(transparent)]
     Refused(RequestRefusedError),
 }
@@ -41,7 +44,7 @@ impl LocalModel {
         Self { kept: CallLedger::new(name, origin, run), eye }
     }
 
-    /// The form of request that it takes.
+    /// The form of request that the model takes.
     #[must_use]
     pub fn kind(&self) -> EyeKind {
         self.eye.kind()
@@ -53,6 +56,7 @@ impl LocalModel {
         &self.kept.origin
     }
 
+    /// The reply to one request, from the ledger or from the model.
     fn complete_one(&self, request: &ModelRequest) -> Result<ModelReply, ModelError> {
         let answer = self.kept.answer_once(request_json(request), request.replicate, || {
             let failed = |reason| ModelError::Failed { model: self.kept.name.clone(), reason };
@@ -91,22 +95,24 @@ impl CallLedger {
         compute: impl FnOnce() -> Result<String, ModelError>,
     ) -> Result<CallAnswer, ModelError> {
         let call = ModelCall { model: self.name.clone(), base_url: self.origin.clone(), request, replicate };
-        let asked = self.run.answer_once(&call, |attempts| {
+        let answer = self.run.answer_once(&call, |attempts| {
             let _turn = self.turn.lock().unwrap_or_else(PoisonError::into_inner);
             attempts.begin_request(Some(0.0)).map_err(LocalCallError::Refused)?;
             let begun = Instant::now();
             Ok(ledger_answer(compute().map_err(LocalCallError::Failed)?, begun))
         });
-        asked.map_err(|error| self.to_model_error(error))
+        answer.map_err(|error| self.to_model_error(error))
     }
 
+    /// The error for the caller. A refusal by the ledger stops the run ([`ModelError::Stopped`]); all others concern
+    /// one item.
     fn to_model_error(&self, error: OnceError<LocalCallError>) -> ModelError {
         let failed = |reason: String| ModelError::Failed { model: self.name.clone(), reason };
         let refused = match error {
             OnceError::Call(LocalCallError::Failed(error)) => return error,
             OnceError::Call(LocalCallError::Refused(refused)) | OnceError::Refused(refused) => refused,
             OnceError::Ledger(error) => RequestRefusedError::Ledger(error),
-            // The item also failed when the recording was made.
+            // A replay of a recorded run has no answer only where the item also failed in the recorded run.
             missing @ OnceError::NotRecorded { .. } => {
                 return failed(missing.to_string().lines().next().unwrap_or("not recorded").to_owned());
             }
@@ -147,5 +153,5 @@ fn reply_from_answer(answer: CallAnswer) -> ModelReply {
 
 /// The hash by which the ledger refers to a picture, as hex digits.
 pub(crate) fn picture_hash(image: &Image) -> String {
-    picture_digest(image).iter().map(|byte| format!("{byte:02x}")).collect()
+    hex_text(picture_digest(image))
 }

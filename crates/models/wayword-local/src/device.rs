@@ -31,21 +31,25 @@ impl ModelDevice {
     /// # Errors
     /// When this build or machine has no device of that name.
     pub fn from_name(name: &str) -> Result<Self, LocalError> {
-        let (kind, at) = name.split_once(':').unwrap_or((name, "0"));
-        let no = |problem: String| LocalError::Compute { model: format!("device {name}"), problem };
-        let at: usize =
-            at.parse().map_err(|_| no("its number is not valid; write cpu, cuda, cuda:1 or metal".to_owned()))?;
+        let (kind, number) = name.split_once(':').unwrap_or((name, "0"));
+        let device_error = |problem: String| LocalError::Compute { model: format!("device {name}"), problem };
+        let number: usize = number
+            .parse()
+            .map_err(|_| device_error("its number is not valid; write cpu, cuda, cuda:1 or metal".to_owned()))?;
         let device = match kind {
             "cpu" => Ok(candle_core::Device::Cpu),
-            "cuda" => candle_core::Device::new_cuda(at),
-            "metal" => candle_core::Device::new_metal(at),
-            _ => return Err(no("there is no such device; write cpu, cuda, cuda:1 or metal".to_owned())),
+            "cuda" => candle_core::Device::new_cuda(number),
+            "metal" => candle_core::Device::new_metal(number),
+            _ => return Err(device_error("there is no such device; write cpu, cuda, cuda:1 or metal".to_owned())),
         };
-        device.map(Self).map_err(|error| no(format!("{error}; build with --features {kind} on a machine that has one")))
+        device
+            .map(Self)
+            .map_err(|error| device_error(format!("{error}; build with --features {kind} on a machine that has one")))
     }
 }
 
 impl WeightPrecision {
+    /// The same precision as a type of the library candle.
     pub(crate) fn candle_dtype(self) -> DType {
         match self {
             Self::F32 => DType::F32,

@@ -2,8 +2,8 @@
 
 use std::{path::PathBuf, sync::Arc};
 
-/// The hint for a damaged file. Its folder must be deleted first, because a fetch keeps the files that are in the
-/// cache.
+/// The hint for a damaged file. The user must delete its folder first, because a fetch downloads only files that the
+/// cache lacks.
 pub(crate) const FETCH_AGAIN: &str = "fetch it again: delete the folder models--ORG--NAME that holds it, and run `wayword models fetch hf/ORG/NAME`; if the folder is your own, copy the file into it again";
 
 /// A model cannot be found, fetched, loaded or computed.
@@ -92,8 +92,9 @@ impl LocalError {
         Self::Download { address: address.into(), problem: problem.into(), hint: hint.into() }
     }
 
+    /// An error of candle while `model` computed.
     pub(crate) fn compute_failed(model: &str, error: &candle_core::Error) -> Self {
-        // candle's errors may contain a backtrace.
+        // candle's errors may contain a backtrace, so only the first line is kept.
         let problem = error.to_string().lines().next().unwrap_or("the computation failed").to_owned();
         Self::Compute { model: model.to_owned(), problem }
     }

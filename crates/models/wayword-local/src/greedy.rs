@@ -2,23 +2,23 @@
 
 use candle_core::{D, DType, Result, Tensor};
 
-/// Writes at most `most` tokens, and stops at the token `end`, which is not returned.
+/// Writes at most `max_tokens` tokens, and stops at the token `end`, which is not returned.
 ///
-/// `step` takes the latest token (`None` at first) and returns the logits [.., words] of the next one. If it returns
-/// several rows, as for a whole prompt, the last row is the one that counts.
+/// `step` takes the latest token (`None` at first) and returns the logits of the next one, [.., words]: an unnormalised
+/// score for each word of the vocabulary. If it returns several rows, as for a whole prompt, the last row counts.
 pub(crate) fn decode_greedily(
-    most: usize,
+    max_tokens: usize,
     end: u32,
     mut step: impl FnMut(Option<u32>) -> Result<Tensor>,
 ) -> Result<Vec<u32>> {
-    let mut said = Vec::new();
-    while said.len() < most {
-        let logits = step(said.last().copied())?.to_dtype(DType::F32)?;
+    let mut tokens = Vec::new();
+    while tokens.len() < max_tokens {
+        let logits = step(tokens.last().copied())?.to_dtype(DType::F32)?;
         let likeliest = logits.argmax(D::Minus1)?.flatten_all()?.to_vec1::<u32>()?;
         match likeliest.last() {
-            Some(&token) if token != end => said.push(token),
+            Some(&token) if token != end => tokens.push(token),
             _ => break,
         }
     }
-    Ok(said)
+    Ok(tokens)
 }

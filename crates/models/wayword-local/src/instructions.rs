@@ -5,7 +5,7 @@ use crate::{LocalError, tokenizer::TextTokenizer};
 use std::path::Path;
 use wayword_core::contain_panics::run_decoder;
 
-/// The most ids of an instruction that these agents read, with the first and the last token.
+/// The most ids that these agents read of an instruction, the first and the last token included. More are cut off.
 const MAX_INSTRUCTION_IDS: usize = 512;
 
 /// The family of a tokenizer. The agents' files are named after it.
@@ -17,11 +17,13 @@ pub enum TokenizerKind {
     XlmRoberta,
 }
 
-/// Turns instructions into ids.
+/// Turns instructions into ids with the tokenizer of an agent.
 pub struct InstructionTokenizer {
     inner: TextTokenizer,
     kind: TokenizerKind,
+    /// The id of the token before every text.
     begin: u32,
+    /// The id of the token behind every text.
     end: u32,
 }
 
@@ -33,8 +35,8 @@ impl InstructionTokenizer {
     pub fn load(file: &Path) -> Result<Self, LocalError> {
         let inner = TextTokenizer::load_file(file.to_owned())?;
         let families = [(TokenizerKind::Bert, "[CLS]", "[SEP]"), (TokenizerKind::XlmRoberta, "<s>", "</s>")];
-        let of = |(kind, begin, end)| Some((kind, inner.token_id(begin)?, inner.token_id(end)?));
-        let (kind, begin, end) = families.into_iter().find_map(of).ok_or_else(|| LocalError::File {
+        let with_ids = |(kind, begin, end)| Some((kind, inner.token_id(begin)?, inner.token_id(end)?));
+        let (kind, begin, end) = families.into_iter().find_map(with_ids).ok_or_else(|| LocalError::File {
             file: file.to_owned(),
             problem: "it has neither [CLS] and [SEP] nor <s> and </s>, one of which these agents need".to_owned(),
             hint: "give the tokenizer that the agent was trained with: that of bert-base-uncased, or of xlm-roberta-base",
@@ -42,22 +44,22 @@ impl InstructionTokenizer {
         Ok(Self { inner, kind, begin, end })
     }
 
-    /// Its family.
+    /// The family of the tokenizer.
     #[must_use]
     pub fn kind(&self) -> TokenizerKind {
         self.kind
     }
 
-    /// The ids of a text between those of its family's first and last token. A text that is too long is cut, so that
-    /// there are 512 with these two.
+    /// The ids of a text between the family's first and last token. A text that is too long is cut, so that there are
+    /// 512 ids with these two.
     ///
     /// # Errors
     /// When the tokenizer fails on the text.
     pub fn instruction_ids(&self, text: &str) -> Result<Vec<u32>, LocalError> {
-        let read = || self.inner.inner_ids(text).map_err(|error| error.to_string());
-        let words = run_decoder(read).map_err(|problem| self.inner.file_error(&format!("on {text:?}: {problem}")))?;
-        let words = words.into_iter().take(MAX_INSTRUCTION_IDS - 2);
-        Ok([self.begin].into_iter().chain(words).chain([self.end]).collect())
+        let encode = || self.inner.inner_ids(text).map_err(|error| error.to_string());
+        let ids = run_decoder(encode).map_err(|problem| self.inner.file_error(&format!("on {text:?}: {problem}")))?;
+        let ids = ids.into_iter().take(MAX_INSTRUCTION_IDS - 2);
+        Ok([self.begin].into_iter().chain(ids).chain([self.end]).collect())
     }
 }
 

@@ -4,10 +4,10 @@ use crate::{LocalError, error::FETCH_AGAIN};
 use serde::de::DeserializeOwned;
 use std::path::Path;
 
-/// The longest file that is read, bytes.
+/// The longest file that is read, bytes. A longer one is refused.
 const MAX_JSON_BYTES: u64 = 4 << 20;
 
-/// Reads a required file.
+/// Reads a required file of a folder. `what` is its purpose for the error, as in "the configuration".
 pub(crate) fn read_required<T: DeserializeOwned>(
     folder: &Path,
     name: &str,
@@ -21,25 +21,26 @@ pub(crate) fn read_required<T: DeserializeOwned>(
     })
 }
 
-/// Reads a file that may be missing.
+/// Reads a file of a folder. `None` if there is no such file.
 pub(crate) fn read_if_there<T: DeserializeOwned>(folder: &Path, name: &str) -> Result<Option<T>, LocalError> {
     let file = folder.join(name);
-    let Ok(about) = std::fs::metadata(&file) else { return Ok(None) };
+    let Ok(metadata) = std::fs::metadata(&file) else { return Ok(None) };
     let wrong = |problem: String| LocalError::File { file: file.clone(), problem, hint: FETCH_AGAIN };
-    if about.len() > MAX_JSON_BYTES {
-        return Err(wrong(format!("it is too long: {} bytes", about.len())));
+    if metadata.len() > MAX_JSON_BYTES {
+        return Err(wrong(format!("it is too long: {} bytes", metadata.len())));
     }
     let text = std::fs::read_to_string(&file).map_err(|error| LocalError::from_io(&file, "read", error))?;
     let mut parser = serde_json::Deserializer::from_str(&text);
-    let read = serde_path_to_error::deserialize(&mut parser).map_err(|error| wrong(error.to_string()))?;
+    let value = serde_path_to_error::deserialize(&mut parser).map_err(|error| wrong(error.to_string()))?;
     parser.end().map_err(|error| wrong(error.to_string()))?;
-    Ok(Some(read))
+    Ok(Some(value))
 }
 
-/// The largest size that is accepted. Larger sizes could overflow computations.
+/// The largest size that a configuration may have, such as a number of words or of channels. Larger ones could overflow
+/// computations.
 const LARGEST_SIZE: usize = 1 << 20;
 
-/// The problem with the sizes of a configuration, if there is one. Each size comes with its name.
+/// The problem with the sizes of a configuration, if one is 0 or too large. Each size comes with its name.
 pub(crate) fn size_problem(sizes: &[(&str, usize)]) -> Option<String> {
     let (name, size) = sizes.iter().find(|(_, size)| !(1..=LARGEST_SIZE).contains(size))?;
     Some(format!("{name}: {size} is not from 1 to {LARGEST_SIZE}"))
@@ -65,15 +66,15 @@ mod tests {
     #[test]
     fn read_reports_the_wrong_field_and_its_line() {
         let folder = tempfile::tempdir().unwrap();
-        let told = |text: &str| {
+        let error_for = |text: &str| {
             std::fs::write(folder.path().join("config.json"), text).unwrap();
             read_required::<Outer>(folder.path(), "config.json", "a model").unwrap_err().to_string()
         };
-        let wrong = told("{\"layers\": [{\"width\": 1},\n{\"width\": \"two\"}]}");
+        let wrong = error_for("{\"layers\": [{\"width\": 1},\n{\"width\": \"two\"}]}");
         assert!(
             wrong.contains("config.json") && wrong.contains("layers[1].width") && wrong.contains("line 2"),
             "{wrong}"
         );
-        assert!(told("{\"layers\": []} and more").contains("trailing characters"));
+        assert!(error_for("{\"layers\": []} and more").contains("trailing characters"));
     }
 }

@@ -6,6 +6,15 @@
 //!
 //! Architecture invariant: a checkpoint is untrusted. It is read tensor by tensor, the shape of each is checked against
 //! the configuration, and no code in it is executed.
+//!
+//! # Where things are
+//! - `models`: the names of models that see, and how they are loaded. `detectors/mod.rs` is the same for detectors.
+//! - One folder for each architecture, as `blip/`, built from `ops/`. GLIP and the Grounding DINO family share the backbone `swin/`.
+//! - `scoring` in `glip/detector.rs`, `dino/detect.rs` and `owl/model.rs`: what a detector's score means, and from which score it finds.
+//! - `call_ledger`, `detectors/local_detector.rs`: what the ledger keeps of a call.
+//! - `hub/`: where checkpoints come from; `hub/trust.rs` has the published hashes.
+//! - `weights/`: how tensors are read; `training_checkpoint.rs` and `pickle/machine.rs` read `.pth` files without executing them.
+//! - `instructions`: token ids for the files of navigation agents.
 
 mod bert;
 mod blip;

@@ -6,16 +6,18 @@
 use crate::{LocalError, ModelDevice, WeightPrecision, weights::CheckpointWeights};
 use std::path::Path;
 
-/// The memory that a model needs in addition to its weights: a share of their size (3/10, as numerator and
-/// denominator), and a fixed number of bytes.
+/// The memory that a model needs in addition to its weights, as a share of their size: numerator and denominator.
 const WORKING_MEMORY_SHARE: (u64, u64) = (3, 10);
+
+/// The memory that every model needs beside its weights and the share of them, bytes.
 const BASE_MEMORY_BYTES: u64 = 300 << 20;
 
 /// Counts the memory that models have taken, against a limit.
 #[derive(Debug, Default)]
 pub(crate) struct MemoryBudget {
-    /// The user's limit, bytes.
+    /// The user's limit for all models together, bytes.
     most: Option<u64>,
+    /// What the models loaded so far need together, bytes.
     taken: u64,
 }
 
@@ -25,25 +27,26 @@ impl MemoryBudget {
         Self { most, taken: 0 }
     }
 
-    /// Reserves the memory for a checkpoint.
+    /// Reserves the memory for a checkpoint with `weights` bytes of weights. Fails if the rest of the budget is too
+    /// small.
     pub(crate) fn reserve_weights(&mut self, name: &str, weights: u64) -> Result<(), LocalError> {
-        let needs = weights
+        let needed = weights
             .saturating_add(weights / WORKING_MEMORY_SHARE.1 * WORKING_MEMORY_SHARE.0)
             .saturating_add(BASE_MEMORY_BYTES);
-        let left = match self.most {
+        let available = match self.most {
             Some(most) => most.saturating_sub(self.taken),
             // Earlier models have already reduced the free memory, so `taken` is not subtracted.
             None => free_memory_bytes().unwrap_or(u64::MAX),
         };
-        if needs > left {
+        if needed > available {
             let problem = format!(
                 "it needs about {} of memory and {} are left; use 16 bits (--precision bf16), a smaller model, or fewer models at once",
-                format_gibibytes(needs),
-                format_gibibytes(left)
+                format_gibibytes(needed),
+                format_gibibytes(available)
             );
             return Err(LocalError::Compute { model: name.to_owned(), problem });
         }
-        self.taken = self.taken.saturating_add(needs);
+        self.taken = self.taken.saturating_add(needed);
         Ok(())
     }
 }
@@ -53,7 +56,7 @@ pub(crate) fn checkpoint_bytes(folder: &Path, precision: WeightPrecision) -> Res
     Ok(CheckpointWeights::open(folder, &ModelDevice::cpu(), precision)?.size_bytes())
 }
 
-/// The same for a checkpoint that is one file.
+/// The size of the weights of a checkpoint that is one file, at a precision, bytes.
 pub(crate) fn of_file(file: &Path, precision: WeightPrecision) -> Result<u64, LocalError> {
     Ok(CheckpointWeights::of_file(file, &ModelDevice::cpu(), precision)?.size_bytes())
 }
@@ -62,7 +65,7 @@ fn format_gibibytes(bytes: u64) -> String {
     format!("{:.1} GiB", bytes as f64 / (1_u64 << 30) as f64)
 }
 
-/// The free memory of the machine, bytes, where the system reports it (Linux).
+/// The free memory of the machine, bytes. `None` where the system does not report it: only Linux does.
 fn free_memory_bytes() -> Option<u64> {
     let text = std::fs::read_to_string("/proc/meminfo").ok()?;
     let line = text.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;

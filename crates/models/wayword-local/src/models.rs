@@ -40,7 +40,7 @@ struct LoadedModels {
 /// The settings for loading models.
 #[derive(Debug, Clone)]
 pub struct LoadingOptions {
-    /// The device on which they compute.
+    /// The device on which the models compute.
     pub device: ModelDevice,
     /// The precision of their weights. The default is 32 bits, and 16 bits for BLIP-2.
     pub precision: Option<WeightPrecision>,
@@ -51,8 +51,11 @@ pub struct LoadingOptions {
 /// The architecture and the task of a checkpoint. BLIP has one checkpoint for answers and another for descriptions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum EyeArchitecture {
+    /// The BLIP that answers questions about a picture.
     BlipAnswers,
+    /// The BLIP that describes a picture.
     BlipDescribes,
+    /// BLIP-2, which does both.
     Blip2,
 }
 
@@ -77,10 +80,10 @@ impl LocalModels {
         Self { hub, device, precision, progress, run, loaded: Mutex::new(loaded) }
     }
 
-    /// Checks that a name could be that of an in-process model for pictures. Reads no file.
+    /// Checks that a name has the form of an in-process model for pictures. Reads no file.
     ///
     /// # Errors
-    /// When it could not.
+    /// When it has another form.
     pub fn check_name(name: &str) -> Result<(), LocalError> {
         parse_parts(name).map(drop)
     }
@@ -114,10 +117,10 @@ impl LocalModels {
         Ok(model)
     }
 
-    /// Checks that a name could be that of an in-process detector. Reads no file.
+    /// Checks that a name has the form of an in-process detector. Reads no file.
     ///
     /// # Errors
-    /// When it could not.
+    /// When it has another form.
     pub fn check_detector_name(name: &str) -> Result<(), LocalError> {
         detector_name(name).map(drop)
     }
@@ -152,33 +155,36 @@ impl LocalModels {
         Ok(detector)
     }
 
+    /// Loads the model or the two models of a name. Returns them with the text that identifies their weights.
     fn load_eye(&self, name: &str, budget: &mut MemoryBudget) -> Result<(Arc<dyn PictureModel>, String), LocalError> {
         let parts = parse_parts(name)?;
-        let get = |part| self.hub.model_folder(part, &NeededFiles::for_any_architecture(part), &*self.progress);
-        let folders: Vec<ModelFolder> = parts.iter().map(get).collect::<Result<_, _>>()?;
-        let roles = folders.iter().map(|folder| EyeArchitecture::from_folder(&folder.path));
-        let roles: Vec<EyeArchitecture> = roles.collect::<Result<_, _>>()?;
-        let usual = if roles.contains(&EyeArchitecture::Blip2) { WeightPrecision::Bf16 } else { WeightPrecision::F32 };
-        let precision = self.precision.unwrap_or(usual);
+        let find_folder = |part| self.hub.model_folder(part, &NeededFiles::for_any_architecture(part), &*self.progress);
+        let folders: Vec<ModelFolder> = parts.iter().map(find_folder).collect::<Result<_, _>>()?;
+        let architectures = folders.iter().map(|folder| EyeArchitecture::from_folder(&folder.path));
+        let architectures: Vec<EyeArchitecture> = architectures.collect::<Result<_, _>>()?;
+        let default_precision =
+            if architectures.contains(&EyeArchitecture::Blip2) { WeightPrecision::Bf16 } else { WeightPrecision::F32 };
+        let precision = self.precision.unwrap_or(default_precision);
         for folder in &folders {
             budget.reserve_weights(name, memory::checkpoint_bytes(&folder.path, precision)?)?;
         }
         let paths: Vec<&Path> = folders.iter().map(|folder| folder.path.as_path()).collect();
         let identities: Vec<&str> = folders.iter().map(|folder| folder.identity.as_str()).collect();
-        Ok((self.build_eye(name, &paths, &roles, precision)?, format_origin(&identities, precision)))
+        Ok((self.build_eye(name, &paths, &architectures, precision)?, format_origin(&identities, precision)))
     }
 
+    /// Loads checkpoints of known architectures. Two BLIPs may be in either order.
     fn build_eye(
         &self,
         name: &str,
         paths: &[&Path],
-        roles: &[EyeArchitecture],
+        architectures: &[EyeArchitecture],
         precision: WeightPrecision,
     ) -> Result<Arc<dyn PictureModel>, LocalError> {
         use EyeArchitecture::{Blip2 as Both, BlipAnswers as Answers, BlipDescribes as Describes};
         let answers = |path: &Path| BlipVqa::load(name, path, &self.device, precision).map(Some);
         let describes = |path: &Path| BlipCaptioner::load(name, path, &self.device, precision).map(Some);
-        let (answers, describes) = match (roles, paths) {
+        let (answers, describes) = match (architectures, paths) {
             ([Both], [path]) => {
                 let model = Blip2Model::load(name, path, &self.device, precision)?;
                 return Ok(Arc::new(Blip2Eye { name: name.to_owned(), model }));
@@ -194,6 +200,7 @@ impl LocalModels {
 }
 
 impl EyeArchitecture {
+    /// Reads the architecture from the `config.json` of a folder.
     fn from_folder(folder: &Path) -> Result<Self, LocalError> {
         let config: ArchitectureConfig = json::read_required(folder, "config.json", "the configuration")?;
         let architectures = config.architectures.unwrap_or_default();
@@ -215,7 +222,7 @@ impl EyeArchitecture {
     }
 }
 
-/// The one or two models of a name.
+/// The one or two models of a name: `hf/ORG/NAME`, or two BLIPs as `hf/ORG/ANSWERS+ORG/DESCRIBES`.
 fn parse_parts(name: &str) -> Result<Vec<ModelName>, LocalError> {
     let rest = name.strip_prefix("hf/").ok_or_else(|| no_name(name, "it does not begin with hf/"))?;
     let parts = rest.split('+').map(|part| ModelName::parse(&format!("hf/{part}")));

@@ -21,10 +21,11 @@ use wayword_core::{Image, ModelError, View};
 /// Prepares pictures for a model.
 pub(crate) struct PictureProcessor {
     size: ResizeRule,
+    /// The height of the output. Together with `width_px` the size that the model takes.
     height_px: usize,
     width_px: usize,
     filter: ResampleFilter,
-    /// The model's input for each value of a byte, for each colour.
+    /// For each colour a table with the model's input for each value of a byte.
     numbers: [[f32; 256]; 3],
 }
 
@@ -58,17 +59,18 @@ impl PictureProcessor {
     /// # Errors
     /// When a picture has no pixels, or the device has no memory left.
     pub(crate) fn to_tensor(&self, images: &[&Image], device: &ModelDevice) -> Result<Tensor, LocalError> {
-        let wrong = |problem: String| LocalError::Compute { model: "pictures".to_owned(), problem };
+        let picture_error = |problem: String| LocalError::Compute { model: "pictures".to_owned(), problem };
         if let Some(empty) = images.iter().find(|image| image.width_px() == 0 || image.height_px() == 0) {
-            return Err(wrong(format!("{empty:?} has no pixels")));
+            return Err(picture_error(format!("{empty:?} has no pixels")));
         }
         let mut numbers = vec![0.0; images.len() * 3 * self.height_px * self.width_px];
         let each = numbers.par_chunks_mut(3 * self.height_px * self.width_px);
         each.zip(images).for_each(|(numbers, image)| self.fill_picture(image, numbers));
         let shape = (images.len(), 3, self.height_px, self.width_px);
-        Tensor::from_vec(numbers, shape, &device.0).map_err(|error| wrong(error.to_string()))
+        Tensor::from_vec(numbers, shape, &device.0).map_err(|error| picture_error(error.to_string()))
     }
 
+    /// Resizes a picture and writes the model's input for it: all its reds, then all greens, then all blues.
     fn fill_picture(&self, image: &Image, numbers: &mut [f32]) {
         let (height, width) = (image.height_px() as usize, image.width_px() as usize);
         let (to_height, to_width) = match self.size {
@@ -82,26 +84,25 @@ impl PictureProcessor {
         let down = ResampleAxis::keep_middle(self.filter, height, to_height, self.height_px);
         let across = ResampleAxis::keep_middle(self.filter, width, to_width, self.width_px);
         let rgb = resample_picture(image.rgb_bytes(), &down, &across);
-        for (numbers, (at, table)) in
-            numbers.chunks_mut(self.height_px * self.width_px).zip(self.numbers.iter().enumerate())
-        {
-            for (number, pixel) in numbers.iter_mut().zip(rgb.chunks_exact(3)) {
-                *number = table[usize::from(pixel[at])];
+        let planes = numbers.chunks_mut(self.height_px * self.width_px);
+        for (plane, (colour, table)) in planes.zip(self.numbers.iter().enumerate()) {
+            for (number, pixel) in plane.iter_mut().zip(rgb.chunks_exact(3)) {
+                *number = table[usize::from(pixel[colour])];
             }
         }
     }
 }
 
-/// The length of the longer edge when the shorter one becomes `edge`, rounded as Python rounds it.
+/// The length of the longer edge when the shorter one becomes `edge`, rounded down as Python's `int` does.
 fn longer_edge(edge: usize, long: usize, short: usize) -> usize {
     ((edge * long) as f64 / short as f64) as usize
 }
 
-/// The picture of a view. The error names the model `by`, which needs it.
-pub(crate) fn picture_of_view<'a>(view: &'a View, by: &str) -> Result<&'a Image, ModelError> {
+/// The picture of a view. The error for a view without one names the model that needs it.
+pub(crate) fn picture_of_view<'a>(view: &'a View, model: &str) -> Result<&'a Image, ModelError> {
     let image = view.image.as_deref().filter(|image| !image.rgb_bytes().is_empty());
     image.ok_or_else(|| ModelError::NothingToSee {
-        name: by.to_owned(),
+        name: model.to_owned(),
         needs: "a picture",
         hint: "use a platform or data folder with pictures",
     })

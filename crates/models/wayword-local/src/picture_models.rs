@@ -7,15 +7,16 @@ use crate::{
 };
 use wayword_core::{Image, ModelRequest};
 
-/// The most tokens of an answer. These models were trained on short answers, and repeat themselves in longer ones.
+/// The most tokens of an answer, also where a request allows more. These models were trained on short answers, and
+/// repeat themselves in longer ones.
 const MOST_TOKENS: u32 = 40;
 
 /// The question that asks for a description, for a model that only answers questions.
 const DESCRIBE_QUESTION: &str = "what is in the picture?";
 
-/// A model that answers a request about one picture.
+/// A model that answers a request about one picture. Code calls it an eye.
 pub(crate) trait PictureModel: Send + Sync {
-    /// The form of request that it takes.
+    /// The form of request that the model takes.
     fn kind(&self) -> EyeKind;
 
     /// The reply to a request.
@@ -45,17 +46,18 @@ impl PictureModel for BlipEye {
 
     fn reply_to(&self, request: &ModelRequest) -> Result<String, LocalError> {
         let (picture, words) = picture_and_words(&self.name, request)?;
-        let most = request.sampling.max_tokens.min(MOST_TOKENS) as usize;
+        let max_tokens = request.sampling.max_tokens.min(MOST_TOKENS) as usize;
         match (&self.answers, &self.describes, words.is_empty()) {
-            (_, Some(describes), true) => describes.describe_picture(picture, "", most),
-            (Some(answers), _, false) => answers.answer_question(picture, words, most),
-            (Some(answers), None, true) => answers.answer_question(picture, DESCRIBE_QUESTION, most),
+            (_, Some(describes), true) => describes.describe_picture(picture, "", max_tokens),
+            (Some(answers), _, false) => answers.answer_question(picture, words, max_tokens),
+            (Some(answers), None, true) => answers.answer_question(picture, DESCRIBE_QUESTION, max_tokens),
             (None, _, _) => Err(self.cannot_answer()),
         }
     }
 }
 
 impl BlipEye {
+    /// The error for a question to a BLIP that only describes pictures.
     fn cannot_answer(&self) -> LocalError {
         let problem = "it describes pictures but does not answer questions; use --perception single, or put a model that \
                        answers before it, as in --see hf/Salesforce/blip-vqa-base+Salesforce/blip-image-captioning-base";
@@ -76,8 +78,8 @@ impl PictureModel for Blip2Eye {
 
     fn reply_to(&self, request: &ModelRequest) -> Result<String, LocalError> {
         let (picture, words) = picture_and_words(&self.name, request)?;
-        let most = request.sampling.max_tokens.min(MOST_TOKENS) as usize;
-        self.model.continue_prompt(picture, words, most)
+        let max_tokens = request.sampling.max_tokens.min(MOST_TOKENS) as usize;
+        self.model.continue_prompt(picture, words, max_tokens)
     }
 }
 

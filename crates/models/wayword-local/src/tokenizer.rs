@@ -4,7 +4,7 @@ use crate::{LocalError, error::FETCH_AGAIN};
 use std::path::{Path, PathBuf};
 use wayword_core::contain_panics::run_decoder;
 
-/// The longest `tokenizer.json` that is read, bytes.
+/// The longest `tokenizer.json` that is read, bytes. A longer one is refused.
 const MAX_TOKENIZER_BYTES: u64 = 64 << 20;
 
 /// The begin and end of a token in a text, bytes.
@@ -27,14 +27,14 @@ impl TextTokenizer {
 
     /// Like [`TextTokenizer::load`], for a file of any name.
     pub(crate) fn load_file(file: PathBuf) -> Result<Self, LocalError> {
-        let length = std::fs::metadata(&file).map_err(|_| LocalError::Missing {
+        let metadata = std::fs::metadata(&file).map_err(|_| LocalError::Missing {
             file: file.clone(),
             what: "the tokenizer",
             hint: "fetch the whole model: wayword models fetch NAME".to_owned(),
         })?;
         let wrong = |problem: String| LocalError::File { file: file.clone(), problem, hint: FETCH_AGAIN };
-        if length.len() > MAX_TOKENIZER_BYTES {
-            return Err(wrong(format!("it is too long for a tokenizer: {} bytes", length.len())));
+        if metadata.len() > MAX_TOKENIZER_BYTES {
+            return Err(wrong(format!("it is too long for a tokenizer: {} bytes", metadata.len())));
         }
         let read = || tokenizers::Tokenizer::from_file(&file).map_err(|error| error.to_string());
         let mut inner = run_decoder(read).map_err(wrong)?;
@@ -43,13 +43,13 @@ impl TextTokenizer {
         Ok(Self { file, inner })
     }
 
-    /// The ids of a text, with the special ids that the tokenizer puts around it. If there are more than `most`, the
-    /// text is cut, and the last id is still the one that ends a text.
-    pub(crate) fn text_ids(&self, text: &str, most: usize) -> Result<Vec<u32>, LocalError> {
+    /// The ids of a text, with the special ids that the tokenizer puts around it. If there are more than
+    /// `max_ids`, the text is cut, and the last id is still the one that ends a text.
+    pub(crate) fn text_ids(&self, text: &str, max_ids: usize) -> Result<Vec<u32>, LocalError> {
         let encoding = self.inner.encode(text, true).map_err(|error| self.file_error(&error.to_string()))?;
         let mut ids = encoding.get_ids().to_vec();
-        if let Some(&end) = ids.get(most.max(1)..).and_then(<[u32]>::last) {
-            ids.truncate(most);
+        if let Some(&end) = ids.get(max_ids.max(1)..).and_then(<[u32]>::last) {
+            ids.truncate(max_ids);
             if let Some(last) = ids.last_mut() {
                 *last = end;
             }
@@ -86,6 +86,7 @@ impl TextTokenizer {
         Ok(text.trim().to_owned())
     }
 
+    /// The error for a problem with this tokenizer's file.
     pub(crate) fn file_error(&self, problem: &str) -> LocalError {
         LocalError::File { file: self.file.clone(), problem: problem.to_owned(), hint: FETCH_AGAIN }
     }

@@ -5,7 +5,7 @@ use crate::{ChunkRecord, QueueError};
 /// A worker's claim of a chunk.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ChunkClaim {
-    /// Its number.
+    /// The number of the chunk.
     pub chunk: usize,
     /// The number of the claim. Every report must name it, so that reports of an older claim are recognised. 0 in a shard,
     /// where each chunk has one writer.

@@ -6,6 +6,14 @@
 //! a chunk is recorded once, in its mark ([`ChunkRecord`]), a small file.
 //!
 //! This crate knows chunks by their numbers. The caller defines the items and makes them.
+//!
+//! # Where things are
+//! - `plan`: what all workers have to agree on.
+//! - `protocol`: the rules by which chunks change hands. `queue` has the same rules in SQL.
+//! - `marks`, `folder`: the small files that record a finished chunk.
+//! - `heartbeat`: signs of life of workers that share a folder.
+//! - [`launch`]: scripts for Slurm and Kubernetes, in the templates `slurm.j2` and `kubernetes.j2`.
+//! - `cloud/`, with the feature `cloud`: object stores; `stored_run.rs` is a run that lies in one.
 
 mod board;
 #[cfg(feature = "cloud")]

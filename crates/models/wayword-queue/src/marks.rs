@@ -54,6 +54,11 @@ pub fn dead_path(folder: &Path, chunk: usize) -> PathBuf {
     folder.join(CHUNKS_FOLDER).join(format!("{chunk:06}.dead"))
 }
 
+/// The file that counts how often a chunk of a shard was begun.
+pub(crate) fn tries_path(folder: &Path, chunk: usize) -> PathBuf {
+    done_path(folder, chunk).with_extension("tries")
+}
+
 /// The folder of a chunk's results, by the claim under which they are made: two workers never write into one.
 #[must_use]
 pub fn chunk_folder(folder: &Path, chunk: usize, epoch: i64) -> PathBuf {
@@ -139,7 +144,7 @@ pub fn failing_chunks(folder: &Path, plan: &ChunkPlan, reason: &str) -> Result<V
 /// When a mark cannot be removed.
 pub fn reopen_chunks(folder: &Path, chunks: &[usize]) -> Result<(), QueueError> {
     for chunk in chunks {
-        for mark in [done_path(folder, *chunk), dead_path(folder, *chunk), crate::shard::tries_path(folder, *chunk)] {
+        for mark in [done_path(folder, *chunk), dead_path(folder, *chunk), tries_path(folder, *chunk)] {
             remove_if_there(&mark)?;
         }
     }

@@ -2,16 +2,11 @@
 
 use crate::{
     ChunkBoard, ChunkClaim, ChunkPlan, ChunkRecord, HeartbeatThread, MAX_CHUNK_TRIES, QueueError, RemainingChunks,
-    marks::{chunk_folder, dead_path, done_path, from_file, to_bytes},
+    marks::{chunk_folder, dead_path, done_path, from_file, to_bytes, tries_path},
     put_new, put_whole,
 };
 use serde::{Deserialize, Serialize};
-use std::{
-    cell::Cell,
-    fmt, fs,
-    path::{Path, PathBuf},
-    str::FromStr,
-};
+use std::{cell::Cell, fmt, fs, path::Path, str::FromStr};
 
 /// Part `k` of `n`: the chunks with a number that is `k` modulo `n`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -68,10 +63,6 @@ struct ChunkTries {
     tries: i32,
     /// Bytes of results when it was begun last: a chunk that makes progress is not given up.
     bytes: u64,
-}
-
-pub(crate) fn tries_path(folder: &Path, chunk: usize) -> PathBuf {
-    done_path(folder, chunk).with_extension("tries")
 }
 
 /// A part of a run as a board. Only this worker writes its chunks.

@@ -3,7 +3,10 @@
 use std::{fmt, net::IpAddr};
 use ureq::http::Uri;
 
-/// `http` or `https`, a host, and optionally a path. No password, no query, no slash at the end.
+/// The longest base URL, bytes. A longer one is refused.
+const MAX_URL_BYTES: usize = 2000;
+
+/// A checked base URL: `http` or `https`, a host, and optionally a path. No password, no query, no slash at the end.
 #[derive(Clone, PartialEq, Eq)]
 pub(crate) struct BaseUrl {
     text: String,
@@ -19,7 +22,7 @@ impl BaseUrl {
     /// # Errors
     /// The message names the problem and leaves out the URL, because it may contain a password.
     pub(crate) fn new(text: &str, version: &str) -> Result<Self, &'static str> {
-        if text.len() > 2000 {
+        if text.len() > MAX_URL_BYTES {
             return Err("is too long");
         }
         let uri: Uri = text.trim().parse().map_err(|_| "is not a URL")?;
@@ -53,6 +56,7 @@ impl BaseUrl {
     }
 }
 
+/// Whether a host is this machine.
 fn is_loopback(host: &str) -> bool {
     let bare = host.trim_start_matches('[').trim_end_matches(']');
     bare.eq_ignore_ascii_case("localhost") || bare.parse().is_ok_and(|address: IpAddr| address.is_loopback())

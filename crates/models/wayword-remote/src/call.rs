@@ -24,21 +24,23 @@ const LOOK_UP: Duration = Duration::from_millis(100);
 /// How many times the program asks again after an empty answer.
 const EMPTY_AGAIN: u32 = 1;
 
-/// More tokens than any model takes or gives at once. A larger count is an error of the service. If the program
-/// believed it, all money would count as spent, and the limit on tokens would delay every request for years.
+/// More tokens than any model takes or gives at once. A service that reports more is wrong, and the program estimates
+/// the tokens instead. If it believed the service, all money would count as spent, and the limit on tokens would delay
+/// every request for years.
 const MOST_TOKENS: u64 = 20_000_000;
 
 /// A call that is ready to be sent.
 pub(crate) struct PreparedCall<'a> {
     pub(crate) endpoint: &'a ProviderEndpoint,
     pub(crate) run: &'a LedgerRun,
-    /// The ledger's key of the call, which seeds the waits.
+    /// The ledger's key of the call. The waits between attempts are drawn from it too.
     pub(crate) key: &'a str,
+    /// The request as it is sent.
     pub(crate) wire: &'a WireRequest,
     pub(crate) price: Option<&'a ModelPrice>,
     /// The size of the request, from which its tokens are estimated.
     pub(crate) size: RequestSize,
-    /// Most attempts.
+    /// Most attempts of this call.
     pub(crate) attempts: u32,
 }
 
@@ -49,7 +51,9 @@ pub(crate) struct RequestSize {
     pub(crate) chars: u64,
     /// Bytes of the characters that are not ASCII.
     pub(crate) other_bytes: u64,
+    /// How many pictures it has.
     pub(crate) pictures: u64,
+    /// The most tokens of the reply.
     pub(crate) max_tokens: u64,
 }
 
@@ -71,7 +75,7 @@ pub(crate) enum CallError {
 }
 
 impl CallError {
-    /// Its kind, in one word.
+    /// The kind of error, in one word.
     pub(crate) fn kind_name(&self) -> &'static str {
         match self {
             Self::Failed(_) => "failed",
@@ -84,7 +88,9 @@ impl CallError {
 
 /// The result of one attempt.
 enum AttemptOutcome {
+    /// The service replied, after this time. The reply may still be no answer.
     Heard(DialectReply, Duration),
+    /// The service did not reply, or not with what its API promises.
     Fault(RemoteFault),
     /// The run was stopped, or the endpoint closed, before anything was sent.
     NotSent,
@@ -94,12 +100,13 @@ enum AttemptOutcome {
 
 impl RequestSize {
     /// An upper bound of the request's tokens, for any tokenizer in use and for large pictures. Words have more than
-    /// two characters each; in a script that a tokenizer does not know, each byte is a token.
+    /// two characters each; in a script that a tokenizer does not know, each byte is a token. 16 more are for
+    /// what a service adds around the messages.
     pub(crate) fn most_tokens_in(self, tokens_per_picture: u64) -> u64 {
         (self.chars / 2 + self.other_bytes + 16).saturating_add(tokens_per_picture.saturating_mul(self.pictures))
     }
 
-    /// An estimate of the request's tokens.
+    /// An estimate of the request's tokens: four characters a token, and 800 tokens a picture.
     fn tokens_in(self) -> u64 {
         self.chars / 4 + 800 * self.pictures
     }
@@ -123,10 +130,10 @@ impl PreparedCall<'_> {
             self.check_open()?;
             attempts.begin_request(most_usd).map_err(CallError::Refused)?;
             let fault = match self.send_once(body.as_bytes()) {
-                AttemptOutcome::Heard(heard, latency) => match check_reply(&heard, self.endpoint) {
+                AttemptOutcome::Heard(reply, latency) => match check_reply(&reply, self.endpoint) {
                     Ok(()) => {
-                        let text = secret.map_or(heard.text.clone(), |secret| secret.scrub_key(heard.text.clone()));
-                        return Ok(self.ledger_answer(&heard, text, latency, attempt));
+                        let text = secret.map_or(reply.text.clone(), |secret| secret.scrub_key(reply.text.clone()));
+                        return Ok(self.ledger_answer(&reply, text, latency, attempt));
                     }
                     Err(fault) => {
                         empty += u32::from(matches!(fault, RemoteFault::Retry(_)));
@@ -152,8 +159,8 @@ impl PreparedCall<'_> {
                 return Err(if empty > EMPTY_AGAIN { CallError::Failed(reason) } else { CallError::Lost(reason) });
             }
             // Even if the service asks for short waits, the waits become longer and longer.
-            let asked = retry.after.map_or(Duration::ZERO, |asked| wait_after(asked, self.key, attempt));
-            self.wait_between_attempts(asked.max(backoff_wait(self.key, attempt)));
+            let requested = retry.after.map_or(Duration::ZERO, |requested| wait_after(requested, self.key, attempt));
+            self.wait_between_attempts(requested.max(backoff_wait(self.key, attempt)));
         }
     }
 
@@ -177,6 +184,7 @@ impl PreparedCall<'_> {
         }
     }
 
+    /// Fails if the service answers no calls any more.
     fn check_open(&self) -> Result<(), CallError> {
         self.endpoint.closed_reason().map_or(Ok(()), |closed| Err(CallError::Closed(closed.clone())))
     }
@@ -187,11 +195,12 @@ impl PreparedCall<'_> {
         while !self.run.is_stopped() && self.endpoint.closed_reason().is_none() {
             match until.saturating_duration_since(Instant::now()) {
                 Duration::ZERO => return,
-                left => thread::sleep(left.min(LOOK_UP)),
+                remaining => thread::sleep(remaining.min(LOOK_UP)),
             }
         }
     }
 
+    /// One attempt: waits for the limiter, sends the request, and reads the response.
     fn send_once(&self, body: &[u8]) -> AttemptOutcome {
         let endpoint = self.endpoint;
         let stopped = || self.run.is_stopped() || endpoint.closed_reason().is_some();
@@ -209,7 +218,7 @@ impl PreparedCall<'_> {
         }
         let received = endpoint.post_request(self.wire, body);
         let latency = permit.latency();
-        let heard = match received {
+        let reply = match received {
             Ok(received) => {
                 permit.adopt_limits(AdvertisedLimits::from_headers(
                     &received.headers,
@@ -221,17 +230,17 @@ impl PreparedCall<'_> {
                 Err(faults::of_transport(&error, None, endpoint.provider.base_url.as_str(), endpoint.fault_context()))
             }
         };
-        permit.end_with(match &heard {
-            Ok(heard) => RequestOutcome::Answered { tokens: self.count_tokens(heard).0 + self.count_tokens(heard).1 },
+        permit.end_with(match &reply {
+            Ok(reply) => RequestOutcome::Answered { tokens: self.count_tokens(reply).0 + self.count_tokens(reply).1 },
             Err(RemoteFault::Retry(RetryFault {
                 load: load @ (ServiceLoad::Slow | ServiceLoad::Over), after, ..
             })) => RequestOutcome::Burdened { load: *load, after: *after },
             Err(_) => RequestOutcome::Failed,
         });
-        heard.map_or_else(AttemptOutcome::Fault, |heard| AttemptOutcome::Heard(heard, latency))
+        reply.map_or_else(AttemptOutcome::Fault, |reply| AttemptOutcome::Heard(reply, latency))
     }
 
-    /// Reads a response.
+    /// Reads a response: a reply, or the fault that its status or its body reports.
     fn read_response(&self, received: &HttpResponse) -> Result<DialectReply, RemoteFault> {
         let (endpoint, status) = (self.endpoint, received.status);
         let fault = |body: &[u8]| {
@@ -265,20 +274,21 @@ impl PreparedCall<'_> {
     }
 
     /// Tokens in and out. Estimated where the service reports no number, or an impossible one.
-    fn count_tokens(&self, heard: &DialectReply) -> (u64, u64) {
-        let told = |tokens: Option<u64>| tokens.filter(|tokens| *tokens <= MOST_TOKENS);
-        let tokens_out = || heard.text.chars().count() as u64 / 4;
+    fn count_tokens(&self, reply: &DialectReply) -> (u64, u64) {
+        let plausible = |tokens: Option<u64>| tokens.filter(|tokens| *tokens <= MOST_TOKENS);
+        let tokens_out = || reply.text.chars().count() as u64 / 4;
         (
-            told(heard.tokens_in).unwrap_or_else(|| self.size.tokens_in()),
-            told(heard.tokens_out).unwrap_or_else(tokens_out),
+            plausible(reply.tokens_in).unwrap_or_else(|| self.size.tokens_in()),
+            plausible(reply.tokens_out).unwrap_or_else(tokens_out),
         )
     }
 
-    fn ledger_answer(&self, heard: &DialectReply, text: String, latency: Duration, attempts: u32) -> CallAnswer {
-        let (tokens_in, tokens_out) = self.count_tokens(heard);
+    /// A new answer for the ledger.
+    fn ledger_answer(&self, reply: &DialectReply, text: String, latency: Duration, attempts: u32) -> CallAnswer {
+        let (tokens_in, tokens_out) = self.count_tokens(reply);
         CallAnswer {
             text,
-            finish: if heard.end == ReplyEnd::Length { "length" } else { "stop" }.to_owned(),
+            finish: if reply.end == ReplyEnd::Length { "length" } else { "stop" }.to_owned(),
             tokens_in,
             tokens_out,
             usd: self.price.map(|price| price.cost_usd(tokens_in, tokens_out)),
@@ -288,17 +298,20 @@ impl PreparedCall<'_> {
     }
 }
 
-/// Whether a reply is an answer.
-fn check_reply(heard: &DialectReply, endpoint: &ProviderEndpoint) -> Result<(), RemoteFault> {
-    let lost = |reason: String| RemoteFault::Final { reason, maybe_paid: true };
-    match &heard.end {
-        ReplyEnd::Filtered(why) => {
-            Err(lost(format!("the service's filter blocked the answer ({})", endpoint.fault_context().safe_text(why))))
+/// Checks that a reply is an answer: not empty, not refused, not blocked.
+fn check_reply(reply: &DialectReply, endpoint: &ProviderEndpoint) -> Result<(), RemoteFault> {
+    let final_fault = |reason: String| RemoteFault::Final { reason, maybe_paid: true };
+    match &reply.end {
+        ReplyEnd::Filtered(why) => Err(final_fault(format!(
+            "the service's filter blocked the answer ({})",
+            endpoint.fault_context().safe_text(why)
+        ))),
+        ReplyEnd::Refused(why) => {
+            Err(final_fault(format!("the model refused: {}", endpoint.fault_context().safe_text(why))))
         }
-        ReplyEnd::Refused(why) => Err(lost(format!("the model refused: {}", endpoint.fault_context().safe_text(why)))),
-        ReplyEnd::Stop | ReplyEnd::Length if !heard.text.is_empty() => Ok(()),
+        ReplyEnd::Stop | ReplyEnd::Length if !reply.text.is_empty() => Ok(()),
         ReplyEnd::Stop => Err(RemoteFault::retry_without_wait("empty answer", true)),
-        ReplyEnd::Length => Err(lost(format!(
+        ReplyEnd::Length => Err(final_fault(format!(
             "the model spent all its tokens on thinking and gave no answer: set {} under [providers.{}]",
             endpoint.provider.dialect.without_thinking(),
             endpoint.provider.name

@@ -1,5 +1,5 @@
-//! Checks whether a model can be used, for `wayword doctor`: key, service, price, and an answer to a test question. Each
-//! finding comes with advice if something is wrong.
+//! Checks whether a model can be used, for `wayword doctor`: key, service, price, and an answer to a test question.
+//! Each finding comes with advice if something is wrong.
 
 use crate::{
     ModelServices, RemoteModel, ServiceDialect,
@@ -15,7 +15,7 @@ use wayword_core::{ChatMessage, Image, LanguageModel, ModelRequest, SamplingOpti
 /// Side of the test picture, pixels: large enough for every service.
 const SQUARE_PX: u32 = 64;
 
-/// Tokens that a model may use for a one-word answer. Some models think first.
+/// The most tokens of a reply to a test question. One word is enough, but some models think first.
 const MAX_TOKENS: u32 = 256;
 
 /// How good or bad a finding is.
@@ -32,7 +32,7 @@ pub enum CheckLevel {
 /// The result of one check.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ServiceFinding {
-    /// How good or bad it is.
+    /// How good or bad the finding is.
     pub level: CheckLevel,
     /// The finding, for people.
     pub what: String,
@@ -77,10 +77,10 @@ impl ModelServices {
             return findings;
         }
         check_price(&model, &mut findings);
-        let spoke = ServiceFinding::of_speaking(model.as_ref());
-        let speaks = spoke.level == CheckLevel::Ok;
-        findings.push(spoke);
-        if speaks && is_to_see {
+        let answering = ServiceFinding::of_speaking(model.as_ref());
+        let answers = answering.level == CheckLevel::Ok;
+        findings.push(answering);
+        if answers && is_to_see {
             findings.extend(ServiceFinding::of_seeing(model.as_ref()));
         }
         findings
@@ -166,12 +166,12 @@ fn check_service(model: &RemoteModel, findings: &mut Vec<ServiceFinding>) -> boo
     true
 }
 
-/// Whether a listed model is the named one. Ollama's `:latest` may be left out.
+/// Whether a model in a service's list is the named one. Ollama's `:latest` may be left out.
 fn is_same(listed: &str, named: &str) -> bool {
     listed == named.trim_start_matches("models/") || listed.strip_suffix(":latest") == Some(named)
 }
 
-/// The first names of a list, each shortened, because the list comes from the server.
+/// The first 12 names of a list, each cut to 80 characters, because the list comes from the server.
 fn list_models(models: &[&str], who: FaultContext<'_>) -> String {
     let names: Vec<String> =
         models.iter().take(12).map(|name| who.safe_text(name).chars().take(80).collect()).collect();
@@ -182,6 +182,7 @@ fn list_models(models: &[&str], who: FaultContext<'_>) -> String {
     }
 }
 
+/// Finds out whether the price of a model is known.
 fn check_price(model: &RemoteModel, findings: &mut Vec<ServiceFinding>) {
     findings.push(match model.price() {
         Some(price) if price.as_of.is_empty() => ServiceFinding::ok(format!("{} costs nothing", model.name())),
@@ -199,6 +200,7 @@ fn check_price(model: &RemoteModel, findings: &mut Vec<ServiceFinding>) {
     });
 }
 
+/// The reply to one message, or the text of the error.
 fn ask_once(model: &dyn LanguageModel, message: ChatMessage) -> Result<String, String> {
     let sampling = SamplingOptions { temperature: 0.0, max_tokens: MAX_TOKENS, seed: 0 };
     let request =
@@ -209,8 +211,8 @@ fn ask_once(model: &dyn LanguageModel, message: ChatMessage) -> Result<String, S
         .map_or_else(|| Err(String::new()), |reply| reply.map(|reply| reply.text).map_err(|error| error.to_string()))
 }
 
-/// A number that differs between checks, so that no check is answered from the ledger: an old answer does not show that
-/// the service works now.
+/// A replicate number that differs between checks, so that no check is answered from the ledger: an old answer does not
+/// show that the service works now.
 fn by_the_clock() -> u32 {
     let ms = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_millis());
     u32::try_from(ms & u128::from(u32::MAX)).unwrap_or_default()
@@ -237,8 +239,8 @@ impl ServiceFinding {
         let to_do = "choose another model for --see";
         Some(match ask_once(model, ChatMessage::about_images(text, vec![Arc::new(square)])) {
             Ok(colour) if colour.to_lowercase().contains("red") => Self::ok(format!("{} sees", model.name())),
-            Ok(said) => {
-                let what = format!("{} was shown a red square and said: {}", model.name(), faults::one_line(&said));
+            Ok(answer) => {
+                let what = format!("{} was shown a red square and said: {}", model.name(), faults::one_line(&answer));
                 Self::warning(what, to_do)
             }
             Err(error) => Self::warning(format!("{} was shown a picture and failed: {error}", model.name()), to_do),

@@ -1,6 +1,6 @@
 //! The user's settings for services, as they are read from TOML.
 
-use crate::{PriceTable, ServiceDialect};
+use crate::PriceTable;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
@@ -42,7 +42,7 @@ pub enum RequestConcurrency {
     Fixed(usize),
     /// As many as the service can take: starts at 8.
     Adaptive {
-        /// The most.
+        /// The most requests in flight at once.
         most: usize,
     },
 }
@@ -51,13 +51,13 @@ pub enum RequestConcurrency {
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ProviderConfig {
-    /// Its API.
+    /// The API of the provider.
     pub dialect: Option<ServiceDialect>,
-    /// Its address, up to the version (`https://api.openai.com/v1`).
+    /// The address of the provider, up to the version (`https://api.openai.com/v1`).
     pub base_url: Option<String>,
     /// Name of the environment variable with its key.
     pub key_env: Option<String>,
-    /// Whether it runs on this machine, free of charge.
+    /// Whether the provider runs on this machine, free of charge.
     pub local: Option<bool>,
     /// Whether none of its models takes pictures.
     pub blind: Option<bool>,
@@ -69,7 +69,7 @@ pub struct ProviderConfig {
     pub extra: Option<serde_json::Map<String, serde_json::Value>>,
     /// Those of `temperature`, `seed` and `max_tokens` that are not sent.
     pub omit: Option<Vec<String>>,
-    /// How a request asks it for a reply in JSON.
+    /// How a request asks the provider for a reply in JSON.
     pub json: Option<JsonMode>,
     /// Whether its models can call tools.
     pub tools: Option<bool>,
@@ -77,8 +77,25 @@ pub struct ProviderConfig {
     pub requests_per_minute: Option<f64>,
     /// Most tokens per minute, in and out.
     pub tokens_per_minute: Option<f64>,
-    /// Whether its `x-ratelimit` headers give the number of requests per day, and not per minute.
+    /// Whether the `x-ratelimit` headers of its responses give the number of requests per day, and not per minute.
     pub advertises_requests_per_day: Option<bool>,
+}
+
+/// A service's API.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ServiceDialect {
+    /// OpenAI's chat completions, which most other servers offer too.
+    #[serde(rename = "openai")]
+    OpenAi,
+    /// OpenAI's legacy completions: one prompt, no pictures.
+    Completions,
+    /// Anthropic's messages.
+    Anthropic,
+    /// Gemini's `generateContent`.
+    Gemini,
+    /// Ollama's own `/api/chat`.
+    Ollama,
 }
 
 /// How a request asks a service for a reply in JSON.
@@ -92,6 +109,33 @@ pub enum JsonMode {
     /// Only the prompt asks for it.
     #[default]
     Prompt,
+}
+
+impl ServiceDialect {
+    /// The name of the dialect in settings, errors and the ledger.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::OpenAi => "openai",
+            Self::Completions => "completions",
+            Self::Anthropic => "anthropic",
+            Self::Gemini => "gemini",
+            Self::Ollama => "ollama",
+        }
+    }
+
+    /// The path that is added to a base URL without one.
+    pub(crate) fn default_version_path(self) -> &'static str {
+        match self {
+            Self::Anthropic => "/v1",
+            Self::Gemini => "/v1beta",
+            Self::OpenAi | Self::Completions | Self::Ollama => "",
+        }
+    }
+
+    /// Whether a message of this dialect can hold pictures.
+    pub(crate) fn takes_pictures(self) -> bool {
+        self != Self::Completions
+    }
 }
 
 impl Default for RemoteConfig {
@@ -130,7 +174,7 @@ impl RequestConcurrency {
 }
 
 impl ProviderConfig {
-    /// These settings, with the fields that `other` has in their place.
+    /// These settings, with each field that `other` sets replaced by that of `other`.
     pub(crate) fn overridden_by(mut self, other: &Self) -> Self {
         macro_rules! take {
             ($($field:ident),*) => { $(if other.$field.is_some() { self.$field.clone_from(&other.$field); })* };

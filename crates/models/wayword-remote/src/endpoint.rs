@@ -11,7 +11,7 @@ use crate::{
 use std::{sync::OnceLock, time::Duration};
 use wayword_ledger::ProviderRates;
 
-/// Why no more requests are sent.
+/// Why no more requests are sent, and how the user can change this.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct ClosedEndpoint {
     pub(crate) reason: String,
@@ -30,14 +30,14 @@ pub(crate) struct ProviderEndpoint {
 }
 
 impl ProviderEndpoint {
-    /// With `shares_rates` the ledger enforces the user's rates for all workers together. Rates that the service
-    /// advertises are enforced here in both cases.
+    /// Opens a provider. Sends nothing. With `shares_rates` the ledger enforces the user's rates for all workers
+    /// together. Rates that the service advertises are enforced here in both cases.
     pub(crate) fn new(provider: RemoteProvider, config: &RemoteConfig, shares_rates: bool) -> Self {
-        let own = |rate: Option<f64>| rate.filter(|_| !shares_rates);
+        let local_rate = |rate: Option<f64>| rate.filter(|_| !shares_rates);
         let rules = LimiterRules {
             concurrency: config.concurrency,
-            requests_per_minute: own(provider.requests_per_minute),
-            tokens_per_minute: own(provider.tokens_per_minute),
+            requests_per_minute: local_rate(provider.requests_per_minute),
+            tokens_per_minute: local_rate(provider.tokens_per_minute),
         };
         let timeout = Duration::from_secs_f64(config.timeout_s);
         Self {
@@ -111,6 +111,7 @@ impl ProviderEndpoint {
             .get(&self.provider.base_url.with_path(self.provider.dialect.models_path()), &self.request_headers())
     }
 
+    /// The headers of every request, with the key.
     fn request_headers(&self) -> Vec<(&'static str, String)> {
         let dialect = self.provider.dialect;
         let mut headers: Vec<_> =

@@ -2,15 +2,23 @@
 //! one of their APIs.
 //!
 //! Each dialect (API) is one file with two pure functions: one makes a request's body, one reads a reply's body. The
-//! other parts are a transport, a module that classifies faults, a limiter for each endpoint, and the ledger, which makes
-//! each call once.
+//! other parts are a transport, a module that classifies faults, a limiter for each endpoint, and the ledger, which
+//! makes each call once.
 //!
 //! The crate `genai` does the same job. It is not used, because it reads a response's body without a limit, puts the
 //! whole request with its pictures and the whole body into its errors, refuses JSON with another content type, has no
 //! completions endpoint, and hides the headers of successful responses, so that advertised rate limits cannot be kept.
 //!
-//! Architecture invariant: a key is only in [`ServiceSecret`]'s module and in the header that carries it. It is removed from
-//! every text of a server before anything else uses the text.
+//! Architecture invariant: a key is only in [`ServiceSecret`]'s module and in the header that carries it. It is removed
+//! from every text of a server before anything else uses the text.
+//!
+//! # Where things are
+//! - `provider.toml`, `prices.toml`: all providers, and all prices.
+//! - `dialect/`: one file for each API, with its tools and structured answers.
+//! - `faults/`: what a fault means (`mod.rs`, `error_body.rs`), and how long the service asks to wait (`delay.rs`, `times.rs`).
+//! - `limiter/`: how fast requests are sent.
+//! - `check`, `ready`: what `doctor` and a run find out before the first call.
+//! - `secret`: where a key comes from, and how it is removed from texts.
 
 mod backoff;
 mod base_url;
@@ -32,8 +40,7 @@ mod services;
 mod transport;
 
 pub use check::{CheckLevel, ServiceFinding};
-pub use config::{JsonMode, ProviderConfig, RemoteConfig, RequestConcurrency};
-pub use dialect::ServiceDialect;
+pub use config::{JsonMode, ProviderConfig, RemoteConfig, RequestConcurrency, ServiceDialect};
 pub use error::{ConfigError, PricesError};
 pub use model::RemoteModel;
 pub use prices::{ModelPrice, PriceTable};

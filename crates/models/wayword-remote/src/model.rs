@@ -28,6 +28,7 @@ pub struct RemoteModel {
     pub(crate) name: String,
     pub(crate) endpoint: Arc<ProviderEndpoint>,
     pub(crate) run: LedgerRun,
+    /// Encodes the pictures of requests. All models share it.
     pub(crate) pictures: Arc<PictureEncoder>,
     pub(crate) price: Option<ModelPrice>,
     /// Most attempts per call.
@@ -37,18 +38,19 @@ pub struct RemoteModel {
 }
 
 impl RemoteModel {
-    /// Its price, if it is known.
+    /// The price of the model, if it is known.
     #[must_use]
     pub fn price(&self) -> Option<&ModelPrice> {
         self.price.as_ref()
     }
 
+    /// The reply to one request, from the ledger or from the service.
     fn complete_one(&self, request: &ModelRequest) -> Result<ModelReply, ModelError> {
         let lines = self.encode_messages(&request.messages).map_err(|reason| self.failed_error(reason))?;
         let call = self.ledger_call(request, &lines);
         let key = call.key();
-        let asked = self.run.answer_once(&call, |attempts| {
-            let asked = DialectRequest {
+        let answer = self.run.answer_once(&call, |attempts| {
+            let dialect_request = DialectRequest {
                 provider: &self.endpoint.provider,
                 model: self.model_name(),
                 lines: &lines,
@@ -56,9 +58,9 @@ impl RemoteModel {
                 schema: request.schema,
                 tools: request.tools,
             };
-            let wire = self.endpoint.provider.dialect.to_wire(asked);
+            let wire = self.endpoint.provider.dialect.to_wire(dialect_request);
             let wire = wire.map_err(|reason| CallError::Failed(reason.to_owned()))?;
-            let sending = PreparedCall {
+            let prepared = PreparedCall {
                 endpoint: &self.endpoint,
                 run: &self.run,
                 key: key.as_str(),
@@ -67,16 +69,17 @@ impl RemoteModel {
                 size: request_size(request),
                 attempts: self.attempts,
             };
-            sending.make_call(attempts).inspect_err(|error| attempts.fails_as(error.kind_name()))
+            prepared.make_call(attempts).inspect_err(|error| attempts.fails_as(error.kind_name()))
         });
-        asked.map(reply_from_answer).map_err(|error| self.model_error(error))
+        answer.map(reply_from_answer).map_err(|error| self.model_error(error))
     }
 
-    /// The part of its name after the provider's.
+    /// The part of the model's name after the provider's.
     pub(crate) fn model_name(&self) -> &str {
         self.name.split_once('/').map_or("", |(_, model)| model)
     }
 
+    /// Messages that are ready to be sent, with their pictures encoded.
     fn encode_messages(&self, messages: &[ChatMessage]) -> Result<Vec<RemoteMessage>, String> {
         let line = |message: &ChatMessage| {
             let pictures = message.images.iter().map(|image| self.pictures.encode(image)).collect::<Result<_, _>>()?;
@@ -106,32 +109,32 @@ impl RemoteModel {
             Value::Object(message)
         };
         let sampling = &request.sampling;
-        let mut asked = Map::new();
-        asked.insert("dialect".to_owned(), provider.dialect.name().into());
-        asked.insert("messages".to_owned(), lines.iter().map(message).collect());
-        asked.insert("temperature".to_owned(), sampling.temperature.into());
-        asked.insert("max_tokens".to_owned(), sampling.max_tokens.into());
-        asked.insert("seed".to_owned(), sampling.seed.into());
+        let mut fields = Map::new();
+        fields.insert("dialect".to_owned(), provider.dialect.name().into());
+        fields.insert("messages".to_owned(), lines.iter().map(message).collect());
+        fields.insert("temperature".to_owned(), sampling.temperature.into());
+        fields.insert("max_tokens".to_owned(), sampling.max_tokens.into());
+        fields.insert("seed".to_owned(), sampling.seed.into());
         if let Some(schema) = request.schema.filter(|_| provider.json != JsonMode::Prompt) {
-            asked.insert(
+            fields.insert(
                 "schema".to_owned(),
                 json!({ "name": schema.name, "way": format!("{:?}", provider.json), "json": schema.json }),
             );
         }
         if provider.tools && !request.tools.is_empty() {
             let tool = |tool: &ModelTool| json!({ "name": tool.name, "does": tool.does, "arguments": tool.arguments });
-            asked.insert("tools".to_owned(), request.tools.iter().map(tool).collect());
+            fields.insert("tools".to_owned(), request.tools.iter().map(tool).collect());
         }
         if !provider.extra.is_empty() {
-            asked.insert("extra".to_owned(), provider.extra.clone().into());
+            fields.insert("extra".to_owned(), provider.extra.clone().into());
         }
         if !provider.omit.is_empty() {
-            asked.insert("omit".to_owned(), provider.omit.clone().into());
+            fields.insert("omit".to_owned(), provider.omit.clone().into());
         }
         ModelCall {
             model: self.name.clone(),
             base_url: provider.base_url.as_str().to_owned(),
-            request: asked.into(),
+            request: fields.into(),
             replicate: request.replicate,
         }
     }
@@ -149,7 +152,7 @@ impl RemoteModel {
             }
             OnceError::Call(CallError::Refused(refused)) | OnceError::Refused(refused) => stopped_error(&refused),
             OnceError::Ledger(error) => stopped_error(&RequestRefusedError::Ledger(error)),
-            // The item also failed when the recording was made.
+            // A replay of a recorded run has no answer only where the item also failed in the recorded run.
             missing @ OnceError::NotRecorded { .. } => {
                 self.failed_error(missing.to_string().lines().next().unwrap_or("not recorded"))
             }
@@ -163,10 +166,11 @@ fn stopped_error(refused: &RequestRefusedError) -> ModelError {
     ModelError::Stopped { reason, hint, is_lost: refused.is_lost() }
 }
 
+/// The size of a request. 16 characters are added for each message and tool, for the JSON around it.
 fn request_size(request: &ModelRequest) -> RequestSize {
-    let of_tools = |tool: &ModelTool| (tool.name.len() + tool.does.len() + tool.arguments.len()) as u64 + 16;
-    let of_messages = request.messages.iter().map(|message| message.text.chars().count() as u64 + 16);
-    let chars = of_messages.chain(request.tools.iter().map(of_tools)).sum();
+    let tool_chars = |tool: &ModelTool| (tool.name.len() + tool.does.len() + tool.arguments.len()) as u64 + 16;
+    let message_chars = request.messages.iter().map(|message| message.text.chars().count() as u64 + 16);
+    let chars = message_chars.chain(request.tools.iter().map(tool_chars)).sum();
     let other_bytes = |message: &ChatMessage| message.text.bytes().filter(|byte| !byte.is_ascii()).count() as u64;
     let other_bytes = request.messages.iter().map(other_bytes).sum();
     let pictures = request.messages.iter().map(|message| message.images.len() as u64).sum();
@@ -189,7 +193,7 @@ impl LanguageModel for RemoteModel {
         if let [only] = requests {
             return vec![self.complete_one(only)];
         }
-        let occasion = CallContext::from_current_thread();
+        let context = CallContext::from_current_thread();
         let next = AtomicUsize::new(0);
         let work = || {
             let mut done = Vec::new();
@@ -201,7 +205,7 @@ impl LanguageModel for RemoteModel {
         let mut results: Vec<Option<Result<ModelReply, ModelError>>> = requests.iter().map(|_| None).collect();
         thread::scope(|scope| {
             let threads: Vec<_> =
-                (0..self.threads.min(requests.len())).map(|_| scope.spawn(|| occasion.run_within(work))).collect();
+                (0..self.threads.min(requests.len())).map(|_| scope.spawn(|| context.run_within(work))).collect();
             for (at, result) in threads.into_iter().filter_map(|thread| thread.join().ok()).flatten() {
                 results[at] = Some(result);
             }
@@ -213,6 +217,7 @@ impl LanguageModel for RemoteModel {
     }
 }
 
+/// The next request that no thread works on yet, with its index.
 fn take_next<'a>(next: &AtomicUsize, requests: &'a [ModelRequest]) -> Option<(usize, &'a ModelRequest)> {
     let at = next.fetch_add(1, Ordering::Relaxed);
     requests.get(at).map(|request| (at, request))

@@ -4,12 +4,13 @@ use base64::{Engine, engine::general_purpose::STANDARD};
 use image::{ImageBuffer, Rgb, codecs::jpeg::JpegEncoder, imageops};
 use sha2::{Digest, Sha256};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
-use wayword_core::Image;
+use wayword_core::{Image, hex_text};
 
 /// JPEG quality: high enough that a model sees no block edges as texture.
 const JPEG_QUALITY: u8 = 90;
 
-/// How many frames are remembered: as many as are in use at the same time, and a few more.
+/// The most frames that are remembered: as many as are in use at the same time, and a few more. The oldest is
+/// forgotten.
 const MAX_REMEMBERED_FRAMES: usize = 128;
 
 /// An encoded picture.
@@ -21,11 +22,13 @@ pub(crate) struct EncodedPicture {
     pub(crate) sha256: String,
 }
 
+/// The encoded picture of one frame, or the problem with it; empty until a thread has encoded the frame.
 type PictureSlot = Arc<OnceLock<Result<Arc<EncodedPicture>, String>>>;
 
 /// Encodes pictures, and remembers the pictures of frames that are still in use.
 pub(crate) struct PictureEncoder {
     longer_px: u32,
+    /// The frames that are remembered, the oldest first.
     known: Mutex<Vec<(Weak<Image>, PictureSlot)>>,
 }
 
@@ -49,6 +52,7 @@ impl PictureEncoder {
         self.slot_for(image).get_or_init(|| encode_picture(image, self.longer_px).map(Arc::new)).clone()
     }
 
+    /// The slot of a frame: the one that is remembered, or a new one.
     fn slot_for(&self, image: &Arc<Image>) -> PictureSlot {
         let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
         // A weak pointer keeps the address from being used for another image, so that equal addresses mean the same
@@ -66,7 +70,7 @@ impl PictureEncoder {
     }
 }
 
-/// Scales down, never up, and encodes.
+/// Scales a picture down, never up, and encodes it.
 fn encode_picture(image: &Image, longer_px: u32) -> Result<EncodedPicture, String> {
     let (width, height) = (image.width_px(), image.height_px());
     if width == 0 || height == 0 {
@@ -84,7 +88,7 @@ fn encode_picture(image: &Image, longer_px: u32) -> Result<EncodedPicture, Strin
         None => encoder.encode(image.rgb_bytes(), width, height, image::ExtendedColorType::Rgb8),
     };
     encoded.map_err(|error| format!("a picture cannot be encoded: {error}"))?;
-    Ok(EncodedPicture { sha256: hex_text(&Sha256::digest(&jpeg)), base64: STANDARD.encode(&jpeg) })
+    Ok(EncodedPicture { sha256: hex_text(Sha256::digest(&jpeg)), base64: STANDARD.encode(&jpeg) })
 }
 
 /// The smaller size, if the picture has to shrink.
@@ -95,10 +99,6 @@ fn scaled_down(width: u32, height: u32, longer_px: u32) -> Option<(u32, u32)> {
         u32::try_from(exact).unwrap_or(longer_px).max(1)
     };
     (longer > longer_px).then(|| (scale(width), scale(height)))
-}
-
-fn hex_text(bytes: &[u8]) -> String {
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 #[cfg(test)]

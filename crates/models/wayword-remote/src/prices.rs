@@ -4,6 +4,7 @@ use crate::PricesError;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
+/// The built-in table, as TOML.
 const BUILT_IN: &str = include_str!("prices.toml");
 
 /// The price of a model.
@@ -21,6 +22,7 @@ pub struct ModelPrice {
     pub tokens_per_picture: u64,
 }
 
+/// The most tokens that a picture counts as, where a row of the table has no number of its own.
 fn tokens_per_picture() -> u64 {
     1600
 }
@@ -62,15 +64,17 @@ impl PriceTable {
     /// # Errors
     /// When the text is not a table of prices, or an amount is negative.
     pub fn from_toml(text: &str) -> Result<Self, PricesError> {
-        let own: BTreeMap<String, ModelPrice> =
+        let user_rows: BTreeMap<String, ModelPrice> =
             toml::from_str(text).map_err(|error| PricesError::Toml(error.to_string()))?;
-        let sound = |usd: f64| usd.is_finite() && usd >= 0.0;
-        let wrong = own.iter().find(|(_, price)| !sound(price.usd_per_million_in) || !sound(price.usd_per_million_out));
+        let is_amount = |usd: f64| usd.is_finite() && usd >= 0.0;
+        let wrong = user_rows
+            .iter()
+            .find(|(_, price)| !is_amount(price.usd_per_million_in) || !is_amount(price.usd_per_million_out));
         if let Some((name, _)) = wrong {
             return Err(PricesError::Amount(name.clone()));
         }
         let mut prices = Self::built_in();
-        prices.0.extend(own);
+        prices.0.extend(user_rows);
         Ok(prices)
     }
 

@@ -4,12 +4,13 @@ use crate::{ConfigError, JsonMode, ProviderConfig, RemoteConfig, ServiceDialect,
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 
+/// The built-in table, as TOML.
 const BUILT_IN: &str = include_str!("provider.toml");
 
-/// Longest name of a model.
+/// Longest name of a model, bytes. A longer one is refused.
 const LONGEST_NAME: usize = 200;
 
-/// A provider with all its settings.
+/// A provider with all its settings. The fields are those of [`ProviderConfig`], with defaults filled in.
 #[derive(Debug, Clone)]
 pub(crate) struct RemoteProvider {
     pub(crate) name: String,
@@ -54,9 +55,9 @@ pub(crate) fn split_name(name: &str) -> Result<(&str, &str), ConfigError> {
 
 impl ProviderTable {
     /// The built-in table with the user's settings over it.
-    pub(crate) fn new(own: &BTreeMap<String, ProviderConfig>) -> Self {
+    pub(crate) fn new(settings: &BTreeMap<String, ProviderConfig>) -> Self {
         let mut table = built_in();
-        for (name, config) in own {
+        for (name, config) in settings {
             let known = table.remove(name).unwrap_or_default();
             table.insert(name.clone(), known.overridden_by(config));
         }
@@ -73,32 +74,32 @@ impl ProviderTable {
     /// # Errors
     /// When there is no provider of that name, or one of its settings is missing or wrong.
     pub(crate) fn resolve_provider(&self, name: &str, config: &RemoteConfig) -> Result<RemoteProvider, ConfigError> {
-        let own = self.0.get(name).ok_or_else(|| ConfigError::NoProvider {
+        let settings = self.0.get(name).ok_or_else(|| ConfigError::NoProvider {
             provider: name.to_owned(),
             known: self.provider_names().join(", "),
         })?;
-        let dialect = own.dialect.ok_or_else(|| ConfigError::NoDialect(name.to_owned()))?;
-        let url = config.base_url.as_ref().or(own.base_url.as_ref());
+        let dialect = settings.dialect.ok_or_else(|| ConfigError::NoDialect(name.to_owned()))?;
+        let url = config.base_url.as_ref().or(settings.base_url.as_ref());
         let url = url.ok_or_else(|| ConfigError::NoBaseUrl(name.to_owned()))?;
         let base_url = BaseUrl::new(url, dialect.default_version_path())
             .map_err(|problem| ConfigError::BaseUrl { provider: name.to_owned(), problem })?;
-        let text = |field: &Option<String>, usual: &str| field.clone().unwrap_or_else(|| usual.to_owned());
+        let text = |field: &Option<String>, default: &str| field.clone().unwrap_or_else(|| default.to_owned());
         let provider = RemoteProvider {
             name: name.to_owned(),
             dialect,
             base_url,
-            key_env: config.key_env.clone().or_else(|| own.key_env.clone()),
-            local: own.local.unwrap_or(false),
-            blind: own.blind.unwrap_or(false) || !dialect.takes_pictures(),
-            max_tokens_field: text(&own.max_tokens_field, "max_tokens"),
-            seed_field: text(&own.seed_field, "seed"),
-            extra: own.extra.clone().unwrap_or_default(),
-            omit: own.omit.clone().unwrap_or_default(),
-            json: own.json.unwrap_or_default(),
-            tools: own.tools.unwrap_or(false),
-            requests_per_minute: own.requests_per_minute.or(config.requests_per_minute),
-            tokens_per_minute: own.tokens_per_minute.or(config.tokens_per_minute),
-            advertises_requests_per_day: own.advertises_requests_per_day.unwrap_or(false),
+            key_env: config.key_env.clone().or_else(|| settings.key_env.clone()),
+            local: settings.local.unwrap_or(false),
+            blind: settings.blind.unwrap_or(false) || !dialect.takes_pictures(),
+            max_tokens_field: text(&settings.max_tokens_field, "max_tokens"),
+            seed_field: text(&settings.seed_field, "seed"),
+            extra: settings.extra.clone().unwrap_or_default(),
+            omit: settings.omit.clone().unwrap_or_default(),
+            json: settings.json.unwrap_or_default(),
+            tools: settings.tools.unwrap_or(false),
+            requests_per_minute: settings.requests_per_minute.or(config.requests_per_minute),
+            tokens_per_minute: settings.tokens_per_minute.or(config.tokens_per_minute),
+            advertises_requests_per_day: settings.advertises_requests_per_day.unwrap_or(false),
         };
         provider.into_validated()
     }
@@ -110,6 +111,7 @@ impl RemoteProvider {
         !self.omit.iter().any(|omitted| omitted == field)
     }
 
+    /// Checks the settings that could be wrong.
     fn into_validated(self) -> Result<Self, ConfigError> {
         let wrong = |field: &str, problem| ConfigError::Setting {
             setting: format!("providers.{}.{field}", self.name),

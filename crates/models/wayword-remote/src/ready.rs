@@ -1,5 +1,5 @@
-//! Checks, before a run begins, whether a model can be used: its key, its address, and whether it takes pictures. Sends no
-//! question to the model.
+//! Checks, before a run begins, whether a model can be used: its key, its address, and whether it takes pictures. Sends
+//! no question to the model.
 
 use crate::{ConfigError, ModelServices, RemoteModel, base_url::BaseUrl, endpoint::ProviderEndpoint};
 use std::{
@@ -70,7 +70,7 @@ impl ModelServices {
         Ok(self.model(name)?.endpoint.provider.base_url.as_str().to_owned())
     }
 
-    /// Whether a test connection is meaningful. It is not through a proxy, nor for remote services.
+    /// Whether a test connection shows something. It shows nothing through a proxy, and remote services are not tested.
     fn is_reached_directly(&self, endpoint: &ProviderEndpoint) -> bool {
         let provider = &endpoint.provider;
         let is_near = provider.local || self.has_own_address(&provider.name);
@@ -87,6 +87,7 @@ fn describes_sight(model: &RemoteModel) -> Option<bool> {
     dialect.describes_sight(&serde_json::from_slice(&body).ok()?)
 }
 
+/// Refuses a provider if no server accepts a connection at its address.
 fn lets_in(endpoint: &ProviderEndpoint) -> Result<(), ConfigError> {
     let provider = &endpoint.provider;
     let (name, url) = (&provider.name, provider.base_url.as_str());
@@ -110,11 +111,13 @@ fn lets_in(endpoint: &ProviderEndpoint) -> Result<(), ConfigError> {
 
 /// Why no connection is possible.
 enum ConnectProblem {
+    /// The machine is there, but no program listens at the port.
     Port,
+    /// There is no machine of this name.
     Host(String),
 }
 
-/// Checks whether a server accepts a connection, or may accept one later.
+/// Checks whether a server accepts a connection, or may accept one later: only a refused connection is a problem.
 fn try_connect(url: &BaseUrl) -> Result<(), ConnectProblem> {
     let Some((host, port)) = host_and_port(url) else { return Ok(()) };
     let addresses: Vec<SocketAddr> =

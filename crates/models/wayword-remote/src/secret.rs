@@ -5,8 +5,8 @@ use std::fmt;
 /// The text that replaces a key.
 const KEY_MASK: &str = "***";
 
-/// Shorter keys are placeholders of local servers ("none", "EMPTY"). Removing them from every text would damage the
-/// text.
+/// The shortest key that is removed from texts, bytes. Shorter keys are placeholders of local servers ("none",
+/// "EMPTY"). Removing them from every text would damage the text.
 const SHORTEST_SCRUBBED: usize = 8;
 
 /// A key. Neither `Debug` nor `Display` shows it.

@@ -14,13 +14,13 @@ use std::{
 };
 use wayword_ledger::LedgerRun;
 
-/// Longest timeout of an attempt, seconds.
+/// Longest timeout of an attempt that a user may set, seconds.
 const LONGEST_TIMEOUT_S: f64 = 3600.0;
 
-/// Highest setting for requests at once.
+/// The most requests at once that a user may set.
 const MOST_CONCURRENCY: usize = 4096;
 
-/// Highest setting for the longer side of a picture, pixels.
+/// The longest side of a picture that a user may set, pixels.
 const LARGEST_PICTURE_PX: u32 = 8192;
 
 /// Finds models by their names. Models of one provider share its connections and limits.
@@ -39,10 +39,10 @@ impl ModelServices {
     /// When a setting is out of range.
     pub fn new(config: RemoteConfig, run: LedgerRun) -> Result<Self, ConfigError> {
         let wrong = |setting: &str, problem| Err(ConfigError::Setting { setting: setting.to_owned(), problem });
-        let most = match config.concurrency {
+        let max_in_flight = match config.concurrency {
             RequestConcurrency::Fixed(most) | RequestConcurrency::Adaptive { most } => most,
         };
-        if !(1..=MOST_CONCURRENCY).contains(&most) {
+        if !(1..=MOST_CONCURRENCY).contains(&max_in_flight) {
             return wrong("concurrency", "must be from 1 to 4096");
         }
         if !(1..=LARGEST_PICTURE_PX).contains(&config.picture_px) {
@@ -93,8 +93,8 @@ impl ModelServices {
     /// The price of a model. A local provider is free on this machine. At another address it counts as free only if the
     /// user sets no limit on money, because the same software may be a paid service there.
     fn find_price(&self, name: &str, provider: &RemoteProvider) -> Option<ModelPrice> {
-        let at_home = provider.local && (provider.base_url.loopback || !self.config.needs_prices);
-        self.config.prices.for_model(name).or_else(|| at_home.then(ModelPrice::free_of_charge))
+        let is_free = provider.local && (provider.base_url.loopback || !self.config.needs_prices);
+        self.config.prices.for_model(name).or_else(|| is_free.then(ModelPrice::free_of_charge))
     }
 
     /// The names of all providers.
@@ -105,18 +105,19 @@ impl ModelServices {
 
     /// Whether the user has given a provider's address.
     pub(crate) fn has_own_address(&self, provider: &str) -> bool {
-        let own = self.config.providers.get(provider).and_then(|own| own.base_url.as_ref());
-        self.config.base_url.is_some() || own.is_some()
+        let own_url = self.config.providers.get(provider).and_then(|settings| settings.base_url.as_ref());
+        self.config.base_url.is_some() || own_url.is_some()
     }
 
+    /// The endpoint of a provider, which is opened at the first call.
     fn endpoint_for(&self, provider: &str) -> Result<Arc<ProviderEndpoint>, ConfigError> {
         let mut endpoints = self.endpoints.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(endpoint) = endpoints.get(provider) {
             return Ok(Arc::clone(endpoint));
         }
         let resolved = self.table.resolve_provider(provider, &self.config)?;
-        let for_one = self.config.base_url.is_some() || self.config.key_env.is_some();
-        if let (true, Some(first)) = (for_one, endpoints.keys().next()) {
+        let is_for_one_provider = self.config.base_url.is_some() || self.config.key_env.is_some();
+        if let (true, Some(first)) = (is_for_one_provider, endpoints.keys().next()) {
             return Err(ConfigError::Several { first: first.clone(), second: provider.to_owned() });
         }
         let endpoint = Arc::new(ProviderEndpoint::new(resolved, &self.config, self.run.shares_rates()));
@@ -134,6 +135,7 @@ impl fmt::Debug for ModelServices {
 
 /// Whether settings remove the token limit from a request, replace it, or ask for several answers at once.
 fn changes_the_limit(provider: &RemoteProvider) -> bool {
+    // Fields of a request's body that do so in one of the dialects.
     const IN_BODY: [&str; 8] = [
         "max_tokens",
         "max_completion_tokens",

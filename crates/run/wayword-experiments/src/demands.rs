@@ -36,7 +36,8 @@ impl<'a> PlatformDemands<'a> {
     /// When the scene cannot be read.
     pub fn for_episode(&self, episode: &Episode) -> Result<(Arc<SceneDistances>, EpisodeDemand), CommandError> {
         let distances = self.scene_distances(&episode.scene)?;
-        let visible = episode.target_object.as_ref().map(|object| self.platform.visible_from(&episode.scene, object));
+        let visible =
+            episode.target_object.as_ref().map(|object| self.platform.catalogue().visible_from(&episode.scene, object));
         let demand = EpisodeDemand {
             reference: episode.viewpoints.clone(),
             object: episode.target_object.clone(),

@@ -1,5 +1,16 @@
 //! Turns runs into files for others: HTML reports for people (`pages`), datasets for other programs (`export`), and pictures, maps
 //! and films of scenes (`view`).
+//!
+//! # Where things are
+//! - `export/args.rs`, `mod.rs`: formats and their flags; `items.rs`: records as items; `splits.rs`: the split of a text.
+//! - `export/duet.rs`, `table.rs`, `habitat_scenes.rs`: files for agents, Parquet, and the scenes and distances of VLN-CE.
+//! - `export/card/`: the dataset card, its text in `card.md`.
+//! - `export/steps/`: walks in single actions: settings, parts of a text, pictures and shards, walking again.
+//! - `export/highlight.rs`, `pages/doubts/`: words to doubt.
+//! - `pages/item_order.rs`, `rows.rs`, `report_files.rs`, `page.rs`: which items a report shows, the list of texts, the files, the head; the templates
+//!   lie beside them.
+//! - `pages/comparison/`, `pages/replay/`: tables, page and replays of a comparison.
+//! - `view/path/`, `view/film/`, `view/map/`: what `wayword view` writes.
 
 pub mod export;
 pub mod pages;

@@ -32,6 +32,10 @@ pub struct CalibrateArgs {
     pub out: PathBuf,
 }
 
+/// Runs `wayword calibrate`: fits names to people's texts about a platform's paths, and writes the file.
+///
+/// # Errors
+/// When the platform cannot be opened, the texts cannot be read, or the file cannot be written.
 pub fn run_calibrate(args: &CalibrateArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
     let platform = platforms::open_platform(&AskedSettings::from(args.platform.clone()).resolve()?)?;
     let (walks, surveys) = read_people_walks(platform.as_ref(), &args.from)?;

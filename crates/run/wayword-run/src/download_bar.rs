@@ -16,6 +16,7 @@ pub struct DownloadBar {
 }
 
 impl DownloadBar {
+    /// A bar that is drawn by `output`.
     pub fn new(output: &CommandOutput) -> Self {
         Self { output: output.clone(), bar: output.bytes_bar(), file: Mutex::default() }
     }

@@ -43,7 +43,7 @@ pub fn run_items(settings: &RunSettings, platform: &dyn Platform) -> Result<Vec<
         };
         return Err(CommandError::usage(problem, "check --episodes and --scan"));
     }
-    platform.check_scenes(&items.iter().map(RunItem::scene).collect())?;
+    platform.files().check_scenes(&items.iter().map(RunItem::scene).collect())?;
     Ok(items)
 }
 
@@ -64,7 +64,7 @@ fn episode_items(
         |episode: &Episode| settings.scan.is_empty() || settings.scan.iter().any(|scan| scan == episode.scene.as_str());
     // Every scene gets its one official name, because under two names it could come into two splits.
     let called = |mut episode: Episode| {
-        episode.scene = platform.canonical_scene(&episode.scene);
+        episode.scene = platform.files().canonical_scene(&episode.scene);
         episode
     };
     Ok(episodes.into_iter().filter(wanted).map(called).map(|episode| RunItem::Episode(Box::new(episode))).collect())
@@ -79,7 +79,7 @@ fn random_items(settings: &RunSettings, platform: &dyn Platform) -> Result<Vec<R
             continue;
         }
         platform.graph_for_scene(&scene)?;
-        scenes.push(platform.canonical_scene(&scene));
+        scenes.push(platform.files().canonical_scene(&scene));
     }
     if settings.scan.is_empty() {
         scenes = platform.list_scenes()?;
@@ -90,7 +90,7 @@ fn random_items(settings: &RunSettings, platform: &dyn Platform) -> Result<Vec<R
     }
     // A single scene without walkable ground is refused here; otherwise every item of the run would fail.
     if let [scene] = &scenes[..] {
-        platform.ground_islands(scene)?;
+        platform.ground().ground_islands(scene)?;
     }
     let scenes: Arc<[SceneId]> = scenes.into();
     let item = |number: usize| RunItem::Random {

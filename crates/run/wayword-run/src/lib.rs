@@ -2,6 +2,21 @@
 //! commands `generate`, `check` and `calibrate`.
 //!
 //! The command line, the reports, the experiments and the Python package are built on this crate.
+//!
+//! # Where things are
+//! - `settings/asked_settings.rs`, `roles.rs`, `service.rs`: a flag or a key of the settings file; `settings/mod.rs` if the run folder keeps it.
+//!   `settings/sources.rs` is `--evidence`.
+//! - [`plan`]: everything that is fixed before a run begins; `plan/estimate.rs`: calls, tokens and cost.
+//! - [`team`]: what plays a role. [`lookout`]: the detector of a run. [`calls`]: models by name, the ledger, readiness.
+//! - [`pipeline`]: how one item is made. [`in_order`], [`parallel`]: which work is done at the same time.
+//! - [`run_folder`]: what a run keeps and how it continues; `run_folder/world_data.rs`: which files may not change; `folder_lock.rs`: one process at a time.
+//! - `generate/keep.rs`, `progress.rs`: what becomes of failed items; `losses`: when a run ends because of them; `pace.rs`: the time left.
+//! - `generate/workers/`: one worker of many. [`stores`]: addresses of object stores in place of folders.
+//! - [`check`]: `check/worlds.rs` chooses the world of a text, `detecting.rs` is `--detector`, `run_texts.rs` for texts edited after an export.
+//! - [`follow`], [`doubts`], [`walk_ranking`]: what the program does with the follower.
+//! - [`platforms`]: platforms by name. [`scene_selection`]: which scenes a run leaves out. [`terms`]: what needs `--i-have-the-right`.
+//! - [`error`]: errors and exit codes. [`interrupt`]: Ctrl-C and signals. [`output`]: the only place that prints.
+//! - [`own_format`]: format and version at the head of our files. [`watch`]: spans, with `lines.rs` and `telemetry/`.
 
 pub mod calibrate;
 pub mod calibration;

@@ -63,7 +63,9 @@ pub const MOST_SIDE_PX: u32 = 4096;
 pub struct StoredPicture {
     /// The bytes of the JPEG file.
     pub jpeg: Vec<u8>,
+    /// Its width, pixels.
     pub width_px: u32,
+    /// Its height, pixels.
     pub height_px: u32,
 }
 

@@ -123,8 +123,8 @@ pub fn write_item(
     let detector = team.lookout().map(DetectorLookout::name);
     let mut evidence = collect_evidence(&walk, &world, settings.evidence, detector)?;
     // With labels, the writer's memory has everything that they list around each frame; with a model, what its captions name.
-    let sees_labels = team.observers().answerer.name() == "labels" && evidence.source == EvidenceSource::Labels;
-    let memory = if sees_labels { WalkMemory::from_path(&evidence, &walk.path) } else { walk.memory() };
+    let lists_labels = team.sees_labels() && evidence.source == EvidenceSource::Labels;
+    let memory = if lists_labels { WalkMemory::from_path(&evidence, &walk.path) } else { walk.memory() };
     let scene = match evidence.source {
         EvidenceSource::Labels => Some(scenes.get_or_survey(platform, &walk.path.scene)?),
         _ => None,
@@ -139,7 +139,8 @@ pub fn write_item(
     };
     let follower = PathFollower { followed, evidence: &evidence, rejects_ambiguous: settings.reject_ambiguous };
     let ahead = views_ahead(&world, &walk.path)?;
-    let shown = if settings.roles.write_sees { shown_pictures(&ahead, &settings.roles.write)? } else { Vec::new() };
+    let shown =
+        if settings.roles.write_sees { shown_pictures(&ahead, settings.roles.write.as_str())? } else { Vec::new() };
     let of_style = |MeasuredStyle { style, profile, hash }: &MeasuredStyle| {
         let order = InstructionOrder {
             walk: &walk,

@@ -33,7 +33,7 @@ pub fn settle_left_out(
         return Ok(settings.clone());
     }
     let asked = match &settings.scan[..] {
-        [] => platform.candidate_scenes()?,
+        [] => platform.files().candidate_scenes()?,
         names => names.iter().filter_map(|name| SceneId::new(name.as_str()).ok()).collect(),
     };
     let left_out = left_out(&asked, platform, output)?;
@@ -99,7 +99,7 @@ pub fn examine_scenes(
     let mut conditions = Vec::with_capacity(scenes.len());
     let examine = |scene: &SceneId| {
         interrupt::check_interrupt()?;
-        match platform.examine_scene(scene) {
+        match platform.files().examine_scene(scene) {
             Ok(found) => Ok(found),
             Err(PlatformError::UnknownScene { hint, .. }) => {
                 let why = SceneLack { what: format!("there is no scene {scene}"), hint };

@@ -6,7 +6,7 @@ use crate::{
     calls::ModelCalls,
     error::CommandError,
     lookout::DetectorLookout,
-    settings::{FailureFinish, LABELS_ROLE, RunSettings, is_model},
+    settings::{FailureFinish, RolePlayer, RunSettings},
     text_file,
 };
 use std::{fs, path::Path, sync::Arc};
@@ -27,6 +27,7 @@ use wayword_synthesis::{
 pub struct RoleTeam {
     asker: Box<dyn QuestionAsker>,
     answerer: Box<dyn ViewAnswerer>,
+    sees_labels: bool,
     summariser: Box<dyn CaptionSummariser>,
     writer: Box<dyn InstructionWriter>,
     finisher: Option<RulesWriter>,
@@ -61,14 +62,14 @@ impl RoleTeam {
         sample: u32,
     ) -> Result<Self, CommandError> {
         let labels = LabelAnswerer {
-            list_everything: platform.lists_everything(),
+            list_everything: platform.catalogue().lists_everything(),
             calibration: settings_calibration(settings, platform)?,
         };
         let prompts = Arc::new(settings_prompts(settings)?);
         let roles = &settings.roles;
-        let model = |name: &str, purpose: &'static str| -> Result<Option<Arc<dyn LanguageModel>>, CommandError> {
-            match calls.filter(|_| is_model(name)) {
-                Some(calls) => {
+        let model = |player: &RolePlayer, purpose| -> Result<Option<Arc<dyn LanguageModel>>, CommandError> {
+            match calls.zip(player.model_name()) {
+                Some((calls, name)) => {
                     Ok(Some(Arc::new(PurposeModel { model: sample_model(calls.open_model(name)?, sample), purpose })))
                 }
                 None => Ok(None),
@@ -77,16 +78,18 @@ impl RoleTeam {
         let prompts_hash = (!roles.model_names().is_empty()).then(|| prompts.hash().to_owned());
         let prompts = || Arc::clone(&prompts);
         let sees = model(&roles.see, "see")?;
-        let doubts = sees.is_some();
+        let sees_labels = sees.is_none();
         // Without a dialogue there is no asker and no summariser.
-        let in_dialogue = |name: &str, purpose| if settings.has_dialogue() { model(name, purpose) } else { Ok(None) };
+        let in_dialogue =
+            |player: &RolePlayer, purpose| if settings.has_dialogue() { model(player, purpose) } else { Ok(None) };
         let writes = model(&roles.write, "write")?;
         let finisher = writes.is_some() && roles.finish == FailureFinish::Rules;
         Ok(Self {
             asker: match in_dialogue(&roles.ask, "ask")? {
                 Some(model) => Box::new(ModelAsker::new(model, prompts())),
-                None if doubts => Box::new(RulesAsker::for_models()),
-                None => Box::new(RulesAsker::default()),
+                // The rules ask labels and models in different ways.
+                None if sees_labels => Box::new(RulesAsker::default()),
+                None => Box::new(RulesAsker::for_models()),
             },
             summariser: match in_dialogue(&roles.summarise, "summarise")? {
                 Some(model) => Box::new(ModelSummariser::new(model, prompts())),
@@ -94,7 +97,8 @@ impl RoleTeam {
             },
             answerer: match sees {
                 Some(model) => {
-                    let manner = calls.map_or(Ok(PromptManner::Chat), |calls| calls.prompt_manner(&roles.see))?;
+                    let manner =
+                        calls.map_or(Ok(PromptManner::Chat), |calls| calls.prompt_manner(roles.see.as_str()))?;
                     if settings.perception.is_structured() && manner != PromptManner::Chat {
                         return Err(CommandError::usage(
                             format!("{} answers in words alone, and --perception asks for JSON", roles.see),
@@ -105,6 +109,7 @@ impl RoleTeam {
                 }
                 None => Box::new(labels),
             },
+            sees_labels,
             writer: match writes {
                 Some(model) => Box::new(ModelWriter::new(model, prompts())),
                 None => Box::new(RulesWriter),
@@ -130,6 +135,12 @@ impl RoleTeam {
     #[must_use]
     pub fn lookout(&self) -> Option<&DetectorLookout> {
         self.lookout.as_ref()
+    }
+
+    /// Whether the platform's labels answer about the views, and no model.
+    #[must_use]
+    pub fn sees_labels(&self) -> bool {
+        self.sees_labels
     }
 
     /// Who asks, sees and summarises.
@@ -198,22 +209,24 @@ impl LanguageModel for PurposeModel {
     }
 }
 
-/// Reads the calibration that the settings name. Only the role `labels` uses it, so it is refused if a model sees, or if labels
-/// list everything.
+/// Reads the calibration that the settings name. Only labels that answer the questions of a dialogue use it, so it is refused if a
+/// model answers, if the labels list everything, or if there is no dialogue.
 fn settings_calibration(
     settings: &RunSettings,
     platform: &dyn Platform,
 ) -> Result<Option<Arc<Calibration>>, CommandError> {
     let Some(file) = &settings.calibration else { return Ok(None) };
-    let lack = match () {
-        () if settings.roles.see != LABELS_ROLE => {
+    let reason = match () {
+        () if settings.roles.see != RolePlayer::Labels => {
             "only the answers of labels depend on it, and a model answers here".to_owned()
         }
-        () if platform.lists_everything() => format!("the labels of platform {} list everything", platform.name()),
+        () if platform.catalogue().lists_everything() => {
+            format!("the labels of platform {} list everything", platform.name())
+        }
         () if !settings.has_dialogue() => "without a dialogue, labels are not asked for single things".to_owned(),
         () => return Ok(Some(Arc::new(calibration::read_calibration(file, platform.name())?))),
     };
-    Err(CommandError::usage(format!("--calibration {} has no effect: {lack}", file.display()), "leave it out"))
+    Err(CommandError::usage(format!("--calibration {} has no effect: {reason}", file.display()), "leave it out"))
 }
 
 /// The built-in prompts, replaced by those in the user's folder.

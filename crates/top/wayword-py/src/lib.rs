@@ -2,6 +2,12 @@
 //!
 //! Architecture invariant: there is no logic here. The crate `wayword` carries out the calls, and `python/wayword/` presents
 //! them to Python's users.
+//!
+//! # Where things are
+//! - `call.rs`: a command from Python: its thread, Ctrl-C, progress.
+//! - `judge.rs`, `follow.rs`: trajectories and walks. `world.rs`: worlds that are objects, with `platforms/python_worlds.rs` in `wayword-run`.
+//! - `raise.rs`, with `python/wayword/errors.py`: exceptions.
+//! - `python/wayword/`: the functions and classes that users see; `platform.py` needs no other file.
 #![allow(
     clippy::needless_pass_by_value,
     reason = "functions of a Python module own the values that were made for them"

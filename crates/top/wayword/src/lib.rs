@@ -3,6 +3,15 @@
 //! ledger, models, launch, runs.
 //!
 //! It is a library with a thin binary, so that the Python package runs the same code as the command line.
+//!
+//! # Where things are
+//! - [`cli`]: all commands. The flags of each are in `args.rs` beside its work, in the crate that does it.
+//! - [`commands`]: which function runs a command.
+//! - `doctor/scenes.rs`: what `doctor --scenes` lists of a scene.
+//! - `house/`: the set of houses for Habitat, its episodes and habitat-lab's configuration.
+//! - `runs/`: `merge.rs` puts chunks together, `status.rs` and `prometheus.rs` show them.
+//! - `tests/it/documents.rs`: which commands of the documents are run, and what the others need.
+//! - `tests/it/invariants/`: the tests of the source itself.
 
 pub mod cli;
 pub mod commands;

@@ -1,33 +1,16 @@
 //! Looks at the views along a path and runs a dialogue about each, so that every frame gets a caption.
 
 use crate::{
-    dialogue::{
-        CaptionSummariser, CondensedCaption, Dialogue, DialogueMode, DialogueNeed, QuestionAsker, RulesSummariser,
-    },
+    dialogue::{CaptionSummariser, CondensedCaption, Dialogue, DialogueMode, DialogueNeed, RulesSummariser},
     seeing::see_view,
     walk::FrameSelection,
 };
 use wayword_core::{
     AnswerForm, Caption, CaptionedView, DialogueExchange, Frame, FrameObservation, ModelError, Path, PathMotion,
-    Platform, PlatformError, Side, View, ViewAnswerer, ViewGaze, ViewQuestion, WitnessAnswer,
+    Platform, PlatformError, Side, View, ViewGaze, ViewQuestion, WitnessAnswer,
 };
 
-/// The roles that make captions of views: asker, answerer and summariser, and the mode in which they work.
-#[derive(Clone, Copy)]
-pub struct ObservationRoles<'a> {
-    /// Chooses the questions.
-    pub asker: &'a dyn QuestionAsker,
-    /// Answers them.
-    pub answerer: &'a dyn ViewAnswerer,
-    /// Sums the answers up.
-    pub summariser: &'a dyn CaptionSummariser,
-    /// Dialogue, or fixed queries.
-    pub mode: DialogueMode,
-    /// Hash of the prompts, where a language model plays a role.
-    pub prompts_hash: Option<&'a str>,
-    /// The name of the detector that corrected the captions, with its score threshold, if there is one.
-    pub detector: Option<&'a str>,
-}
+pub use crate::dialogue::ObservationRoles;
 
 /// A path could not be observed.
 #[derive(Debug, thiserror::Error)]
@@ -207,18 +190,12 @@ pub fn talk_about(view: &View, observers: ObservationRoles<'_>) -> Result<Captio
                     .answerer
                     .answer_questions(&[ask])
                     .pop()
-                    .unwrap_or_else(|| Err(unanswered_error(observers.answerer)));
+                    .unwrap_or_else(|| Err(observers.unanswered_error()));
                 dialogue.take_answer(&answer?);
             }
             DialogueNeed::Summary => return caption_of_dialogue(dialogue.transcript(), observers),
         }
     }
-}
-
-/// The error for an answerer that returns no answer to a question. Without it the dialogue would repeat the question
-/// forever.
-pub(crate) fn unanswered_error(answerer: &dyn ViewAnswerer) -> ModelError {
-    ModelError::Failed { model: answerer.name().to_owned(), reason: "it gave no answer".to_owned() }
 }
 
 /// The caption of a dialogue. In the modes without a dialogue no language model summarises: the only answer is the
@@ -267,7 +244,7 @@ fn look_direction(frame: &Frame, look: &CaptionedView) -> &'static str {
 mod tests {
     use super::*;
     use crate::dialogue::RulesAsker;
-    use wayword_core::{AnswerText, DVec3, Heading, Pose};
+    use wayword_core::{AnswerText, DVec3, Heading, Pose, ViewAnswerer};
 
     /// An answerer that gives no answer to a question.
     struct Mute;

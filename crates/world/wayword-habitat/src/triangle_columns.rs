@@ -10,7 +10,7 @@ use wayword_core::DVec3;
 const FINEST_M: f32 = 0.25;
 /// Most cells per triangle, on average. If a grid would need more, it is made coarser.
 const CELLS_PER_TRIANGLE: u64 = 8;
-/// Cells that any scene may use in addition.
+/// Cells that any scene may use in addition to these, however few triangles it has.
 const FREE_CELLS: u64 = 1 << 20;
 /// A surface nearer to the feet than this is the ground itself, metres: a navmesh lies up to one voxel above or below
 /// the floor, and runs straight over the treads of stairs.
@@ -24,12 +24,15 @@ pub(crate) struct TriangleColumns {
     triangles: Vec<[Vec3; 3]>,
     /// The caller's number for the owner of each triangle.
     tags: Vec<u32>,
+    /// The grid's corner with the smallest x and y, metres.
     corner: glam::Vec2,
+    /// Side of a cell.
     side_m: f32,
     /// Cells along x and along y.
     size: [usize; 2],
     /// Where the triangles of each cell begin in `members`; the length is the number of cells and 1.
     starts: Vec<u32>,
+    /// Indices of triangles, cell by cell.
     members: Vec<u32>,
 }
 
@@ -45,6 +48,7 @@ pub(crate) enum OverheadCover {
 }
 
 impl TriangleColumns {
+    /// Columns of triangles without numbers. Upright triangles are left out.
     pub(crate) fn new(triangles: impl Iterator<Item = [Vec3; 3]>) -> Self {
         Self::with_tags(triangles.map(|triangle| (triangle, 0)))
     }
@@ -52,8 +56,8 @@ impl TriangleColumns {
     /// Columns of triangles with a number each, which [`TriangleColumns::tags_at`] returns. Upright triangles are left out.
     pub(crate) fn with_tags(triangles: impl Iterator<Item = ([Vec3; 3], u32)>) -> Self {
         // An upright triangle has no area seen from above.
-        let lies = |[a, b, c]: &[Vec3; 3]| (*b - *a).truncate().perp_dot((*c - *a).truncate()).abs() > 1e-9;
-        let (triangles, tags) = triangles.filter(|(triangle, _)| lies(triangle) && is_finite(triangle)).unzip();
+        let has_area = |[a, b, c]: &[Vec3; 3]| (*b - *a).truncate().perp_dot((*c - *a).truncate()).abs() > 1e-9;
+        let (triangles, tags) = triangles.filter(|(triangle, _)| has_area(triangle) && is_finite(triangle)).unzip();
         Self::sort_into_cells(triangles, tags)
     }
 
@@ -64,6 +68,7 @@ impl TriangleColumns {
         Self::sort_into_cells(triangles, tags)
     }
 
+    /// Makes the grid as fine as the limits for its cells allow, and sorts the triangles into it.
     fn sort_into_cells(triangles: Vec<[Vec3; 3]>, tags: Vec<u32>) -> Self {
         let corners = || triangles.iter().flatten().map(|corner| corner.truncate());
         let low = corners().reduce(glam::Vec2::min).unwrap_or_default();
@@ -75,9 +80,10 @@ impl TriangleColumns {
             // Casts saturate; the additional cell takes the triangles on the far edge.
             columns.size = [extent.x, extent.y].map(|side| (side / columns.side_m) as usize + 1);
             let cells = columns.size[0] as u64 * columns.size[1] as u64;
-            let touched: u64 = columns.triangles.iter().map(|triangle| columns.touched_cell_count(triangle)).sum();
-            let most = FREE_CELLS + CELLS_PER_TRIANGLE * columns.triangles.len() as u64;
-            if columns.size == [1, 1] || (cells <= most && touched <= most) {
+            let touched_cells: u64 =
+                columns.triangles.iter().map(|triangle| columns.touched_cell_count(triangle)).sum();
+            let max_cells = FREE_CELLS + CELLS_PER_TRIANGLE * columns.triangles.len() as u64;
+            if columns.size == [1, 1] || (cells <= max_cells && touched_cells <= max_cells) {
                 break;
             }
             columns.side_m *= 2.0;
@@ -86,6 +92,7 @@ impl TriangleColumns {
         columns
     }
 
+    /// Fills `starts` and `members` by a counting sort.
     fn fill_cells(&mut self) {
         let cells = self.size[0] * self.size[1];
         let mut starts = vec![0_u32; cells + 1];

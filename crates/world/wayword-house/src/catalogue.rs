@@ -32,6 +32,7 @@ macro_rules! catalogue {
             #[cfg(test)]
             pub(crate) const ALL: &'static [Self] = &[$(Self::$kind,)*];
 
+            /// The usual properties of this kind.
             pub(crate) fn entry(self) -> CatalogueEntry {
                 match self {
                     $(Self::$kind => CatalogueEntry {
@@ -47,6 +48,8 @@ macro_rules! catalogue {
     };
 }
 
+// One row for each kind: variant, name, [width depth height] in cm, +- variation of the width in cm, main material,
+// [usual colours].
 catalogue! {
     Sofa "sofa" [210 90 82] +- 20 "fabric" [Grey Beige Blue Green DarkGrey Teal Red Brown Pink Yellow];
     Armchair "armchair" [82 82 84] +- 4 "fabric" [Beige Yellow Blue Green Orange Red Grey Brown Pink Purple];

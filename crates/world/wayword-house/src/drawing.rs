@@ -63,7 +63,8 @@ fn collect_meshes(house: &House, mut drawing: MeshCollector) -> HouseDrawing {
         let (cx, cy) = house.rooms[opening.room].outline.centre();
         let is_below = (if along_x { cy } else { cx }) as f32 / 100.0 < line;
         drawing.add_shape(structure::build_opening(house, opening), opening.id, THING_GRAIN, |at, normal| {
-            // Across the wall, the light of one room passes into that of the other.
+            // Within the wall, the light of one room passes gradually into that of the other. `past` is 0 at the lower
+            // side of the frame and 1 at its upper side.
             let past = ((if along_x { at.y } else { at.x }) - line) / (2.0 * FRAME_M) + 0.5;
             let share = if is_below { past } else { 1.0 - past }.clamp(0.0, 1.0);
             let here = lights[opening.room].on_thing(at, normal, None);
@@ -126,10 +127,12 @@ struct MeshCollector {
     materials: Vec<MeshMaterial>,
     /// The pattern of each texture that some material uses, in order of first use.
     patterns: Vec<SurfacePattern>,
+    /// The index of the material for each pattern in each colour.
     known: BTreeMap<(SurfacePattern, [u8; 3]), usize>,
 }
 
 impl MeshCollector {
+    /// Adds the parts of a shape, under the number `id` of their object. `light` gives the light at a place with a normal.
     fn add_shape(
         &mut self,
         shape: HouseShape,
@@ -151,6 +154,7 @@ impl MeshCollector {
         }
     }
 
+    /// The index of the material for a surface; the material is made when it is first needed.
     fn material_index(&mut self, HouseSurface { pattern, rgb, .. }: HouseSurface) -> usize {
         let (materials, patterns) = (&mut self.materials, &mut self.patterns);
         *self.known.entry((pattern, rgb)).or_insert_with(|| {

@@ -136,7 +136,8 @@ impl HouseRoadMap<'_> {
                 let way = self.ground.shortest_route(self.nodes[a].1, self.nodes[b].1).ok()?;
                 Some((a, b, way.corners))
             };
-            // A pair with furniture or a ceiling between may have no short way; the next nearest pair may.
+            // A pair with furniture or a ceiling between may have no short way; the next nearest pair may. So the ways of
+            // the twelve nearest pairs are compared.
             let Some((a, b, corners)) =
                 pairs.into_iter().take(12).filter_map(places).min_by_key(|(_, _, way)| way.len())
             else {
@@ -146,6 +147,7 @@ impl HouseRoadMap<'_> {
         }
     }
 
+    /// Adds viewpoints at the inner corners of a way, and edges along it from viewpoint `a` to `b`.
     fn add_way(&mut self, a: usize, b: usize, corners: &[DVec3], edges: &mut Vec<(usize, usize)>) {
         let mut before = a;
         for corner in corners.iter().skip(1).take(corners.len().saturating_sub(2)) {

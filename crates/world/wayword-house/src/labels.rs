@@ -17,14 +17,14 @@ pub(super) fn visible_labels(
     gaze: ViewGaze,
     picture: &RenderedPicture,
 ) -> Vec<ObjectLabel> {
-    let seen = evident_objects(picture);
-    let told = seen.iter().filter_map(|each| {
+    let visible = evident_objects(picture);
+    let labels = visible.iter().filter_map(|each| {
         let object = scene.objects.get(&each.id).filter(|object| object.role != ObjectRole::Shell)?;
         let (low, high) = object.bounds_m;
         let is_sliver = each.is_sliver(camera, &box_corners(low, high));
         (!is_sliver).then(|| label_for_object(camera, each, object)).flatten()
     });
-    told.filter(|label| gaze.holds_heading(label.heading)).collect()
+    labels.filter(|label| gaze.holds_heading(label.heading)).collect()
 }
 
 fn label_for_object(camera: &PinholeCamera, seen: &VisibleObject, object: &NumberedObject) -> Option<ObjectLabel> {

@@ -72,6 +72,14 @@ impl OpenLeaf {
     }
 }
 
+impl WallOpening {
+    /// Squares of floor that together cover the open leaf; none if no leaf is open.
+    #[must_use]
+    pub fn open_leaf(&self, rooms: &[HouseRoom]) -> Vec<RectCm> {
+        OpenLeaf::for_opening(self, rooms).map_or_else(Vec::new, |leaf| leaf.footprint())
+    }
+}
+
 /// Sine and cosine, exact at a right angle.
 fn sin_cos_deg(angle_deg: i32) -> (f64, f64) {
     if angle_deg == 90 {

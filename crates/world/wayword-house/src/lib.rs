@@ -3,6 +3,17 @@
 //! The steps, in order: `layout` plans rooms, doors and windows, `furnish` fills the rooms, `structure` and `shapes` build
 //! the meshes, `light` bakes light into them, and `drawing` puts everything together. `ground` and `graph` find where one
 //! can walk, and `platform` offers all of it to the rest of Wayword. `save` writes a house for other programs.
+//!
+//! # Where things are
+//! - `catalogue`: the kinds of furniture. A new kind also gets a shape in `shapes/`, and a room in `furnish/`.
+//! - `layout/program.rs`: which rooms a storey has; `door_angles.rs` how far doors are open, `leaf` where a door's leaf then is.
+//! - `furnish/`: one file for each kind of room; `finish.rs` for wood, `built_in.rs` for closets and radiators, `wall_hangings.rs` and
+//!   `stairwell.rs` for bare walls.
+//! - `shapes/clutter.rs`: small things on tables and shelves.
+//! - `light/`: `sun.rs`, `casters.rs` for shadows, `cut.rs` for the edges of light on a surface.
+//! - `outlook` and `textures/outside.rs`: what lies outside the windows.
+//! - `save/`: the files of a house, for Habitat and others.
+//! - `names`: the names of houses, with the version of the generator.
 
 mod catalogue;
 mod colour;

@@ -3,7 +3,6 @@
 use super::{
     catalogue::FurnitureKind,
     colour::Colour,
-    leaf::OpenLeaf,
     rect::{RectCm, SpanCm, WallSide},
 };
 use serde::{Deserialize, Serialize};
@@ -243,12 +242,6 @@ impl WallOpening {
             DoorLeaf::Closed => "front door",
             DoorLeaf::Garage => "garage door",
         }
-    }
-
-    /// Squares of floor that together cover the open leaf; none if no leaf is open.
-    #[must_use]
-    pub fn open_leaf(&self, rooms: &[HouseRoom]) -> Vec<RectCm> {
-        OpenLeaf::for_opening(self, rooms).map_or_else(Vec::new, |leaf| leaf.footprint())
     }
 }
 

@@ -8,8 +8,8 @@ use super::{
 };
 use std::{collections::BTreeSet, sync::Arc};
 use wayword_core::{
-    DVec3, DepthImage, Frame, FromAbove, GroundRoute, ObjectId, Path, PathRequest, Platform, PlatformError,
-    RecentCache, SceneId, View, ViewGaze, ViewpointGraph, ViewpointId,
+    DVec3, DepthImage, Frame, FromAbove, Ground, GroundRoute, ObjectId, Path, PathRequest, Platform, PlatformError,
+    RecentCache, SceneCatalogue, SceneId, View, ViewGaze, ViewpointGraph, ViewpointId,
 };
 use wayword_render::to_flat_gaze;
 
@@ -108,6 +108,16 @@ impl Platform for HousePlatform {
         self.checked_view(scene, from, gaze, false)
     }
 
+    fn ground(&self) -> &dyn Ground {
+        self
+    }
+
+    fn catalogue(&self) -> &dyn SceneCatalogue {
+        self
+    }
+}
+
+impl Ground for HousePlatform {
     fn view_depth(&self, scene: &SceneId, from: &Frame, gaze: ViewGaze) -> Result<Option<DepthImage>, PlatformError> {
         let home = self.ready_house(scene)?;
         home.check_within(from)?;
@@ -124,7 +134,9 @@ impl Platform for HousePlatform {
         let way = self.ready_house(scene)?.ground.shortest_route(feet(from), feet(to)).ok();
         Ok(way.map(|way| GroundRoute { corners: way.corners, length_m: way.length_m }))
     }
+}
 
+impl SceneCatalogue for HousePlatform {
     fn object_name(&self, scene: &SceneId, _: &Frame, object: &ObjectId) -> Result<Option<String>, PlatformError> {
         let home = self.ready_house(scene)?;
         let number: Option<u32> = object.as_str().parse().ok();

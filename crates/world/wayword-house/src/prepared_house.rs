@@ -43,6 +43,7 @@ pub(super) struct PreparedHouse {
     pub(super) graph: Arc<ViewpointGraph>,
     /// The viewpoints from which each object is seen; computed on first use.
     seen_from: OnceLock<BTreeMap<ObjectId, BTreeSet<ViewpointId>>>,
+    /// The largest distance between two viewpoints; computed on first use.
     longest_m: OnceLock<f64>,
 }
 

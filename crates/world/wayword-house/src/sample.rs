@@ -10,7 +10,7 @@ use wayword_world::open_ground::{OpenGroundScene, no_such_walk, sample_open_path
 
 /// A corner nearer than this to the frame before it gets no frame of its own, metres.
 const CROWDED_M: f64 = 0.4;
-/// A way that was found is at most this much longer than the shortest one.
+/// Upper bound of the length of a route over the length of the exact shortest way.
 const GEODESIC_EXCESS: f64 = 1.03;
 /// Largest distance of a target from the last frame, to the nearest side of its box along the floor, metres.
 const TARGET_REACH_M: f64 = 2.5;
@@ -39,6 +39,7 @@ pub(super) fn sample_house_path(
 /// Chooses random paths through a house.
 struct HouseWalker<'a> {
     home: &'a PreparedHouse,
+    /// The places at which a path may begin.
     places: Vec<DVec3>,
     /// The places at which a path may end.
     goals: Vec<DVec3>,
@@ -48,8 +49,8 @@ struct HouseWalker<'a> {
 
 impl OpenGroundScene for HouseWalker<'_> {
     fn random_ends(&mut self) -> Option<(DVec3, DVec3)> {
-        let mut one_of = |places: &[DVec3]| places[self.dice.index(places.len())];
-        (!self.goals.is_empty()).then(|| (one_of(&self.places), one_of(&self.goals)))
+        let mut draw_place = |places: &[DVec3]| places[self.dice.index(places.len())];
+        (!self.goals.is_empty()).then(|| (draw_place(&self.places), draw_place(&self.goals)))
     }
 
     fn stops_between(&mut self, from: DVec3, to: DVec3) -> Result<Option<Vec<PathStop>>, PlatformError> {
@@ -119,8 +120,8 @@ fn choose_target(home: &PreparedHouse, dice: &mut HouseDice, last: Pose) -> Resu
             home.scene.house.rooms.get(object.room) == room && off_m(feet, object.bounds_m) <= TARGET_REACH_M
         })
     };
-    let is_task_for = |label: &&ObjectLabel| label.name != "ceiling light" && label.name != "curtain";
-    let near: Vec<&ObjectLabel> = labels.iter().filter(stands_here).filter(is_task_for).collect();
+    let can_be_target = |label: &&ObjectLabel| label.name != "ceiling light" && label.name != "curtain";
+    let near: Vec<&ObjectLabel> = labels.iter().filter(stands_here).filter(can_be_target).collect();
     let alone: Vec<&ObjectLabel> = near.iter().copied().filter(|label| namesakes(label) == 0).collect();
     let by_colour: Vec<&ObjectLabel> = near.iter().copied().filter(|label| twins(label) == 0).collect();
     let likely = if alone.is_empty() { by_colour } else { alone };

@@ -14,22 +14,32 @@ pub(crate) enum SurfacePattern {
     Plaster,
     Fabric,
     Marble,
+    /// Brushed metal.
     Brushed,
+    /// A leaf of a plant.
     Leaves,
     Brick,
+    /// The spines of a row of books.
     Books,
     /// The view out of a window, from the ground floor.
     Outside(WindowOutlook),
     /// The same from upstairs.
     FromAbove(WindowOutlook),
+    /// The sheen of glass.
     Reflection,
+    /// A rug with borders and a medallion.
     Ornament,
     Wicker,
     Fire,
+    /// The screen of a computer.
     Desktop,
+    /// The face of a clock.
     Dial,
+    /// The rings of a hot plate.
     Coils,
+    /// Land and sea, for a globe.
     Map,
+    /// A painting, by its number below [`ART_COUNT`].
     Art(u8),
 }
 
@@ -130,15 +140,18 @@ impl HouseSurface {
         Self { glows: true, ..self }
     }
 
+    /// Wood in a colour; paint hides its grain.
     pub(crate) fn for_wood(colour: Colour) -> Self {
         let pattern = if colour.shows_grain() { SurfacePattern::Wood } else { SurfacePattern::Plain };
         Self::new(pattern, colour.rgb())
     }
 
+    /// Cloth in a colour.
     pub(crate) fn for_fabric(colour: Colour) -> Self {
         Self::new(SurfacePattern::Fabric, colour.rgb())
     }
 
+    /// Brushed metal in a colour.
     pub(crate) fn for_metal(colour: Colour) -> Self {
         Self::new(SurfacePattern::Brushed, colour.rgb())
     }

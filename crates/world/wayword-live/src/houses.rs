@@ -45,6 +45,7 @@ impl fmt::Display for ShownAs {
     }
 }
 
+/// Whether the generated house of a seed has one storey.
 fn has_one_storey(seed: &u64) -> bool {
     generate_house(*seed).storeys == 1
 }
@@ -56,8 +57,8 @@ impl StandInHouses {
     /// When the list is empty, names a house twice, or contains a house with several storeys: VirtualHome's homes and
     /// ThreeDWorld's floor plans have no stairs.
     pub fn from_seeds(seeds: Vec<u64>) -> Result<Self, NotShown> {
-        let mut met = BTreeSet::new();
-        if let Some(seed) = seeds.iter().find(|seed| !met.insert(**seed)) {
+        let mut named_seeds = BTreeSet::new();
+        if let Some(seed) = seeds.iter().find(|seed| !named_seeds.insert(**seed)) {
             return Err(NotShown::Twice(*seed));
         }
         if let Some(seed) = seeds.iter().find(|seed| !has_one_storey(seed)) {

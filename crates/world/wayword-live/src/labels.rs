@@ -61,13 +61,13 @@ pub(crate) fn labels_in_gaze(
 ) -> Vec<ObjectLabel> {
     let depth_m = vec![0.0; ids.len()];
     let picture = RenderedPicture { width: camera.width, height: camera.height, rgb: Vec::new(), depth_m, ids };
-    let seen = evident_objects(&picture);
-    let told = seen.iter().filter_map(|each| {
+    let visible = evident_objects(&picture);
+    let labels = visible.iter().filter_map(|each| {
         let thing = palette.get(&each.id)?;
         let is_sliver = each.is_sliver(camera, &thing.corners);
         (!is_sliver).then(|| label_object(camera, each, thing)).flatten()
     });
-    told.filter(|label| gaze.holds_heading(label.heading)).collect()
+    labels.filter(|label| gaze.holds_heading(label.heading)).collect()
 }
 
 fn label_object(camera: &PinholeCamera, seen: &VisibleObject, thing: &SimulatorObject) -> Option<ObjectLabel> {

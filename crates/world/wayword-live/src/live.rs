@@ -16,7 +16,7 @@ use std::{
 };
 use wayword_core::{
     DVec3, FailureKind, Frame, GroundTruth, Heading, Image, ObjectId, ObjectLabel, Path, PathRequest, Platform,
-    PlatformError, Pose, SceneId, View, ViewGaze, ViewpointGraph, ViewpointId,
+    PlatformError, Pose, SceneCatalogue, SceneId, View, ViewGaze, ViewpointGraph, ViewpointId,
 };
 use wayword_render::{PinholeCamera, to_flat_gaze};
 use wayword_world::{output_lines::OutputListener, seen_from};
@@ -106,7 +106,7 @@ pub(crate) struct SimulatorSurvey {
     pub(crate) thresholds: Vec<FloorRectangle>,
 }
 
-/// A rectangle of floor: lower and upper corner.
+/// A rectangle of floor: lower and upper corner (x, y), metres, world frame.
 pub(crate) type FloorRectangle = ([f64; 2], [f64; 2]);
 
 /// Which data of a picture a caller needs.
@@ -126,7 +126,7 @@ pub(crate) struct SimulatorRoom {
     pub(crate) bounds_m: (DVec3, DVec3),
 }
 
-/// A picture, and the colour of each pixel's object as [`sight::colour_id`] encodes it.
+/// A picture, and the colour of each pixel's object as [`labels::colour_id`] encodes it.
 pub(crate) struct SimulatorShot {
     /// `None` if the caller did not ask for colours.
     pub(crate) rgb: Option<Vec<u8>>,
@@ -157,6 +157,7 @@ pub struct LivePlatform<S> {
     running: Mutex<RunningSimulator<S>>,
 }
 
+/// The simulator, and the scenes that were surveyed in it.
 #[derive(Debug)]
 struct RunningSimulator<S> {
     simulator: S,
@@ -200,11 +201,11 @@ impl<S: Simulator> LivePlatform<S> {
             let known = running.enter_scene(scene)?;
             act(&mut running.simulator, &known)
         };
-        let done = match attempt() {
+        let outcome = match attempt() {
             Err(error) if S::is_loss(&error) => attempt(),
-            done => done,
+            outcome => outcome,
         };
-        done.map_err(|error| {
+        outcome.map_err(|error| {
             let (world, reason, hint) = (running.simulator.address(), error.to_string(), S::error_hint(&error));
             match S::failure_kind(&error) {
                 FailureKind::Lost => PlatformError::Lost { world, reason, hint },
@@ -260,6 +261,7 @@ impl<S: Simulator> LivePlatform<S> {
         })
     }
 
+    /// The view from a frame, with as much of the picture as is `wanted`.
     fn view_from(
         &self,
         scene: &SceneId,
@@ -278,6 +280,7 @@ impl<S: Simulator> LivePlatform<S> {
 }
 
 impl<S: Simulator> RunningSimulator<S> {
+    /// Loads a scene, and surveys it on first use.
     fn enter_scene(&mut self, scene: &SceneId) -> Result<Arc<SurveyedScene>, S::Error> {
         self.simulator.enter_scene(scene)?;
         if let Some(known) = self.scenes.get(scene) {
@@ -303,6 +306,7 @@ impl SimulatorSurvey {
         is_on_threshold.then(|| self.room_at(ahead)).flatten().or_else(|| self.room_at(eye))
     }
 
+    /// The room with a box around a place.
     fn room_at(&self, place: DVec3) -> Option<String> {
         let holds = |room: &&SimulatorRoom| {
             let (low, high) = room.bounds_m;
@@ -362,6 +366,12 @@ impl<S: Simulator> Platform for LivePlatform<S> {
         self.view_from(scene, from, gaze, SimulatorShotKind::Ids)
     }
 
+    fn catalogue(&self) -> &dyn SceneCatalogue {
+        self
+    }
+}
+
+impl<S: Simulator> SceneCatalogue for LivePlatform<S> {
     fn object_name(&self, scene: &SceneId, _: &Frame, object: &ObjectId) -> Result<Option<String>, PlatformError> {
         let known = self.surveyed_scene(scene)?;
         let found = known.survey.palette.values().find(|thing| thing.object == *object);

@@ -39,8 +39,8 @@ pub(crate) fn sample_live_path(
     interval_m: f64,
 ) -> Result<Path, PlatformError> {
     let dice = seeded_rng(seed, &["live path", scene.as_str()]);
-    let found = sample_open_path(&mut LivePathSampler { world, eyes, dice, interval_m }, scene, request, seed)?;
-    found.ok_or_else(|| no_such_walk(scene, request))
+    let path = sample_open_path(&mut LivePathSampler { world, eyes, dice, interval_m }, scene, request, seed)?;
+    path.ok_or_else(|| no_such_walk(scene, request))
 }
 
 /// Samples paths through a live simulator's scene.

@@ -89,6 +89,8 @@ impl PoseAxes {
         }
     }
 
+    /// The camera's heading if its body's direction ahead is `recorded`, in the recording's frame; `None` if that direction is
+    /// vertical.
     fn heading_along(self, recorded: DVec3) -> Option<Heading> {
         let heading = Heading::towards(DVec3::ZERO, self.wayword_from_recorded(recorded))?;
         Some(heading.turned_by(self.mount_rad))
@@ -126,7 +128,8 @@ pub(crate) fn rotation_columns(quaternion: [f64; 4]) -> Option<[DVec3; 3]> {
     ])
 }
 
-/// A vector turned by a quaternion (x, y, z, w), which need not have length 1.
+/// A vector turned by a quaternion (x, y, z, w), which need not have length 1. `None` if the quaternion's length is
+/// not finite, or too small to give a rotation.
 fn rotate_vector([x, y, z, w]: [f64; 4], vector: DVec3) -> Option<DVec3> {
     let length = libm::sqrt(x * x + y * y + z * z + w * w);
     if !(length.is_finite() && length > 1e-6) {

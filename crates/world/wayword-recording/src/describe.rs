@@ -8,8 +8,9 @@ use std::path::PathBuf;
 use wayword_core::PlatformError;
 use wayword_world::files;
 
+/// Largest description that is read, bytes; a larger file is an error.
 const MAX_FILE_BYTES: u64 = 1 << 20;
-/// The description of a folder.
+/// The name of the description in a recording's folder.
 pub(crate) const FOLDER_FILE: &str = "recording.toml";
 pub(crate) const DESCRIPTION_HINT: &str = "docs/RECORDINGS.md lists what a recording.toml can say";
 
@@ -75,8 +76,8 @@ impl RecordingDescription {
     /// The path of a file's description: `NAME.toml` for `NAME.mp4` if it exists, else `recording.toml` in the same folder.
     #[cfg(any(feature = "mcap", feature = "video"))]
     pub(crate) fn file_beside(recording: &Path) -> PathBuf {
-        let own = recording.with_extension("toml");
-        if own.is_file() { own } else { recording.with_file_name(FOLDER_FILE) }
+        let same_stem_file = recording.with_extension("toml");
+        if same_stem_file.is_file() { same_stem_file } else { recording.with_file_name(FOLDER_FILE) }
     }
 
     /// The axes of poses: the user's settings, and for the others `usual`, those of the format.

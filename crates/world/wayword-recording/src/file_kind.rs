@@ -6,8 +6,8 @@ use wayword_core::PlatformError;
 #[cfg(any(feature = "mcap", feature = "video"))]
 use wayword_world::files;
 
-/// Converts any video that ffmpeg reads. The command encodes the pictures again, because only H.264 and AV1 could be
-/// copied, and few videos hold these.
+/// The advice for a video: a command that converts any video that ffmpeg reads. It encodes the pictures again, because only
+/// H.264 and AV1 could be copied, and few videos hold these.
 pub(crate) const ENCODE_HINT: &str =
     "if a video player shows it, convert it: ffmpeg -i IN -c:v libx264 -pix_fmt yuv420p -an OUT.mp4";
 const CONVERT_HINT: &str = "convert it: ffmpeg -i IN -frames:v 1 OUT.png";
@@ -19,9 +19,9 @@ const BAG_2: &str = "convert it: rosbags-convert --src FOLDER --dst OUT --dst-st
 const GIT_LFS_HINT: &str = "fetch the file itself: git lfs pull";
 const COPY_AGAIN_HINT: &str = "copy or record it again";
 
-/// First bytes of a file that show its kind.
+/// Bytes that are read from the beginning of a file to recognise its kind.
 const HEAD_BYTES: u64 = 512;
-/// Most files of a folder that are looked into.
+/// Most files of a folder that are looked into; the others are ignored.
 const MOST_LOOKED_INTO: usize = 200;
 
 /// The kind of a file.
@@ -60,22 +60,24 @@ impl RecordedFileKind {
             return Some(EMPTY_KIND);
         }
         let begins = |at: usize, bytes: &[u8]| head.get(at..).is_some_and(|rest| rest.starts_with(bytes));
+        // Packets of a transport stream are 188 bytes long, and each begins with "G".
         if [0, 188, 376].iter().all(|at| begins(*at, b"G")) && head_text(head).is_none() {
             return Some(Self::recording_kind("an MPEG transport stream", ENCODE_HINT));
         }
+        // Matroska's header, within the first 60 bytes, names the kind of document that follows: `webm` or `matroska`.
         if begins(0, MATROSKA_MAGIC) && head.windows(4).take(60).any(|four| four == b"webm") {
             return Some(Self::recording_kind("a WebM video", ENCODE_HINT));
         }
         if begins(0, b"BM") && is_bitmap(head) {
             return Some(Self::recording_kind("a BMP picture", CONVERT_HINT));
         }
-        let is_held = |at: usize| match at {
+        let start_fits = |at: usize| match at {
             4 => is_box(head),
             8 => begins(0, b"RIFF"),
             _ => true,
         };
         let known =
-            KNOWN_STARTS.iter().find(|(at, bytes, _)| begins(*at, bytes) && is_held(*at)).map(|(.., kind)| *kind);
+            KNOWN_STARTS.iter().find(|(at, bytes, _)| begins(*at, bytes) && start_fits(*at)).map(|(.., kind)| *kind);
         known.or_else(|| of_text(head))
     }
 }
@@ -86,8 +88,8 @@ const EMPTY_KIND: RecordedFileKind = RecordedFileKind::other_kind("empty", COPY_
 const MATROSKA_MAGIC: &[u8] = &[0x1a, 0x45, 0xdf, 0xa3];
 const HEIC_KIND: RecordedFileKind = RecordedFileKind::recording_kind("an HEIC picture", CONVERT_HEIC);
 const MP4_KIND: RecordedFileKind = RecordedFileKind::recording_kind("an MP4 video", "rename it to end in .mp4");
-/// Offset and bytes that show a kind; the first that fits counts. At offset 4 it is the kind of an MP4 box, at 8 that
-/// of a RIFF file.
+/// Offset and bytes that show a kind; the first that fits counts. Bytes at offset 4 are the type of an MP4 box, and those
+/// at offset 8 the type of a RIFF file, so the start of the file has to fit as well.
 const KNOWN_STARTS: &[(usize, &[u8], RecordedFileKind)] = &[
     (0, b"\x89PNG\r\n\x1a\n", RecordedFileKind::recording_kind("a PNG picture", "rename it to end in .png")),
     (0, &[0xff, 0xd8, 0xff], RecordedFileKind::recording_kind("a JPEG picture", "rename it to end in .jpg")),
@@ -139,8 +141,8 @@ fn is_box(head: &[u8]) -> bool {
 /// Whether a file that begins with "BM" goes on as a bitmap: four zero bytes, and after 14 bytes a header with one of
 /// the known lengths.
 fn is_bitmap(head: &[u8]) -> bool {
-    let four = |at: usize| head.get(at..)?.first_chunk::<4>().map(|bytes| u32::from_le_bytes(*bytes));
-    four(6) == Some(0) && matches!(four(14), Some(12 | 40 | 52 | 56 | 64 | 108 | 124))
+    let number_at = |at: usize| head.get(at..)?.first_chunk::<4>().map(|bytes| u32::from_le_bytes(*bytes));
+    number_at(6) == Some(0) && matches!(number_at(14), Some(12 | 40 | 52 | 56 | 64 | 108 | 124))
 }
 
 /// Bytes as text; `None` where they are not text.
@@ -154,6 +156,7 @@ fn head_text(head: &[u8]) -> Option<&str> {
     text.chars().all(|c| !c.is_control() || matches!(c, '\n' | '\r' | '\t')).then_some(text)
 }
 
+/// The kind of a file that is text: a web page, or any other text.
 fn of_text(head: &[u8]) -> Option<RecordedFileKind> {
     let text = head_text(head)?;
     let start = text.trim_start().to_ascii_lowercase();
@@ -169,13 +172,13 @@ fn of_text(head: &[u8]) -> Option<RecordedFileKind> {
 /// Recordings that cannot be read, in words, and what to do about the most frequent kind.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct UnreadRecordings {
-    /// As "a WebM video", or of a folder "1.heic is an HEIC picture (and 3 more)".
+    /// For a file its kind, as "a WebM video"; for a folder its files, as "1.heic is an HEIC picture (and 3 more)".
     pub(crate) what: String,
     pub(crate) hint: &'static str,
 }
 
-/// Finds recordings that cannot be read at a path: a file, or a folder with pictures or videos. `None` where there are
-/// none.
+/// Finds the recordings of known kinds at a path where nothing could be read: a file, or the files of a folder and of its
+/// subfolders `within`. `None` where there are none.
 ///
 /// # Errors
 /// When a folder cannot be read.
@@ -185,6 +188,7 @@ pub(crate) fn find_unread(path: &Path, within: &[&str]) -> Result<Option<UnreadR
         return Ok(kind.map(|kind| UnreadRecordings { what: kind.name.to_owned(), hint: kind.hint }));
     }
     let folders = std::iter::once(path.to_owned()).chain(within.iter().map(|name| path.join(name)));
+    // For each kind: the number of its files, the name of the first of them, and the hint.
     let mut counts: BTreeMap<&str, (usize, String, &'static str)> = BTreeMap::new();
     for folder in folders.filter(|folder| folder.is_dir()) {
         let names = sorted_entries(&folder)?.into_iter().filter(|name| !name.starts_with('.'));
@@ -195,21 +199,22 @@ pub(crate) fn find_unread(path: &Path, within: &[&str]) -> Result<Option<UnreadR
         }
     }
     let Some(hint) = counts.values().max_by_key(|(count, ..)| *count).map(|(.., hint)| *hint) else { return Ok(None) };
-    let told = counts.iter().map(|(kind, (count, name, _))| match count {
+    let parts = counts.iter().map(|(kind, (count, name, _))| match count {
         1 => format!("{name} is {kind}"),
         more => format!("{name} is {kind} (and {} more)", more - 1),
     });
-    Ok(Some(UnreadRecordings { what: told.collect::<Vec<_>>().join("; "), hint }))
+    Ok(Some(UnreadRecordings { what: parts.collect::<Vec<_>>().join("; "), hint }))
 }
 
-/// The error for a file with a misleading name: it names the true kind, or else gives the reader's reason.
+/// The error for a file that should be of kind `expected`, but that the reader for this kind refused with `reason`. If the
+/// first bytes show another kind, the error names that kind instead.
 #[cfg(any(feature = "mcap", feature = "video"))]
-pub(crate) fn refuse_file(file: &Path, own: &str, (reason, hint): (String, &'static str)) -> PlatformError {
-    match RecordedFileKind::from_file(file).filter(|kind| kind.name != own) {
+pub(crate) fn refuse_file(file: &Path, expected: &str, (reason, hint): (String, &'static str)) -> PlatformError {
+    match RecordedFileKind::from_file(file).filter(|kind| kind.name != expected) {
         Some(kind) if kind.hint.starts_with("rename") => {
             files::file_error(file, format!("is {}, although its name says otherwise", kind.name), kind.hint)
         }
-        Some(kind) => files::file_error(file, format!("is {}, not {own}", kind.name), kind.hint),
+        Some(kind) => files::file_error(file, format!("is {}, not {expected}", kind.name), kind.hint),
         None => files::file_error(file, reason, hint),
     }
 }

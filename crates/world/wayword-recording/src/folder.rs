@@ -20,8 +20,9 @@ pub(crate) const PICTURE_FOLDERS: [&str; 6] = ["rgb", "images", "color", "frames
 const NO_PHOTOGRAPHS: [&str; 6] = ["depth", "disparity", "mask", "normal", "segment", "semantic"];
 /// Endings of pictures that cannot be read.
 const UNREAD_ENDINGS: [&str; 8] = ["heic", "heif", "webp", "avif", "gif", "tif", "tiff", "bmp"];
-/// TUM's list of pictures with their times.
+/// The list of pictures with their times that the RGB-D datasets of TUM have.
 const TUM_LIST_FILE: &str = "rgb.txt";
+/// Largest list and largest picture file that are read, bytes; larger ones are errors.
 const MAX_LIST_BYTES: u64 = 64 << 20;
 const MAX_PICTURE_BYTES: u64 = 64 << 20;
 /// Kinds of files that are read as pictures, whatever the endings of their names.
@@ -34,6 +35,7 @@ pub(crate) struct PictureFolder {
     root: PathBuf,
     /// The folder in which the pictures are.
     pictures: PathBuf,
+    /// The names of the picture files, sorted.
     names: Vec<String>,
 }
 
@@ -55,7 +57,7 @@ impl PictureFolder {
         Ok(None)
     }
 
-    /// The first file of a kind among the pictures, and how many of them there are.
+    /// The first file in the pictures' folder for which `is_wanted` is true, and the number of such files.
     pub(crate) fn beside_pictures(
         &self,
         is_wanted: fn(&str) -> bool,
@@ -73,9 +75,9 @@ impl PictureFolder {
                 files::file_error(&list, reason, "expected lines of `time file`, each file with a name of its own")
             });
         }
-        let named: Option<Vec<f64>> = self.names.iter().map(|name| time_of(name)).collect();
+        let times_in_names: Option<Vec<f64>> = self.names.iter().map(|name| time_of(name)).collect();
         let timed = |(at, name): (usize, &String)| {
-            let time_s = named.as_ref().map_or(at as f64 / pictures_per_s, |times| times[at]);
+            let time_s = times_in_names.as_ref().map_or(at as f64 / pictures_per_s, |times| times[at]);
             (time_s, self.pictures.join(name))
         };
         Ok(self.names.iter().enumerate().map(timed).collect())
@@ -183,6 +185,7 @@ fn read_list(text: &str, root: &Path) -> Result<Vec<(f64, PathBuf)>, String> {
     read.collect()
 }
 
+/// Whether a file is a picture by its ending.
 fn is_picture(name: &str) -> bool {
     let ending = Path::new(name).extension().and_then(|ending| ending.to_str()).unwrap_or_default();
     // macOS leaves "._x.jpg" next to "x.jpg" on foreign disks.
@@ -198,6 +201,7 @@ pub(crate) fn is_unread_picture(name: &str) -> bool {
         && UNREAD_ENDINGS.iter().any(|known| ending.eq_ignore_ascii_case(known))
 }
 
+/// Whether a picture is a depth map, a mask or the like by its name.
 fn is_no_photograph(name: &str) -> bool {
     let name = name.to_ascii_lowercase();
     NO_PHOTOGRAPHS.iter().any(|word| name.contains(word))

@@ -3,6 +3,15 @@
 //! Every kind of recording (`folder`, `video`, `mcap`, `lerobot`) provides the same: pictures, their times, and the track
 //! of the camera if it is known (`reel`). From then on all kinds are treated alike. `choose` picks frames at equal
 //! distances or times and leaves out blurred and repeated pictures. [`RecordingPlatform`] makes paths of these frames.
+//!
+//! # Where things are
+//! - `open`: which kind of recording a path is.
+//! - `file_kind`: files that cannot be read, by their first bytes, and the advice for each.
+//! - `poses/`: one file for each format of poses; `poses/mod.rs` has the names that are looked for, `axes` their conventions.
+//! - `pose_plausibility`: when poses are taken to be in another frame.
+//! - `describe`: the keys of `recording.toml`.
+//! - `choose/`: which pictures become frames.
+//! - `mcap/topics.rs`, `lerobot/camera.rs`, `lerobot/pose_feature.rs`: which camera and which poses are taken.
 
 mod axes;
 mod choose;

@@ -8,9 +8,9 @@ use wayword_core::{PlatformError, SceneId};
 use wayword_world::files;
 
 const FOLDER_HINT: &str = "give a folder that can be read";
-/// Most recordings that an error names.
+/// Most recordings that an error names; three dots replace the others.
 const MOST_NAMED: usize = 12;
-/// Most entries of a folder that are looked at.
+/// Most entries of a folder; more are an error.
 const MAX_ENTRIES: usize = 1_000_000;
 
 /// The scene name of a recording, from the name of its file or folder.
@@ -52,10 +52,10 @@ pub(crate) fn plain_files(files: impl IntoIterator<Item = PathBuf>) -> Vec<PathB
     plain
 }
 
-/// The error for a recording that is not among `there`.
-pub(crate) fn unknown_scene(scene: &SceneId, there: &[SceneId]) -> PlatformError {
-    let names: Vec<&str> = there.iter().map(SceneId::as_str).take(MOST_NAMED).collect();
-    let more = if there.len() > MOST_NAMED { ", ..." } else { "" };
+/// The error for a recording that is not among `known_scenes`.
+pub(crate) fn unknown_scene(scene: &SceneId, known_scenes: &[SceneId]) -> PlatformError {
+    let names: Vec<&str> = known_scenes.iter().map(SceneId::as_str).take(MOST_NAMED).collect();
+    let more = if known_scenes.len() > MOST_NAMED { ", ..." } else { "" };
     let hint = format!("--data holds {}{more}", names.join(", "));
     PlatformError::UnknownScene { scene: scene.to_string(), hint }
 }

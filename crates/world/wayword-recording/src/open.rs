@@ -6,11 +6,14 @@ use crate::{
     file_kind::{self, RecordedFileKind, UnreadRecordings},
     folder::{PICTURE_FOLDERS, PictureFolder, is_unread_picture},
     names::{scene_of, sorted_entries},
-    reel::RecordingSource,
-    shelf::{RecordingShelf, UnopenedRecording},
+    reel::{Recording, RecordingSource},
+    shelf::RecordingShelf,
 };
-use std::{collections::BTreeSet, path::Path};
-use wayword_core::PlatformError;
+use std::{
+    collections::BTreeSet,
+    path::{Path, PathBuf},
+};
+use wayword_core::{PlatformError, SceneId};
 use wayword_world::files;
 
 const RECORDING_HINT: &str =
@@ -24,12 +27,12 @@ pub(crate) fn open_source(path: &Path, hear: &dyn Fn(&str)) -> Result<Box<dyn Re
     if !path.is_dir() {
         return Err(no_recording(path));
     }
-    let (mut sources, mut passed_over, mut broken) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut sources, mut unknown_entries, mut broken) = (Vec::new(), Vec::new(), Vec::new());
     // macOS leaves "._x.mp4" next to "x.mp4" on foreign disks, and file managers leave hidden folders of thumbnails.
     for entry in sorted_entries(path)?.into_iter().filter(|name| !name.starts_with('.')) {
         match open_one(&path.join(&entry)) {
             Ok(Some(source)) => sources.push(source),
-            Ok(None) => passed_over.push(entry),
+            Ok(None) => unknown_entries.push(entry),
             Err(error) => broken.push((entry, error)),
         }
     }
@@ -44,7 +47,7 @@ pub(crate) fn open_source(path: &Path, hear: &dyn Fn(&str)) -> Result<Box<dyn Re
             None => files::file_error(path, "holds no pictures and no recordings", RECORDING_HINT),
         });
     }
-    for entry in passed_over {
+    for entry in unknown_entries {
         let file = path.join(&entry);
         if let Some(UnreadRecordings { what, hint }) = file_kind::find_unread(&file, &PICTURE_FOLDERS)? {
             let why = if file.is_dir() { what } else { format!("it is {what}") };
@@ -82,8 +85,29 @@ fn no_recording(path: &Path) -> PlatformError {
 ///
 /// # Errors
 /// When there is none, or it cannot be opened.
-pub(crate) fn open_recording(path: &Path) -> Result<Box<dyn RecordingSource>, PlatformError> {
+fn open_recording(path: &Path) -> Result<Box<dyn RecordingSource>, PlatformError> {
     open_one(path)?.ok_or_else(|| no_recording(path))
+}
+
+/// A recording that could not be opened when its folder was listed. A run that uses it opens it again, and reports the error
+/// then; runs that use other recordings of the folder go on.
+struct UnopenedRecording {
+    scene: SceneId,
+    path: PathBuf,
+}
+
+impl RecordingSource for UnopenedRecording {
+    fn scenes(&self) -> Vec<SceneId> {
+        vec![self.scene.clone()]
+    }
+
+    fn open(&self, scene: &SceneId) -> Result<Recording, PlatformError> {
+        open_recording(&self.path)?.open(scene)
+    }
+
+    fn files(&self, scene: &SceneId) -> Result<Vec<PathBuf>, PlatformError> {
+        open_recording(&self.path)?.files(scene)
+    }
 }
 
 /// The source at a path; `None` where there is none.
@@ -120,10 +144,12 @@ fn open_one(path: &Path) -> Result<Option<Box<dyn RecordingSource>>, PlatformErr
     }
 }
 
+/// The ending of a file's name, in lower case; empty if it has none.
 fn file_ending(path: &Path) -> String {
     path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase()
 }
 
+/// Whether a file is, by its ending, a video or an MCAP file, which this program opens as a recording of its own.
 fn is_file_of_ours(name: &str) -> bool {
     !name.starts_with('.') && matches!(file_ending(Path::new(name)).as_str(), "mp4" | "m4v" | "mov" | "mcap")
 }
@@ -159,6 +185,7 @@ fn open_mcap(path: &Path) -> Result<Box<dyn RecordingSource>, PlatformError> {
     Err(not_built(path, "MCAP files"))
 }
 
+/// The error for a recording of a kind that was left out when this program was built.
 #[cfg(not(all(feature = "lerobot", feature = "mcap", feature = "video")))]
 fn not_built(path: &Path, what: &str) -> PlatformError {
     let hint = "build it with `cargo build --release --features full`";
@@ -168,7 +195,6 @@ fn not_built(path: &Path, what: &str) -> PlatformError {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use wayword_core::SceneId;
 
     /// A folder of recordings, each with one picture.
     fn shelf(pictures: &[&str]) -> tempfile::TempDir {

@@ -1,8 +1,8 @@
 //! Limits for the size of a camera's picture: a file that claims a larger one is broken or malicious.
 
-/// Longest side of a picture, pixels.
+/// Longest side that a picture may have, pixels.
 const MAX_SIDE_PX: u32 = 12_288;
-/// Most pixels of a picture.
+/// Most pixels that a picture may have.
 pub(crate) const MAX_PIXELS: u32 = 64_000_000;
 
 /// Whether a camera's picture can have this size.

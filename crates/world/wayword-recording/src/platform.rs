@@ -1,7 +1,7 @@
-//! Recordings as a [`Platform`].
+//! Recordings as a [`Platform`]: a scene is one recording, and paths run along its chosen frames.
 
 use crate::{
-    choose::{FrameChoice, choose_frames},
+    choose::{FrameChoice, candidate_pictures, choose_frames},
     open,
     reel::{Recording, RecordingSource},
     track::CameraTrack,
@@ -16,7 +16,7 @@ use std::{
 };
 use wayword_core::{
     DVec3, Frame, Heading, Image, ObjectId, Path, PathMotion, PathRequest, Platform, PlatformError, Pose, RecentCache,
-    SceneId, View, ViewGaze, ViewpointGraph, ViewpointId, path::PathStop, seeded_rng,
+    SceneCatalogue, SceneFiles, SceneId, View, ViewGaze, ViewpointGraph, ViewpointId, path::PathStop, seeded_rng,
 };
 use wayword_world::{files, output_lines::OutputListener};
 
@@ -34,7 +34,7 @@ const LONGEST_PX: u32 = 640;
 const USUAL_FOV_RAD: f64 = 70.0 * std::f64::consts::PI / 180.0;
 /// A recording with at most this many frames is one path, however short or long it is.
 pub(crate) const MAX_WHOLE_FRAMES: usize = 12;
-/// Most unreadable recordings that an error lists.
+/// Most unreadable recordings that an error lists; it gives the number of the others.
 const MOST_TOLD: usize = 3;
 const INTERVAL_HINT: &str = "record more, or set interval_m or interval_s in a recording.toml (docs/RECORDINGS.md)";
 
@@ -59,7 +59,7 @@ struct OpenedRecording {
     ids: Vec<ViewpointId>,
     /// The place of each frame; empty if the poses are not known.
     places: Vec<DVec3>,
-    /// Stops that cannot be reached from the one before.
+    /// Indices into `stops`: frames to which the way from the frame before is not known. No path crosses such a gap.
     breaks: BTreeSet<usize>,
     graph: Arc<ViewpointGraph>,
 }
@@ -83,10 +83,10 @@ impl RecordingPlatform {
     fn open_scene(&self, scene: &SceneId) -> Result<Arc<OpenedRecording>, PlatformError> {
         self.opened.get_or_make(scene.clone(), || {
             let recording = self.source.open(scene)?;
-            let mut seen: BTreeMap<usize, Image> = BTreeMap::new();
+            let mut examined: BTreeMap<usize, Image> = BTreeMap::new();
             let choice = choose_frames(&recording, &mut |number, image| {
-                if seen.len() < MAX_CACHED_PICTURES {
-                    seen.insert(number, scale_down(image));
+                if examined.len() < MAX_CACHED_PICTURES {
+                    examined.insert(number, scale_down(image));
                 }
             })?;
             (self.hear)(&describe_choice(scene, &recording, &choice));
@@ -94,7 +94,7 @@ impl RecordingPlatform {
                 (self.hear)(doubt);
             }
             for number in &choice.stops {
-                if let Some(image) = seen.remove(number) {
+                if let Some(image) = examined.remove(number) {
                     self.pictures.put((scene.clone(), *number), image);
                 }
             }
@@ -143,16 +143,17 @@ impl OpenedRecording {
         Ok(Self { recording, stops, ids, places, breaks, graph: Arc::new(graph) })
     }
 
+    /// Whether turns and distances between the frames are known.
     fn motion(&self) -> PathMotion {
         if self.recording.track.is_some() { PathMotion::Known } else { PathMotion::Unknown }
     }
 
-    /// Whether it has few frames, and no gap in its track.
+    /// Whether it has at most [`MAX_WHOLE_FRAMES`] frames, and no gap between them.
     fn is_short(&self) -> bool {
         self.stops.len() <= MAX_WHOLE_FRAMES && self.breaks.is_empty()
     }
 
-    /// Frames from one stop to another, both included.
+    /// Frames from one stop to another, both included. Without a track all of them are at the origin and look north.
     fn frames_between(&self, first: usize, last: usize) -> Vec<Frame> {
         if self.recording.track.is_none() {
             let frame = |id: &ViewpointId| Frame {
@@ -185,21 +186,22 @@ impl OpenedRecording {
         if self.is_short() && *request == PathRequest::default() {
             return Some((0, end));
         }
-        let (far, wanted) = self.measure_stops(request);
-        // Lengths grow with the last stop, so the stops that fit follow each other.
-        let lasts = |first: usize| {
-            let behind = self.breaks.range(first + 1..).next().copied().unwrap_or(end + 1);
-            let rest = &far[first + 1..behind];
-            let least = rest.partition_point(|to| to - far[first] < *wanted.start());
-            let most = rest.partition_point(|to| to - far[first] <= *wanted.end());
-            first + 1 + least..first + 1 + most.max(least)
+        let (distances, wanted) = self.measure_stops(request);
+        // The last stops with which a stretch from `first` has a wanted length. Lengths grow with the last stop, so these stops
+        // follow each other.
+        let fitting_lasts = |first: usize| {
+            let gap_or_end = self.breaks.range(first + 1..).next().copied().unwrap_or(end + 1);
+            let rest = &distances[first + 1..gap_or_end];
+            let first_fit = rest.partition_point(|to| to - distances[first] < *wanted.start());
+            let fits_end = rest.partition_point(|to| to - distances[first] <= *wanted.end());
+            first + 1 + first_fit..first + 1 + fits_end.max(first_fit)
         };
-        if lasts(0).contains(&end) {
+        if fitting_lasts(0).contains(&end) {
             return Some((0, end));
         }
-        let firsts: Vec<usize> = (0..end).filter(|first| !lasts(*first).is_empty()).collect();
+        let firsts: Vec<usize> = (0..end).filter(|first| !fitting_lasts(*first).is_empty()).collect();
         let first = *firsts.get(dice.random_range(0..firsts.len().max(1)))?;
-        Some((first, dice.random_range(lasts(first))))
+        Some((first, dice.random_range(fitting_lasts(first))))
     }
 
     /// The distance of each stop from the first along the path, and the lengths that the request allows: in metres, or in
@@ -224,33 +226,6 @@ impl Platform for RecordingPlatform {
 
     fn list_scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
         Ok(self.source.scenes())
-    }
-
-    /// It is not known how much the labels of a recording leave out.
-    fn lists_everything(&self) -> bool {
-        false
-    }
-
-    /// Opens each recording and reads its first picture, to report all errors before a run meets them item by item.
-    fn check_scenes(&self, scenes: &BTreeSet<&SceneId>) -> Result<(), PlatformError> {
-        let all = self.source.scenes();
-        let known = scenes.iter().filter(|scene| all.binary_search(scene).is_ok());
-        let mut wrong: Vec<PlatformError> = known.filter_map(|scene| self.source.check(scene).err()).collect();
-        if all.len() < 2 {
-            return wrong.pop().map_or(Ok(()), Err);
-        }
-        if wrong.is_empty() {
-            return Ok(());
-        }
-        let told: String = wrong.iter().take(MOST_TOLD).map(|error| format!("\n  {error}")).collect();
-        let more = wrong.len().saturating_sub(MOST_TOLD);
-        let more = if more > 0 { format!("\n  and {more} more") } else { String::new() };
-        let reason = format!(
-            "{} of {} recordings cannot be read; move them away, or name the others with --scan:{told}{more}",
-            wrong.len(),
-            all.len()
-        );
-        Err(files::file_error(&self.path, reason, "docs/RECORDINGS.md lists what can be read"))
     }
 
     /// The frames in order, each joined to the next unless the way between them is unknown; empty without poses.
@@ -312,12 +287,60 @@ impl Platform for RecordingPlatform {
         Ok(View::new(Pose::looking_level(from.pose.position, gaze.heading), gaze.horizontal_fov_rad, None, None))
     }
 
+    fn catalogue(&self) -> &dyn SceneCatalogue {
+        self
+    }
+
+    fn files(&self) -> &dyn SceneFiles {
+        self
+    }
+}
+
+impl SceneCatalogue for RecordingPlatform {
+    /// It is not known how much the labels of a recording leave out.
+    fn lists_everything(&self) -> bool {
+        false
+    }
+
     fn object_name(&self, _: &SceneId, _: &Frame, _: &ObjectId) -> Result<Option<String>, PlatformError> {
         Ok(None)
     }
 
     fn visible_from(&self, _: &SceneId, _: &ObjectId) -> Result<Option<BTreeSet<ViewpointId>>, PlatformError> {
         Ok(None)
+    }
+}
+
+/// Checks whether a recording can be read: its list of pictures, and the first picture.
+fn check_recording(source: &dyn RecordingSource, scene: &SceneId) -> Result<(), PlatformError> {
+    let recording = source.open(scene)?;
+    let wanted = candidate_pictures(&recording);
+    recording.reel.glance_at(&wanted)?;
+    recording.reel.hand_out_pictures(&wanted[..wanted.len().min(1)], &mut |_, _| Ok(()))
+}
+
+impl SceneFiles for RecordingPlatform {
+    /// Opens each recording and reads its first picture, to report all errors before a run meets them item by item.
+    fn check_scenes(&self, scenes: &BTreeSet<&SceneId>) -> Result<(), PlatformError> {
+        let all = self.source.scenes();
+        let known = scenes.iter().filter(|scene| all.binary_search(scene).is_ok());
+        let mut wrong: Vec<PlatformError> =
+            known.filter_map(|scene| check_recording(&*self.source, scene).err()).collect();
+        if all.len() < 2 {
+            return wrong.pop().map_or(Ok(()), Err);
+        }
+        if wrong.is_empty() {
+            return Ok(());
+        }
+        let listed: String = wrong.iter().take(MOST_TOLD).map(|error| format!("\n  {error}")).collect();
+        let more = wrong.len().saturating_sub(MOST_TOLD);
+        let more = if more > 0 { format!("\n  and {more} more") } else { String::new() };
+        let reason = format!(
+            "{} of {} recordings cannot be read; move them away, or name the others with --scan:{listed}{more}",
+            wrong.len(),
+            all.len()
+        );
+        Err(files::file_error(&self.path, reason, "docs/RECORDINGS.md lists what can be read"))
     }
 
     fn source_files(&self, scene: &SceneId) -> Result<Vec<PathBuf>, PlatformError> {

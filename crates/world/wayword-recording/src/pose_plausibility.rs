@@ -17,7 +17,7 @@ const LEAST_M: f64 = 3.0;
 const STEP_M: f64 = 0.4;
 /// Steps that rise or fall by more than this share of their length are steeper than stairs and ramps (55 degrees).
 const STEEP_SHARE: f64 = 0.82;
-/// A path climbs if such steps make up this share of its length, which is more than a ladder.
+/// A path climbs if steep steps make up at least this share of its length. A single ladder makes up less.
 const CLIMBING_SHARE: f64 = 0.25;
 /// A path is level if it rises by at most this, metres, or by this share of its longest side.
 const PLANE_M: f64 = 0.5;
@@ -50,6 +50,7 @@ pub(crate) enum PoseDoubt {
 
 #[cfg(any(feature = "lerobot", feature = "mcap"))]
 impl PoseDoubt {
+    /// The doubt in words for the user.
     pub(crate) fn into_words(self) -> String {
         match self {
             Self::Misread(words) | Self::Odd(words) => words,
@@ -65,30 +66,30 @@ pub(crate) fn find_doubt(
 ) -> Option<PoseDoubt> {
     let walk = RecordedWalk::from_samples(samples).filter(|walk| walk.length_m >= LEAST_M)?;
     let climbs = walk.is_climbing(axes.world) && !walk.is_level(axes.world);
-    let stands = walk.is_upright(axes);
-    if stands == Some(true) && !climbs {
+    let is_upright = walk.is_upright(axes);
+    if is_upright == Some(true) && !climbs {
         return None;
     }
-    if let Some(meant) = likely_axes(&walk, axes, described) {
-        let odd = match (stands == Some(true), climbs) {
+    if let Some(likely) = likely_axes(&walk, axes, described) {
+        let oddity = match (is_upright == Some(true), climbs) {
             (true, _) => "the path climbs straight up",
             (false, true) => "the camera lies on its side and the path climbs straight up",
             (false, false) => "the camera lies on its side",
         };
         let words = format!(
-            "read with {}, {odd}; read with {}, the camera is upright and the path is level. Write {} into a \
+            "read with {}, {oddity}; read with {}, the camera is upright and the path is level. Write {} into a \
              recording.toml beside it, or {} if the poses are right as they are",
             axes_setting(axes),
-            axes_setting(meant),
-            changed_settings(axes, meant),
+            axes_setting(likely),
+            changed_settings(axes, likely),
             axes_setting(axes)
         );
         // A drone may look straight down or go straight up, and a phone may be turned on its side. Only both together are
         // certain.
-        let is_misread = climbs && stands == Some(false) && meant.world != axes.world;
+        let is_misread = climbs && is_upright == Some(false) && likely.world != axes.world;
         return Some(if is_misread { PoseDoubt::Misread(words) } else { PoseDoubt::Odd(words) });
     }
-    match stands {
+    match is_upright {
         Some(true) => None,
         Some(false) => walk.mean_up(axes).filter(|upright| *upright <= -WELL_UPRIGHT).map(|_| {
             PoseDoubt::Odd(format!(
@@ -103,13 +104,13 @@ pub(crate) fn find_doubt(
 
 /// The doubt about positions alone: they stay in a plane that would be level in another world.
 fn doubt_plane(walk: &RecordedWalk, axes: PoseAxes, described: &RecordingDescription) -> Option<PoseDoubt> {
-    let is_meant = |world: &WorldUpAxis| *world != axes.world && walk.is_level(*world) && !walk.is_climbing(*world);
-    let meant =
-        [WorldUpAxis::ZUp, WorldUpAxis::YUp].into_iter().find(is_meant).filter(|_| described.world.is_none())?;
-    let (now, meant) = (world_setting(axes.world), world_setting(meant));
+    let is_likely = |world: &WorldUpAxis| *world != axes.world && walk.is_level(*world) && !walk.is_climbing(*world);
+    let likely =
+        [WorldUpAxis::ZUp, WorldUpAxis::YUp].into_iter().find(is_likely).filter(|_| described.world.is_none())?;
+    let (now, likely) = (world_setting(axes.world), world_setting(likely));
     Some(PoseDoubt::Odd(format!(
-        "read with {now}, the path climbs and falls {:.1} m; read with {meant}, it stays level. If that is right, \
-         write {meant} into a recording.toml beside it (y-down if y grows downwards), else write {now}",
+        "read with {now}, the path climbs and falls {:.1} m; read with {likely}, it stays level. If that is right, \
+         write {likely} into a recording.toml beside it (y-down if y grows downwards), else write {now}",
         walk.climbed_m(axes.world)
     )))
 }
@@ -122,12 +123,12 @@ fn likely_axes(walk: &RecordedWalk, axes: PoseAxes, described: &RecordingDescrip
     let all = worlds.flat_map(|world| {
         [PoseBody::Robot, PoseBody::Optical, PoseBody::OpenGl].map(|body| PoseAxes { world, body, ..axes })
     });
-    let could = all.filter(|other| *other != axes && (other.body == axes.body || described.orientation.is_none()));
+    let allowed = all.filter(|other| *other != axes && (other.body == axes.body || described.orientation.is_none()));
     let fits = |other: &PoseAxes| {
         walk.mean_up(*other).is_some_and(|upright| upright >= WELL_UPRIGHT) && !walk.is_climbing(other.world)
     };
     let changes = |other: &PoseAxes| usize::from(other.world != axes.world) + usize::from(other.body != axes.body);
-    could
+    allowed
         .filter(fits)
         .min_by(|a, b| changes(a).cmp(&changes(b)).then(walk.distance_ahead(*b).total_cmp(&walk.distance_ahead(*a))))
 }
@@ -144,20 +145,21 @@ struct RecordedWalk {
 impl RecordedWalk {
     fn from_samples(samples: &[PoseSample]) -> Option<Self> {
         let mut places: Vec<DVec3> = Vec::new();
-        let mut held = Vec::new();
+        let mut orientations = Vec::new();
         for sample in samples.iter().filter(|sample| sample.position.is_finite()) {
             if places.last().is_none_or(|last: &DVec3| last.distance(sample.position) >= STEP_M) {
                 places.push(sample.position);
-                held.extend(sample.held);
+                orientations.extend(sample.held);
             }
         }
-        if (held.len() as f64) < LEAST_ORIENTED_SHARE * places.len() as f64 {
-            held.clear();
+        if (orientations.len() as f64) < LEAST_ORIENTED_SHARE * places.len() as f64 {
+            orientations.clear();
         }
         let length_m = places.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
-        (!places.is_empty()).then_some(Self { places, length_m, held })
+        (!places.is_empty()).then_some(Self { places, length_m, held: orientations })
     }
 
+    /// The way from each place to the next.
     fn steps(&self) -> impl Iterator<Item = DVec3> {
         self.places.windows(2).map(|pair| pair[1] - pair[0])
     }
@@ -190,6 +192,7 @@ impl RecordedWalk {
         steep.map(DVec3::length).sum::<f64>() >= CLIMBING_SHARE * self.length_m
     }
 
+    /// The distance that the path rises plus the distance that it falls, metres.
     fn climbed_m(&self, world: WorldUpAxis) -> f64 {
         self.steps().map(|step| step.dot(up_direction(world)).abs()).sum()
     }
@@ -203,7 +206,7 @@ impl RecordedWalk {
     }
 }
 
-/// A direction of the body in the recorded frame.
+/// A direction in the body's frame, turned into the recorded frame by the columns of recorded_from_body.
 fn recorded_direction([x, y, z]: &[DVec3; 3], of_body: DVec3) -> DVec3 {
     *x * of_body.x + *y * of_body.y + *z * of_body.z
 }

@@ -1,6 +1,6 @@
 //! The common form of all kinds of recordings: pictures in the order of their times, and the track of the camera.
 
-use crate::{choose::candidate_pictures, describe::RecordingDescription, track::CameraTrack};
+use crate::{describe::RecordingDescription, track::CameraTrack};
 use std::path::PathBuf;
 use wayword_core::{Image, PlatformError, SceneId};
 
@@ -20,17 +20,6 @@ pub(crate) trait RecordingSource: Send + Sync {
     /// # Errors
     /// When the program cannot determine these files.
     fn files(&self, scene: &SceneId) -> Result<Vec<PathBuf>, PlatformError>;
-
-    /// Checks whether one of [`RecordingSource::scenes`] can be read: its index, and its first picture.
-    ///
-    /// # Errors
-    /// When it cannot.
-    fn check(&self, scene: &SceneId) -> Result<(), PlatformError> {
-        let recording = self.open(scene)?;
-        let wanted = candidate_pictures(&recording);
-        recording.reel.glance_at(&wanted)?;
-        recording.reel.hand_out_pictures(&wanted[..wanted.len().min(1)], &mut |_, _| Ok(()))
-    }
 }
 
 /// One recording of one camera.

@@ -2,7 +2,6 @@
 
 use crate::{
     names::unknown_scene,
-    open::open_recording,
     reel::{Recording, RecordingSource},
 };
 use std::path::PathBuf;
@@ -33,29 +32,5 @@ impl RecordingSource for RecordingShelf {
 
     fn files(&self, scene: &SceneId) -> Result<Vec<PathBuf>, PlatformError> {
         self.find_source(scene)?.files(scene)
-    }
-
-    fn check(&self, scene: &SceneId) -> Result<(), PlatformError> {
-        self.find_source(scene)?.check(scene)
-    }
-}
-
-/// A recording that failed to open together with its folder. Its error is reported only when somebody uses this recording.
-pub(crate) struct UnopenedRecording {
-    pub(crate) scene: SceneId,
-    pub(crate) path: PathBuf,
-}
-
-impl RecordingSource for UnopenedRecording {
-    fn scenes(&self) -> Vec<SceneId> {
-        vec![self.scene.clone()]
-    }
-
-    fn open(&self, scene: &SceneId) -> Result<Recording, PlatformError> {
-        open_recording(&self.path)?.open(scene)
-    }
-
-    fn files(&self, scene: &SceneId) -> Result<Vec<PathBuf>, PlatformError> {
-        open_recording(&self.path)?.files(scene)
     }
 }

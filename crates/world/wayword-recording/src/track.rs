@@ -1,4 +1,4 @@
-//! The poses of the camera over time.
+//! The poses of the camera over time. A fix is one recorded pose; between two fixes the pose is interpolated.
 
 use wayword_core::{DVec3, Heading};
 
@@ -25,7 +25,7 @@ pub(crate) struct TrackFix {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct CameraTrack {
     fixes: Vec<TrackFix>,
-    /// A warning about them, in words.
+    /// A warning about the fixes for the user, if there is one.
     doubt: Option<String>,
 }
 
@@ -47,7 +47,7 @@ impl CameraTrack {
         Self { doubt: Some(doubt), ..self }
     }
 
-    /// The warning about it, in words.
+    /// The warning about the track for the user, if there is one.
     pub(crate) fn doubt(&self) -> Option<&str> {
         self.doubt.as_deref()
     }
@@ -76,6 +76,7 @@ impl CameraTrack {
     }
 }
 
+/// The pose at a time between two fixes, on the straight line and the short turn from one to the other.
 fn fix_between(before: TrackFix, after: TrackFix, time_s: f64) -> TrackFix {
     let share = ((time_s - before.time_s) / (after.time_s - before.time_s)).clamp(0.0, 1.0);
     let heading = match (before.heading, after.heading) {

@@ -4,8 +4,9 @@ use crate::picture::{RenderError, check_finite, check_size};
 use glam::{DMat3, DVec3};
 use wayword_core::ViewGaze;
 
-/// Narrowest and widest horizontal field of view of one flat picture, radians.
+/// Narrowest horizontal field of view of one flat picture, radians.
 const NARROWEST_RAD: f64 = 0.05;
+/// Widest horizontal field of view of one flat picture, radians.
 const WIDEST_RAD: f64 = 2.6;
 
 /// The gaze with its width limited to a field of view that one flat picture can show.
@@ -100,6 +101,7 @@ impl PinholeCamera {
         0.5 * f64::from(self.height) / libm::tan(0.5 * self.vertical_fov_rad)
     }
 
+    /// Refuses a camera with an unusable number: not finite, or out of range.
     pub(crate) fn check_numbers(&self) -> Result<(), RenderError> {
         check_size(self.width.into(), self.height.into())?;
         check_finite("position.x", self.position.x)?;

@@ -23,13 +23,16 @@ pub(crate) struct SceneTriangle {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TriangleCluster {
     pub(crate) first_triangle: u32,
+    /// Number of its triangles.
     pub(crate) triangles: u32,
     pub(crate) first_vertex: u32,
+    /// Number of its vertices.
     pub(crate) vertices: u32,
     /// Index into the scene's surfaces.
     pub(crate) surface: u32,
-    /// World-space box.
+    /// Middle of the box around its triangles, metres, world frame.
     pub(crate) centre: Vec3,
+    /// From the middle of the box to its sides, metres.
     pub(crate) half_extent: Vec3,
 }
 
@@ -55,6 +58,7 @@ impl TriangleSoup {
         }
     }
 
+    /// Adds a cluster of the triangles in `group`, numbers within the mesh. `stored` has the place of each vertex of the mesh.
     fn add_cluster(&mut self, mesh: &Mesh, group: &[u32], first_source: u32, surface: u32, stored: &mut [u32]) {
         let (first_vertex, first_triangle) = (self.positions.len() as u32, self.triangles.len() as u32);
         let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);

@@ -4,7 +4,6 @@
 //! the same face. The work is done for some columns at a time, in loops without branches, which compilers turn into
 //! vector instructions.
 
-use crate::cubemap::CubeFace;
 use glam::Vec3;
 
 /// Columns that are worked on at a time.
@@ -24,11 +23,11 @@ pub(crate) struct CubeSide {
 }
 
 impl CubeSide {
-    /// `face` is checked: square, and not empty.
-    pub(crate) fn new(face: CubeFace) -> Self {
-        let (side_px, mut rgb) = match face.side_px as usize {
-            1 => (2, face.rgb.repeat(4)),
-            side_px => (side_px, face.rgb),
+    /// `rgb` is checked: three bytes for each pixel of a square that is not empty. A side of one pixel becomes 2 x 2 equal ones.
+    pub(crate) fn new(side_px: u32, rgb: Vec<u8>) -> Self {
+        let (side_px, mut rgb) = match side_px as usize {
+            1 => (2, rgb.repeat(4)),
+            side_px => (side_px, rgb),
         };
         rgb.reserve_exact(2);
         rgb.extend([0; 2]);
@@ -77,12 +76,12 @@ impl RowRays {
         let mut met = [0; COLUMNS_PER_STEP];
         for (met, across) in met.iter_mut().zip(across) {
             let [x, y, z] = (self.start + self.step * *across).to_array();
-            let of_x = if x >= 0.0 { 2 } else { 4 };
-            let of_y = if y >= 0.0 { 0 } else { 5 };
-            let of_z = if z >= 0.0 { 1 } else { 3 };
+            let side_x = if x >= 0.0 { 2 } else { 4 };
+            let side_y = if y >= 0.0 { 0 } else { 5 };
+            let side_z = if z >= 0.0 { 1 } else { 3 };
             let (x, y, z) = (x.abs(), y.abs(), z.abs());
-            let of_yz = if y >= z { of_y } else { of_z };
-            *met = if (x >= y) & (x >= z) { of_x } else { of_yz };
+            let side_yz = if y >= z { side_y } else { side_z };
+            *met = if (x >= y) & (x >= z) { side_x } else { side_yz };
         }
         met
     }
@@ -140,6 +139,7 @@ impl RayLandings {
         places
     }
 
+    /// Draws these columns: three bytes each, interpolated between the four pixels around each place.
     fn draw_columns(&self, side: &CubeSide, row: &mut [u8]) {
         // Compilers turn these loops over array indices into vector instructions; they fail to with iterators.
         let columns = self.columns.min(COLUMNS_PER_STEP);
@@ -172,7 +172,7 @@ fn blend_pixels(pixels: [u32; 4], [right, down]: [f32; 2]) -> u32 {
 }
 
 /// Rounds a number in 0..[`WHOLE_NUMBER_OFFSET`] down. (A conversion with `as` also checks whether the number fits into an integer, and
-/// `f32::fast_floor` is a function call on the baseline x86-64.)
+/// `f32::floor` is a function call on the baseline x86-64.)
 fn floor_to_count(value: f32) -> u32 {
     let raised = value + WHOLE_NUMBER_OFFSET;
     let is_above = raised - WHOLE_NUMBER_OFFSET > value;

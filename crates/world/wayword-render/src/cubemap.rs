@@ -57,7 +57,7 @@ impl CubeMap {
     /// A cube map of six checked faces.
     ///
     /// # Errors
-    /// [`CubeMapError::CubeFace`] names the first face that is no square or has the wrong number of bytes.
+    /// [`CubeMapError::Face`] names the first face that is no square or has the wrong number of bytes.
     pub fn new(faces: [CubeFace; 6]) -> Result<Self, CubeMapError> {
         for (index, face) in faces.iter().enumerate() {
             let side = face.side_px as usize;
@@ -66,7 +66,7 @@ impl CubeMap {
                 return Err(CubeMapError::Face { face: index, side_px: face.side_px, bytes });
             }
         }
-        Ok(Self { sides: faces.map(CubeSide::new) })
+        Ok(Self { sides: faces.map(|face| CubeSide::new(face.side_px, face.rgb)) })
     }
 
     /// A cube map from the faces 0 to 5 side by side (Matterport3D's `*_skybox_small.jpg`), RGB.
@@ -79,12 +79,12 @@ impl CubeMap {
         if !fits {
             return Err(CubeMapError::Strip { width, height, bytes });
         }
-        let face = |index: usize| {
+        let side_at = |index: usize| {
             let rows = rgb.chunks_exact(18 * side);
             let part = rows.flat_map(|row| row[3 * side * index..3 * side * (index + 1)].iter().copied());
-            CubeFace { side_px: height, rgb: part.collect() }
+            CubeSide::new(height, part.collect())
         };
-        Ok(Self { sides: std::array::from_fn(|index| CubeSide::new(face(index))) })
+        Ok(Self { sides: std::array::from_fn(side_at) })
     }
 }
 
@@ -120,6 +120,7 @@ pub fn sample_view(
     };
     let axes = -(world_from_skybox.transpose() * camera.world_from_camera());
     let (right, up, forward) = (axes.x_axis.as_vec3(), axes.y_axis.as_vec3(), -axes.z_axis.as_vec3());
+    // The distance between two pixels on the image plane at distance 1.
     let pixel = (1.0 / camera.focal_px()) as f32;
     let across: Vec<f32> = (0..width).map(|x| (x as f32 + 0.5 - 0.5 * width as f32) * pixel).collect();
     let mut rgb = vec![0; 3 * width as usize * height as usize];

@@ -10,7 +10,7 @@
 //!
 //! ```
 //! use glam::{DVec3, Vec3};
-//! use wayword_render::{Camera, Material, Mesh, Scene, render};
+//! use wayword_render::{Mesh, MeshMaterial, PinholeCamera, RenderScene, render_scene};
 //!
 //! let wall = Mesh {
 //!     positions: vec![Vec3::new(-1.0, 2.0, 0.0), Vec3::new(1.0, 2.0, 0.0), Vec3::new(0.0, 2.0, 2.0)],
@@ -18,8 +18,8 @@
 //!     id: 7,
 //!     ..Mesh::default()
 //! };
-//! let scene = Scene::new(vec![wall], vec![Material::default()], vec![])?;
-//! let camera = Camera {
+//! let scene = RenderScene::new(vec![wall], vec![MeshMaterial::default()], vec![])?;
+//! let camera = PinholeCamera {
 //!     position: DVec3::new(0.0, 0.0, 1.0),
 //!     heading_rad: 0.0,
 //!     elevation_rad: 0.0,
@@ -27,10 +27,16 @@
 //!     width: 64,
 //!     height: 48,
 //! };
-//! let picture = render(&scene, &camera)?;
+//! let picture = render_scene(&scene, &camera)?;
 //! assert_eq!(picture.ids[24 * 64 + 32], 7);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! # Where things are
+//! - `evident`: which objects of a picture are visible enough to be named; `visibility` counts their pixels.
+//! - `panorama`, `storey`, `top_down`: panoramas, and maps from above.
+//! - `mipmap`, `texture`: how textures are looked up.
+//! - `cubemap`, `cube_row`: views out of photographs.
 
 mod background;
 mod bilinear;

@@ -36,11 +36,12 @@ impl MipLevel {
         level
     }
 
-    /// The part of a texel's index that depends on its row. The index is `row(y) + in_row(x)`.
+    /// The part of a texel's index that depends on its row. The index is `row_offset(y) + in_row(x)`.
     fn row_offset(&self, y: usize) -> usize {
         (y >> 2) * self.blocks_per_row * 16 + (y & 3) * 4
     }
 
+    /// The part of a texel's index that depends on its column.
     fn in_row(&self, x: usize) -> usize {
         (x >> 2) * 16 + (x & 3)
     }
@@ -106,7 +107,8 @@ fn split_coordinate(u: f32, side: u32) -> (usize, usize, u64) {
     (index, next, weight.clamp(0, WEIGHT_STEPS as i32) as u64)
 }
 
-/// `f32::fast_floor` is a function call on the baseline x86-64; this is not.
+/// Rounds down. (`f32::floor` is a function call on the baseline x86-64; this is not.) From 2^23 on, a number has no
+/// fraction.
 fn fast_floor(value: f32) -> f32 {
     if value.abs() >= 8_388_608.0 {
         return value;
@@ -151,6 +153,7 @@ impl MipMap {
         }
     }
 
+    /// Drops all levels but the full picture.
     pub(crate) fn drop_chain(&mut self) {
         self.smaller.clear();
     }

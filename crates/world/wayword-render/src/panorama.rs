@@ -68,9 +68,9 @@ pub fn join_panorama(
             check_view(index, view)?;
         }
     }
-    let there = || views.iter().flatten();
-    let widest = there().map(|view| view.width).max().ok_or(PanoramaError::Empty)?;
-    let lowest = there().map(|view| f64::from(view.height) / f64::from(view.width)).fold(f64::INFINITY, f64::min);
+    let given_views = || views.iter().flatten();
+    let widest = given_views().map(|view| view.width).max().ok_or(PanoramaError::Empty)?;
+    let lowest = given_views().map(|view| f64::from(view.height) / f64::from(view.width)).fold(f64::INFINITY, f64::min);
     // A view of 90 degrees has half its width in pixels for each radian in its middle.
     let natural = (PI * f64::from(widest)).round() as u32;
     let width = width.unwrap_or(natural.min(MAX_SIDE_PX));

@@ -16,14 +16,19 @@ pub(crate) struct BatchTriangleIndex {
 }
 
 impl BatchTriangleIndex {
+    /// The value of a pixel that no triangle covers.
     pub(crate) const NO_TRIANGLE: Self = Self { batch: u32::MAX, place: u32::MAX };
 }
 
 /// Some whole rows of the picture, with the nearest triangle of each pixel.
 pub(crate) struct PictureBand {
+    /// Pixels per row.
     pub(crate) width: u32,
+    /// The picture's row with which the band begins.
     pub(crate) first_row: u32,
+    /// Nearness of the nearest triangle at each pixel, as in `ScreenCorner::nearness`.
     pub(crate) nearness: Vec<f32>,
+    /// The nearest triangle at each pixel.
     pub(crate) seen: Vec<BatchTriangleIndex>,
 }
 
@@ -61,8 +66,8 @@ impl PictureBand {
         }
     }
 
-    /// Draws one triangle. `precedes` decides between two triangles that are equally near: it is true if this triangle comes
-    /// before the other.
+    /// Draws one triangle into the rows before `end`. Pixels where it is nearest get its index `seen`. `precedes` decides
+    /// between two triangles that are equally near: it is true if this triangle comes before the other.
     fn draw_triangle(
         &mut self,
         triangle: &ScreenTriangle,
@@ -99,8 +104,10 @@ impl PictureBand {
 /// A directed edge, with a value at each pixel: the pixel is inside the edge if the value is not negative.
 #[derive(Clone, Copy, Debug)]
 struct TriangleEdge {
+    /// Where it begins, sub-pixel steps.
     x: i64,
     y: i64,
+    /// From there to its end, sub-pixel steps.
     dx: i64,
     dy: i64,
     /// 0, or -1 where pixels exactly on the edge belong to the neighbour: all but top and left edges.
@@ -108,6 +115,7 @@ struct TriangleEdge {
 }
 
 impl TriangleEdge {
+    /// The edge's value at a pixel's centre.
     fn value_at(&self, column: u32, row: u32) -> i64 {
         self.dx * (pixel_centre(row) - self.y) - self.dy * (pixel_centre(column) - self.x) + self.bias
     }
@@ -123,6 +131,7 @@ fn pixel_centre(pixel: u32) -> i64 {
     i64::from(pixel) * i64::from(SUBPIXEL_STEPS) + i64::from(SUBPIXEL_STEPS / 2)
 }
 
+/// The three edges of a triangle, in the order of its corners.
 fn triangle_edges(triangle: &ScreenTriangle) -> [TriangleEdge; 3] {
     let corners = &triangle.corners;
     [(0, 1), (1, 2), (2, 0)].map(|(from, to)| {
@@ -161,8 +170,10 @@ fn ceil_quotient(numerator: i64, denominator: i64) -> i64 {
 
 /// Nearness as a linear function of the position on the screen.
 struct NearnessPlane {
+    /// A corner of the triangle, sub-pixel steps.
     x: i64,
     y: i64,
+    /// Nearness at this corner.
     base: f64,
     /// Change per step to the right and down.
     gradient: [f64; 2],

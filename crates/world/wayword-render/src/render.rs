@@ -48,7 +48,7 @@ pub(crate) fn draw_view(
     let batches = visible_batches(scene, view);
     let rows = height.div_ceil(BANDS_PER_PICTURE);
     let bands = picture.depth_m.par_chunks_mut(rows * width).zip(picture.ids.par_chunks_mut(rows * width));
-    let drawn = |index: usize, depth_m: &mut [f32], ids: &mut [u32]| {
+    let draw_band = |index: usize, depth_m: &mut [f32], ids: &mut [u32]| {
         let mut band = PictureBand::new(view.width, (index * rows) as u32, ids.len() / width);
         band.draw_batches(&batches, &scene.soup.triangles);
         write_depths(view, &band, depth_m);
@@ -59,12 +59,12 @@ pub(crate) fn draw_view(
     };
     match background {
         None => bands.enumerate().for_each(|(index, (depth_m, ids))| {
-            drawn(index, depth_m, ids);
+            draw_band(index, depth_m, ids);
         }),
         Some(background) => {
             let colours = picture.rgb.par_chunks_mut(3 * rows * width);
             colours.zip(bands).enumerate().for_each(|(index, (rgb, (depth_m, ids)))| {
-                let band = drawn(index, depth_m, ids);
+                let band = draw_band(index, depth_m, ids);
                 BandPainter { scene, view, background, batches: &batches, band: &band }.paint_band(rgb);
             });
         }
@@ -100,6 +100,7 @@ struct BandPainter<'a> {
 }
 
 impl BandPainter<'_> {
+    /// Colours the pixels run by run: neighbours in a row that show the same triangle.
     fn paint_band(&self, rgb: &mut [u8]) {
         let width = self.band.width as usize;
         for (row, seen) in self.band.seen.chunks_exact(width).enumerate() {
@@ -121,6 +122,7 @@ impl BandPainter<'_> {
         }
     }
 
+    /// Colours a run of background pixels from column `first` of a row on.
     fn paint_background<'b>(&self, colours: impl Iterator<Item = &'b mut [u8]>, [first, row]: [usize; 2]) {
         for (column, colour) in (first..).zip(colours) {
             colour.copy_from_slice(&self.background.colour_along(self.view.sin_elevation(column, row)));

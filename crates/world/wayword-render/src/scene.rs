@@ -27,7 +27,9 @@ pub enum TextureFilter {
 /// Meshes, materials and textures, checked and prepared for drawing.
 #[derive(Debug)]
 pub struct RenderScene {
+    /// The triangles of all meshes.
     pub(crate) soup: TriangleSoup,
+    /// One for each mesh.
     pub(crate) surfaces: Vec<MeshSurface>,
     pub(crate) materials: Vec<MeshMaterial>,
     pub(crate) textures: Vec<MipMap>,
@@ -148,8 +150,9 @@ impl RenderScene {
         let mut soup = TriangleSoup::default();
         let mut surfaces = Vec::with_capacity(meshes.len());
         for (index, mesh) in meshes.into_iter().enumerate() {
-            let none = SceneError::NoMaterial { mesh: index, material: mesh.material, materials: materials.len() };
-            let material = materials.get(mesh.material).ok_or(none)?;
+            let no_material =
+                SceneError::NoMaterial { mesh: index, material: mesh.material, materials: materials.len() };
+            let material = materials.get(mesh.material).ok_or(no_material)?;
             check_mesh(index, &mesh, material.texture.is_some())?;
             soup.add_mesh(&mesh, surfaces.len() as u32);
             surfaces.push(MeshSurface { id: mesh.id, material: mesh.material });
@@ -191,24 +194,24 @@ fn check_material(material: usize, given: &MeshMaterial, textures: usize) -> Res
 
 fn check_mesh(index: usize, mesh: &Mesh, textured: bool) -> Result<(), SceneError> {
     let vertices = mesh.positions.len();
-    let length = |field, length: usize, may_be_empty| {
+    let check_length = |field, length: usize, may_be_empty| {
         if length == vertices || (may_be_empty && length == 0) {
             return Ok(());
         }
         let or_none = if may_be_empty { ", or none" } else { "" };
         Err(SceneError::Length { mesh: index, field, length, vertices, or_none })
     };
-    length("uvs", mesh.uvs.len(), !textured)?;
-    length("colours", mesh.colours.len(), true)?;
-    let value = |field, bad: Option<usize>, wanted| match bad {
+    check_length("uvs", mesh.uvs.len(), !textured)?;
+    check_length("colours", mesh.colours.len(), true)?;
+    let check_value = |field, bad: Option<usize>, wanted| match bad {
         Some(at) => Err(SceneError::Value { mesh: index, field, index: at, wanted }),
         None => Ok(()),
     };
     let far = mesh.positions.iter().position(|p| !p.is_finite() || p.abs().max_element() > MAX_COORDINATE_M);
-    value("positions", far, "finite and within 1000 km of the origin")?;
-    value("uvs", mesh.uvs.iter().position(|uv| !uv.is_finite()), "finite")?;
+    check_value("positions", far, "finite and within 1000 km of the origin")?;
+    check_value("uvs", mesh.uvs.iter().position(|uv| !uv.is_finite()), "finite")?;
     let dark = mesh.colours.iter().position(|c| !c.iter().all(|v| v.is_finite() && *v >= 0.0));
-    value("colours", dark, "finite and not negative")?;
+    check_value("colours", dark, "finite and not negative")?;
     for (triangle, corners) in mesh.triangles.iter().enumerate() {
         if let Some(&vertex) = corners.iter().find(|&&vertex| vertex as usize >= vertices) {
             return Err(SceneError::Vertex { mesh: index, triangle, vertex, vertices });

@@ -16,7 +16,9 @@ pub(crate) struct TriangleShader<'a> {
     material: &'a MeshMaterial,
     /// The corners, in sub-pixel steps.
     corners: [[i64; 2]; 3],
+    /// 1 / twice the area of the triangle on the screen.
     inverse_area: f32,
+    /// 1 / depth of each corner; 1 on a map. `w` is the customary name of the divisor in perspective.
     inverse_w: Vec3,
     /// Attributes at the corners.
     uvs: [Vec2; 3],
@@ -65,6 +67,7 @@ impl<'a> TriangleShader<'a> {
         (light * texel + Vec3::splat(0.5)).to_array().map(|value| value as u8)
     }
 
+    /// Texture coordinates for these shares of the three corners.
     fn uv_at(&self, share: Vec3) -> Vec2 {
         self.uvs[0] * share.x + self.uvs[1] * share.y + self.uvs[2] * share.z
     }

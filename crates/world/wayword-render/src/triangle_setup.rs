@@ -21,9 +21,9 @@ pub(crate) struct ScreenTriangle {
     pub(crate) corners: [ScreenCorner; 3],
     /// Index into the scene's triangles.
     pub(crate) triangle: u32,
-    /// Index into its batch's cuts.
+    /// Index into its batch's cuts, or [`NO_CUT`].
     cut: u32,
-    /// Whether the last two corners were swapped for that.
+    /// Whether the last two corners were swapped to make the area positive.
     swapped: bool,
     /// Rows of pixels it can cover, both ends included.
     pub(crate) rows: [u16; 2],
@@ -68,6 +68,7 @@ pub(crate) fn visible_batches(scene: &RenderScene, view: &ViewProjection) -> Vec
     clusters.filter_map(|cluster| batch_for_cluster(scene, view, &clip_planes, cluster)).collect()
 }
 
+/// The triangles that a cluster puts on the screen; `None` if there are none.
 fn batch_for_cluster(
     scene: &RenderScene,
     view: &ViewProjection,
@@ -110,6 +111,7 @@ fn usable_corners(scene: &RenderScene, view: &ViewProjection, cluster: &Triangle
     positions.iter().map(corner).collect()
 }
 
+/// Clips a triangle, and adds the convex polygon that remains as a fan of triangles.
 fn push_clipped(
     builder: &mut TriangleBatchBuilder,
     scene: &RenderScene,
@@ -132,12 +134,15 @@ fn push_clipped(
 
 /// Collects the triangles of a batch that can be seen.
 struct TriangleBatchBuilder {
+    /// Width and height of the picture, pixels.
     size: [u32; 2],
     double_sided: bool,
     batch: TriangleBatch,
 }
 
 impl TriangleBatchBuilder {
+    /// Adds a triangle unless it has no area, faces away or covers no pixel. `cut` has the weights of the corners of a
+    /// clipped one.
     fn push_triangle(&mut self, mut corners: [ScreenCorner; 3], triangle: u32, cut: Option<[Vec3; 3]>) {
         // Counter-clockwise in the world is a negative area here, where y runs down.
         let area = doubled_area(&corners);
@@ -162,6 +167,7 @@ impl TriangleBatchBuilder {
     }
 }
 
+/// Twice the signed area of a triangle on the screen, in square steps.
 fn doubled_area([a, b, c]: &[ScreenCorner; 3]) -> i64 {
     let (ab, ac) = ([b.x - a.x, b.y - a.y].map(i64::from), [c.x - a.x, c.y - a.y].map(i64::from));
     ab[0] * ac[1] - ab[1] * ac[0]

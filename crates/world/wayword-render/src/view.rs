@@ -51,6 +51,7 @@ pub(crate) struct ViewProjection {
     right: Vec3,
     down: Vec3,
     forward: Vec3,
+    /// True for a camera, false for a map.
     perspective: bool,
     /// Pixels per tangent, or per metre on a map.
     scale_px: f32,
@@ -58,6 +59,7 @@ pub(crate) struct ViewProjection {
 }
 
 impl ViewProjection {
+    /// The projection of a pinhole camera.
     pub(crate) fn of_camera(camera: &PinholeCamera) -> Self {
         let axes = camera.world_from_camera();
         Self::new(camera.position, axes, true, camera.focal_px(), [camera.width, camera.height])
@@ -100,6 +102,7 @@ impl ViewProjection {
         self.planes_at(self.centre_px.map(|half| half + 1.0))
     }
 
+    /// The near plane, and the planes at this many pixels left, right, above and below the middle of the picture.
     fn planes_at(&self, half_px: [f32; 2]) -> [ClipPlane; 5] {
         let near = ClipPlane { normal: Vec3::Z, offset: if self.perspective { -NEAR_M } else { 0.0 } };
         let side = |axis: Vec3, half_px: f32| {

@@ -97,9 +97,9 @@ fn parse_connectivity(bytes: &[u8]) -> Result<ConnectivityGraph, String> {
     let mut included = Vec::with_capacity(items.len());
     let mut viewpoints = Vec::new();
     for (number, item) in items.iter().enumerate() {
-        let found = parse_viewpoint(item).map_err(|reason| format!("viewpoint {number}: {reason}"))?;
-        included.push(found.as_ref().map(|_| viewpoints.len()));
-        viewpoints.extend(found);
+        let viewpoint = parse_viewpoint(item).map_err(|reason| format!("viewpoint {number}: {reason}"))?;
+        included.push(viewpoint.as_ref().map(|_| viewpoints.len()));
+        viewpoints.extend(viewpoint);
     }
     let mut edges = Vec::new();
     for (number, item) in items.iter().enumerate() {

@@ -59,7 +59,7 @@ pub fn target_for_object(
     last: &Frame,
     object: &ObjectId,
 ) -> Result<Option<PathTarget>, PlatformError> {
-    let Some(name) = platform.object_name(scene, last, object)? else {
+    let Some(name) = platform.catalogue().object_name(scene, last, object)? else {
         return Ok(None);
     };
     let around = labels_around(platform, scene, last)?;

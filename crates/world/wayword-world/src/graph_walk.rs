@@ -29,6 +29,7 @@ pub fn sample_graph_path(
     let heading = Heading::new(rng.random_range(0.0..TAU)).unwrap_or(Heading::NORTH);
     let mut starts: Vec<&ViewpointId> = graph.viewpoints().collect();
     starts.shuffle(&mut rng);
+    // The first route that ends where no object is visible. It is used if no better one is found.
     let mut bare: Option<ViewpointRoute> = None;
     let mut bare_ends = 0;
     for start in starts {

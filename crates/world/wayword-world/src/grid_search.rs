@@ -10,8 +10,9 @@ use std::{cmp::Reverse, collections::BinaryHeap};
 pub const EIGHT_NEIGHBOUR_STEPS: [(i32, i32); 8] =
     [(1, 0), (0, 1), (-1, 0), (0, -1), (1, 1), (-1, 1), (-1, -1), (1, -1)];
 
-/// Lengths of steps in thousandths of a cell, as whole numbers, so that sums are exact.
+/// Length of a straight step in thousandths of a cell: a whole number, so that sums are exact.
 const STRAIGHT_STEP_MILLICELLS: u64 = 1000;
+/// Length of a diagonal step in thousandths of a cell: the square root of 2, rounded down.
 const DIAGONAL_STEP_MILLICELLS: u64 = 1414;
 
 /// The free cells around a cell, with the length of the step to each. `free` turns an offset in columns and rows into

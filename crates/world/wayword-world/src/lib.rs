@@ -4,7 +4,7 @@
 //! socket in the same way. [`connectivity`] reads viewpoint graphs in Matterport's format, and [`json_values`] takes values
 //! out of JSON.
 //!
-//! Paths: [`sample_open_path`] draws random paths over open ground, and [`graph_walk`] along a viewpoint graph. [`grid_search`]
+//! Paths: [`open_ground`] draws random paths over open ground, and [`graph_walk`] along a viewpoint graph. [`grid_search`]
 //! finds shortest ways over a grid. [`episode_path`] turns an episode of a dataset into a path.
 //!
 //! Scenes: [`survey_scene`](mod@survey) collects the rooms and objects at all viewpoints, and [`seen_from`](mod@seen_from)

@@ -1,4 +1,4 @@
-//! Turns annotators' names of objects into everyday words.
+//! Turns annotators' names of objects into everyday words: `bathroom##sink` becomes "bathroom sink".
 
 /// Spelling mistakes of the annotators, each with the intended word. Only mistakes that leave no doubt are listed.
 const SPELLING_MISTAKES: &[(&str, &str)] = &[

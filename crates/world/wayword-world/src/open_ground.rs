@@ -43,6 +43,7 @@ pub fn sample_open_path(
     request: &PathRequest,
     seed: u64,
 ) -> Result<Option<Path>, PlatformError> {
+    // The first path without a target. It is used if no better one is found.
     let mut bare = None;
     let mut bare_ends = 0;
     for _ in 0..MAX_PAIRS_TRIED {

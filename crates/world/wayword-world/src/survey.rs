@@ -11,7 +11,7 @@ use wayword_core::{
 /// When there is no such scene, or its data cannot be read.
 pub fn survey_scene(platform: &dyn Platform, scene: &SceneId) -> Result<ViewpointSurvey, PlatformError> {
     let graph = platform.graph_for_scene(scene)?;
-    let known = |id: &ViewpointId, position: DVec3| {
+    let visit_viewpoint = |id: &ViewpointId, position: DVec3| {
         let pose = Pose::looking_level(position, Heading::NORTH);
         let frame = Frame { pose, viewpoint: Some(id.clone()), level: graph.level_of(id) };
         let mut known = ViewpointKnowledge { room: None, things: Some(Vec::new()) };
@@ -29,11 +29,11 @@ pub fn survey_scene(platform: &dyn Platform, scene: &SceneId) -> Result<Viewpoin
         }
         Ok::<_, SurveyError>(known)
     };
-    let survey = ViewpointSurvey::from_graph(&graph, known).map_err(|trouble| match trouble {
+    let survey = ViewpointSurvey::from_graph(&graph, visit_viewpoint).map_err(|trouble| match trouble {
         SurveyError::Platform(error) => error,
         SurveyError::Graph(source) => PlatformError::Graph { scene: scene.clone(), source },
     })?;
-    Ok(survey.with_objects(platform.listed_objects(scene)?))
+    Ok(survey.with_objects(platform.catalogue().listed_objects(scene)?))
 }
 
 /// Why a survey failed: the two kinds of error that can occur while viewpoints are visited.

@@ -37,6 +37,9 @@ const ROOM_GROUPS: [(&str, &[&str]); 7] = [
 ];
 
 /// Fits the weights, prints how they do on the buildings that were left out, and writes the file.
+///
+/// # Errors
+/// When the data or the texts cannot be read, or the file cannot be written.
 pub fn fit_evidence_weights(
     data: &Path,
     episodes: &Path,

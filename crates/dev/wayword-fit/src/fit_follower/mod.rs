@@ -27,6 +27,7 @@ const CONTRAST_WEIGHT: f64 = 1.0;
 /// How many texts one thread adds up at a time.
 const TEXTS_PER_CHUNK: usize = 8;
 
+/// The flags of `fit-follower`.
 #[derive(Debug, Args)]
 pub struct FitFollowerArgs {
     /// Folder of Matterport3D's and REVERIE's data.
@@ -52,6 +53,10 @@ pub struct FitFollowerArgs {
     out: Option<PathBuf>,
 }
 
+/// Fits the weights of both followers, prints how they do on the buildings that were left out, and writes the files.
+///
+/// # Errors
+/// When the data or the texts cannot be read, or a file cannot be written.
 pub fn fit_follower_weights(flags: &FitFollowerArgs, output: &CommandOutput) -> Result<(), CommandError> {
     let (scenes, files) = read_texts(&flags.data, &flags.episodes)?;
     let names: BTreeSet<SceneId> = scenes.iter().map(|scene| scene.name.clone()).collect();

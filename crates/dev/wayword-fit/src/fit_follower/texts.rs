@@ -19,8 +19,10 @@ use wayword_world::{path_of, survey_scene};
 
 /// A building as the follower and the platform know it.
 pub struct FollowerScene {
+    /// Its name.
     pub name: SceneId,
     pub(super) survey: ViewpointSurvey,
+    /// The building as the follower knows it.
     pub building: KnownBuilding,
     graph: Arc<ViewpointGraph>,
 }
@@ -33,8 +35,11 @@ pub struct WalkedText {
     pub(super) file: usize,
     /// Its words.
     pub words: String,
+    /// What the follower reads in the words.
     pub guide: Guide,
+    /// The annotated walk: numbers of viewpoints in the survey of the building.
     pub walk: Vec<usize>,
+    /// The heading at its start, radians.
     pub heading_rad: f64,
     /// For each viewpoint, its distance over the graph from the goal, metres.
     pub to_goal_m: Vec<f64>,
@@ -48,6 +53,9 @@ pub const SUCCESS_M: f64 = 3.0;
 
 /// Reads the texts of files, one list for each, and surveys their buildings. Paths of buildings that the platform lacks are
 /// skipped.
+///
+/// # Errors
+/// When the data or a file cannot be read.
 pub fn read_texts(data: &Path, files: &[PathBuf]) -> Result<(Vec<FollowerScene>, Vec<Vec<WalkedText>>), CommandError> {
     let matterport =
         AskedPlatform { platform: Some("matterport".into()), data: Some(data.to_owned()), ..AskedPlatform::default() };

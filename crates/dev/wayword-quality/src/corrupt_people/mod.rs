@@ -75,6 +75,10 @@ pub(crate) fn flip_one_turn(text: &str, rng: &mut impl Rng) -> Option<String> {
     Some(apply_edits(text, vec![edit])?.0)
 }
 
+/// Makes people's texts wrong, and writes them with their key.
+///
+/// # Errors
+/// When the data or the texts cannot be read, no text can be changed in the ways that are asked for, or a file cannot be written.
 pub fn write_corruptions(flags: &CorruptPeopleArgs, output: &CommandOutput) -> Result<(), CommandError> {
     let platform = platforms::open_named("matterport", Some(&flags.data), None, None)?;
     let mut episodes = read_episodes(&flags.episodes, platform.as_ref())?;

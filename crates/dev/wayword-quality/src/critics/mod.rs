@@ -102,6 +102,10 @@ impl PeopleTexts {
     }
 }
 
+/// Correlates critics with the success of agents or people, and prints the table.
+///
+/// # Errors
+/// When the folder is no comparison or study with results, or the references, the pictures or the model cannot be read.
 pub fn show_correlations(flags: &CriticsArgs, output: &CommandOutput) -> Result<(), CommandError> {
     let found = find_correlations(flags, output)?;
     output.print_result(&found, correlate::table_lines(&found).join("\n"));

@@ -17,6 +17,10 @@ use wayword_formats::hear_annotations::{self, LabelledText};
 use wayword_run::{error::CommandError, output::CommandOutput, platforms, settings::AskedSettings};
 use wayword_world::path_of;
 
+/// Compares the findings of `wayword check` with spans that people labelled, and prints the figures.
+///
+/// # Errors
+/// When the labelled texts cannot be read, the platform lacks a path of theirs, and as `wayword check`.
 pub fn measure_people(flags: JudgingArgs, output: &CommandOutput) -> Result<(), CommandError> {
     let (show, seed, is_json) = (flags.check.show, flags.seed, flags.json);
     let (texts, CheckedTexts { findings, doubts, report }) = check_labelled_texts(flags, output)?;

@@ -1,7 +1,7 @@
 //! Simulates choices between the texts of three systems, and the intervals of the strengths that a Bradley-Terry model gives them.
 
+use super::CONFIDENCE_LEVEL;
 use super::assignment::{AnswerSlot, STUDY_ITEM_COUNT};
-use super::figure::CONFIDENCE_LEVEL;
 use super::logits::{draw_normals, mean_over_normal};
 use rand::Rng;
 use std::f64::consts::SQRT_2;

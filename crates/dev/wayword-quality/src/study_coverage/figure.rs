@@ -1,14 +1,11 @@
 //! The figures of a study that are simulated: their true values, and the intervals that one simulated study gives.
 
 use super::assignment::{EffectSize, SimulatedDesign, assign_slots};
-use super::{choices, ratings, walks};
+use super::{CONFIDENCE_LEVEL, choices, ratings, walks};
 use rand::Rng;
 use serde::Serialize;
 use std::fmt;
 use wayword_metrics::{ConfidenceInterval, answer_mean, answer_share, mean_difference, share_difference};
-
-/// The share that an interval should cover.
-pub(super) const CONFIDENCE_LEVEL: f64 = 0.95;
 
 /// A figure of a study. Shares and means have a base: the share of success in the first condition.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]

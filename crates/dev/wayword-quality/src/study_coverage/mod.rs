@@ -13,6 +13,9 @@ use crate::share::aligned_table;
 use clap::Args;
 use wayword_run::{error::CommandError, output::CommandOutput};
 
+/// The share that an interval should cover.
+const CONFIDENCE_LEVEL: f64 = 0.95;
+
 /// The flags of `study-coverage`.
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -32,6 +35,10 @@ pub struct StudyCoverageArgs {
     pub json: bool,
 }
 
+/// Simulates studies, and prints how often the intervals of their figures cover the truth.
+///
+/// # Errors
+/// Never. The result has the type that all measurements return.
 pub fn measure_study_coverage(flags: &StudyCoverageArgs, output: &CommandOutput) -> Result<(), CommandError> {
     let cells = coverage_table::simulate_all(flags.studies, flags.seed);
     output.print_result(&cells, aligned_table(&coverage_table::coverage_rows(&cells)));

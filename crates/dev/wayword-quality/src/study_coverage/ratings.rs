@@ -1,7 +1,7 @@
 //! Simulates ratings on five levels, and the interval of Krippendorff's alpha, which measures how far persons agree.
 
+use super::CONFIDENCE_LEVEL;
 use super::assignment::{AnswerSlot, STUDY_ITEM_COUNT};
-use super::figure::CONFIDENCE_LEVEL;
 use super::logits::{draw_normals, expit, mean_over_normal};
 use rand::Rng;
 use wayword_metrics::{AnswerScale, ConfidenceInterval, StudyAnswer, krippendorff_alpha};

@@ -81,6 +81,10 @@ struct TellingGram {
     people: f64,
 }
 
+/// Tells generated texts from people's, and prints how well that works and by which words.
+///
+/// # Errors
+/// When a file cannot be read, or no item has texts in both.
 pub fn measure_tell_apart(flags: &TellApartArgs, output: &CommandOutput) -> Result<(), CommandError> {
     let people = by_item(wayword_formats::read_any_format(&flags.people)?);
     let generated = by_item(wayword_formats::read_any_format(&flags.generated)?);

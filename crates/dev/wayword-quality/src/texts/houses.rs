@@ -63,6 +63,10 @@ impl HousePlanComparison {
     }
 }
 
+/// Compares texts about generated houses with their plans, and prints the figures of each style.
+///
+/// # Errors
+/// When a run cannot be read, or a house cannot be drawn.
 pub fn measure_house_texts(flags: &HouseTextsArgs, output: &CommandOutput) -> Result<(), CommandError> {
     let platform = platforms::open_platform(&AskedSettings::default().resolve()?)?;
     let mut styles: BTreeMap<String, Vec<HousePlanComparison>> = BTreeMap::new();

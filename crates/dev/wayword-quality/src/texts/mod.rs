@@ -54,6 +54,10 @@ pub struct TextFiguresArgs {
     pub json: bool,
 }
 
+/// Prints figures of generated texts next to those of people's texts about the same items.
+///
+/// # Errors
+/// When a file cannot be read, or the platform cannot be opened or lacks a scene.
 pub fn measure_texts(flags: &TextFiguresArgs, output: &CommandOutput) -> Result<(), CommandError> {
     let generated = wayword_formats::read_any_format(&flags.generated)?;
     let people = flags.people.as_deref().map(|file| of_items(file, &generated)).transpose()?;

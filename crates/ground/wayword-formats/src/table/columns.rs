@@ -1,4 +1,4 @@
-//! Fills the columns of the table, in the order of the schema.
+//! Writes the columns of the Parquet table, in the order of its schema.
 
 use super::{
     ParquetRow,
@@ -97,7 +97,7 @@ impl<W: Write + Send> ColumnWriter<'_, '_, W> {
         self.put_words(rows, |row| &row.record.instruction.provenance.writer)?;
         self.words_or_null(rows, |row| row.record.instruction.provenance.finished_for.as_deref())?;
         self.put_words(rows, |row| &row.record.instruction.provenance.checked_against)?;
-        // In the schema, the bits are those of an unsigned number.
+        // The schema declares this column unsigned; the same bits are passed as a signed number.
         self.put_column::<Int64Type>(&required_column(rows, |row| {
             row.record.instruction.provenance.seed.cast_signed()
         }))?;
@@ -123,7 +123,8 @@ impl<W: Write + Send> ColumnWriter<'_, '_, W> {
     }
 }
 
-/// The nodes of the viewpoint graph; `None` if a frame is not a node, or the names are those of pictures.
+/// The viewpoints of the path; `None` if a frame has none. If the motion is unknown, the frames are named after pictures, and these
+/// names are left out.
 fn viewpoint_names(row: &ParquetRow<'_>) -> Option<Vec<ByteArray>> {
     let frames = row.record.path.frames.iter().filter(|_| row.record.path.motion.is_known());
     let names = frames.map(|frame| frame.viewpoint.as_ref().map(|viewpoint| ByteArray::from(viewpoint.as_str())));

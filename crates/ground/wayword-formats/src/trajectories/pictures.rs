@@ -8,6 +8,7 @@ use std::{
     io::{self, Read},
     path::Path,
 };
+use wayword_core::hex_text;
 
 /// Largest picture that is read, bytes.
 const PICTURE_BYTES: u64 = 16 << 20;
@@ -42,7 +43,7 @@ impl PictureDigest {
 
     /// The hash, in hexadecimal digits.
     fn finish(self) -> String {
-        self.0.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+        hex_text(self.0.finalize())
     }
 }
 

@@ -1,5 +1,7 @@
 //! The integration tests of `wayword-formats`, one program: a module for each topic.
 
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 mod common;
 mod exports;
 mod hear;

@@ -223,7 +223,7 @@ impl<'a> CoverageText<'a> {
                     (decided[number], clause.understood) = (!describes, describes);
                 }
                 WordRole::Place | WordRole::General | WordRole::Turn | WordRole::Climb | WordRole::Storey => {
-                    decided[number] = true
+                    decided[number] = true;
                 }
                 _ => {}
             }

@@ -1,7 +1,8 @@
 //! The tokens of a text as the readers use them: one by one, or as runs of words that are skipped.
 //!
 //! No reader goes over the same words again from every token, because a long text would then take the square of its
-//! length. The tokens before or after a run of words are found once for all tokens. `growth` counts the looks.
+//! length. The tokens before or after a run of words are found once for all tokens. `growth_tests` counts how often
+//! tokens are looked at.
 
 use crate::text::TextToken;
 
@@ -52,10 +53,10 @@ impl<'a> TokenSlice<'a> {
 
     /// For each token, the first of the words right before it that may be skipped; the token itself where there are
     /// none.
-    pub(super) fn runs_before(self, may: impl Fn(&str) -> bool) -> Vec<usize> {
+    pub(super) fn runs_before(self, can_skip: impl Fn(&str) -> bool) -> Vec<usize> {
         let mut from = 0;
         let start = |at: usize| {
-            if at > 0 && !may(self.word_at(at - 1)) {
+            if at > 0 && !can_skip(self.word_at(at - 1)) {
                 from = at;
             }
             from
@@ -64,10 +65,10 @@ impl<'a> TokenSlice<'a> {
     }
 
     /// For each token, the first one from there on that may not be skipped.
-    pub(super) fn ends_of_runs(self, may: impl Fn(&str) -> bool) -> Vec<usize> {
+    pub(super) fn ends_of_runs(self, can_skip: impl Fn(&str) -> bool) -> Vec<usize> {
         let mut ends = vec![self.len(); self.len()];
         for at in (0..self.len()).rev() {
-            ends[at] = if may(self.word_at(at)) { ends.get(at + 1).copied().unwrap_or(self.len()) } else { at };
+            ends[at] = if can_skip(self.word_at(at)) { ends.get(at + 1).copied().unwrap_or(self.len()) } else { at };
         }
         ends
     }

@@ -3,10 +3,10 @@
 
 use super::{GalleryThing, PictureGallery, PictureScenery, barcode};
 use sha2::{Digest, Sha256};
-use std::{collections::BTreeSet, sync::Arc};
+use std::sync::Arc;
 use wayword_core::{
-    DepthImage, Frame, ObjectId, Path, PathRequest, PlacedObject, Platform, PlatformError, SceneId, View, ViewGaze,
-    ViewThird, ViewpointGraph, ViewpointId,
+    DepthImage, Frame, Ground, GroundIsland, GroundRoute, Path, PathRequest, Platform, PlatformError, SceneId, View,
+    ViewGaze, ViewThird, ViewpointGraph,
 };
 
 /// A platform with a barcode in each view instead of a picture of the scene.
@@ -40,10 +40,6 @@ impl<P: Platform> Platform for BarcodePlatform<P> {
         self.platform.sample_path(scene, request, seed)
     }
 
-    fn lists_everything(&self) -> bool {
-        self.platform.lists_everything()
-    }
-
     fn look_from(&self, scene: &SceneId, from: &Frame, gaze: ViewGaze) -> Result<View, PlatformError> {
         // The barcode replaces the picture, so the platform need not draw one.
         let view = self.platform.look_without_picture(scene, from, gaze)?;
@@ -68,20 +64,27 @@ impl<P: Platform> Platform for BarcodePlatform<P> {
         Ok(View::new(view.pose, view.horizontal_fov_rad, Some(Arc::new(barcode::draw_number(id))), truth))
     }
 
+    fn inner(&self) -> Option<&dyn Platform> {
+        Some(&self.platform)
+    }
+
+    fn ground(&self) -> &dyn Ground {
+        self
+    }
+}
+
+/// The barcodes hang in the platform's own rooms. `look_down` keeps its default, because a picture from above would show the scene.
+impl<P: Platform> Ground for BarcodePlatform<P> {
+    fn ground_route(&self, scene: &SceneId, from: &Frame, to: &Frame) -> Result<Option<GroundRoute>, PlatformError> {
+        self.platform.ground().ground_route(scene, from, to)
+    }
+
+    fn ground_islands(&self, scene: &SceneId) -> Result<Vec<GroundIsland>, PlatformError> {
+        self.platform.ground().ground_islands(scene)
+    }
+
     fn view_depth(&self, scene: &SceneId, from: &Frame, gaze: ViewGaze) -> Result<Option<DepthImage>, PlatformError> {
-        self.platform.view_depth(scene, from, gaze)
-    }
-
-    fn object_name(&self, scene: &SceneId, near: &Frame, object: &ObjectId) -> Result<Option<String>, PlatformError> {
-        self.platform.object_name(scene, near, object)
-    }
-
-    fn visible_from(&self, scene: &SceneId, object: &ObjectId) -> Result<Option<BTreeSet<ViewpointId>>, PlatformError> {
-        self.platform.visible_from(scene, object)
-    }
-
-    fn listed_objects(&self, scene: &SceneId) -> Result<Vec<PlacedObject>, PlatformError> {
-        self.platform.listed_objects(scene)
+        self.platform.ground().view_depth(scene, from, gaze)
     }
 }
 
@@ -103,7 +106,7 @@ fn view_number(scene: &SceneId, from: &Frame, gaze: ViewGaze) -> u64 {
 mod tests {
     use super::*;
     use image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};
-    use wayword_core::{DVec3, GroundTruth, Heading, ObjectLabel, Pose};
+    use wayword_core::{DVec3, GroundTruth, Heading, ObjectId, ObjectLabel, Pose};
 
     /// A platform with one place, which has a lamp ahead and a bed on the right.
     struct Cell;
@@ -143,14 +146,6 @@ mod tests {
             };
             let pose = Pose { heading: gaze.heading, ..from.pose };
             Ok(View::new(pose, gaze.horizontal_fov_rad, None, Some(truth)))
-        }
-
-        fn object_name(&self, _: &SceneId, _: &Frame, _: &ObjectId) -> Result<Option<String>, PlatformError> {
-            Ok(None)
-        }
-
-        fn visible_from(&self, _: &SceneId, _: &ObjectId) -> Result<Option<BTreeSet<ViewpointId>>, PlatformError> {
-            Ok(None)
         }
     }
 

@@ -1,6 +1,5 @@
 //! The forms in which services announce how long a client should wait after a 429.
 
-use super::ProviderDialect;
 use jiff::{Timestamp, fmt::rfc2822};
 use serde_json::{Value, json};
 use std::time::{Duration, SystemTime};
@@ -29,18 +28,14 @@ impl RetryAfter {
     pub const ALL: [Self; 7] =
         [Self::Silent, Self::Seconds, Self::Decimal, Self::HttpDate, Self::Milliseconds, Self::Reset, Self::RetryInfo];
 
-    /// The headers that announce the wait.
-    pub(super) fn response_headers(self, wait: Duration, dialect: ProviderDialect) -> Vec<(&'static str, String)> {
+    /// The headers that announce the wait. A dialect may have its own ones for [`Self::Reset`].
+    pub(super) fn response_headers(self, wait: Duration) -> Vec<(&'static str, String)> {
         match self {
             Self::Silent | Self::RetryInfo => Vec::new(),
             Self::Seconds => vec![("retry-after", whole_seconds(wait).as_secs().to_string())],
             Self::Decimal => vec![("retry-after", format!("{:.3}", wait.as_secs_f64()))],
             Self::HttpDate => vec![("retry-after", http_date(end_of_wait(wait)))],
             Self::Milliseconds => vec![("retry-after-ms", wait.as_millis().max(1).to_string())],
-            Self::Reset if dialect == ProviderDialect::Anthropic => vec![
-                ("anthropic-ratelimit-requests-remaining", "0".to_owned()),
-                ("anthropic-ratelimit-requests-reset", end_of_wait(wait).to_string()),
-            ],
             Self::Reset => vec![
                 ("x-ratelimit-remaining-requests", "0".to_owned()),
                 ("x-ratelimit-reset-requests", format!("{}ms", wait.as_millis().max(1))),
@@ -61,7 +56,7 @@ fn whole_seconds(wait: Duration) -> Duration {
 }
 
 /// The first whole second at or after the end of the wait, but at most the latest timestamp that there is.
-fn end_of_wait(wait: Duration) -> Timestamp {
+pub(super) fn end_of_wait(wait: Duration) -> Timestamp {
     let at = Timestamp::try_from(SystemTime::now() + whole_seconds(wait + Duration::from_millis(999)));
     at.and_then(|at| Timestamp::from_second(at.as_second())).unwrap_or(Timestamp::MAX)
 }
@@ -83,8 +78,7 @@ mod tests {
 
     #[test]
     fn whole_seconds_are_rounded_up_and_never_none() {
-        let said =
-            |ms| RetryAfter::Seconds.response_headers(Duration::from_millis(ms), ProviderDialect::OpenAi)[0].1.clone();
+        let said = |ms| RetryAfter::Seconds.response_headers(Duration::from_millis(ms))[0].1.clone();
         assert_eq!([said(0), said(50), said(1000), said(1001)], ["1", "1", "1", "2"]);
     }
 
@@ -92,7 +86,7 @@ mod tests {
     fn a_date_is_never_too_early() {
         let wait = Duration::from_millis(1500);
         let before = SystemTime::now();
-        let said = RetryAfter::HttpDate.response_headers(wait, ProviderDialect::OpenAi)[0].1.clone();
+        let said = RetryAfter::HttpDate.response_headers(wait)[0].1.clone();
         let said = rfc2822::DateTimeParser::new().parse_timestamp(&said).unwrap();
         let until = SystemTime::from(said).duration_since(before).unwrap();
         assert!(until >= wait && until <= Duration::from_secs(60), "{until:?}");

@@ -10,7 +10,7 @@ const THRESHOLD_M: f64 = 3.0;
 pub(super) struct PathDistances {
     /// Metres, infinite where there is no way; a row for each viewpoint of the trajectory.
     metres: Vec<f64>,
-    /// Viewpoints of the annotated path.
+    /// The number of viewpoints of the annotated path.
     on_path: usize,
 }
 
@@ -18,7 +18,7 @@ impl PathDistances {
     pub(super) fn new(distances: &SceneDistances, taken: &[usize], reference: &[usize]) -> Self {
         let mut metres = Vec::with_capacity(taken.len() * reference.len());
         for place in taken {
-            metres.extend(reference.iter().map(|on_path| distances.metres_between_places(*place, *on_path)));
+            metres.extend(reference.iter().map(|other| distances.metres_between_places(*place, *other)));
         }
         Self { metres, on_path: reference.len() }
     }
@@ -51,8 +51,9 @@ impl PathDistances {
 
     /// Coverage weighted by length score (Jain et al. 2019, arXiv 1905.12255), for the lengths of the trajectory and of the path.
     pub(super) fn cls(&self, length_m: f64, path_m: f64) -> f64 {
-        let to_path_m = |at: usize| self.metres[at..].iter().step_by(self.on_path);
-        let nearest_m = |at| to_path_m(at).copied().fold(f64::INFINITY, lesser_distance);
+        // A column of the matrix: from each viewpoint of the trajectory to one of the path.
+        let column_m = |at: usize| self.metres[at..].iter().step_by(self.on_path);
+        let nearest_m = |at| column_m(at).copied().fold(f64::INFINITY, lesser_distance);
         let covered: f64 = (0..self.on_path).map(|at| (-nearest_m(at) / THRESHOLD_M).exp()).sum();
         let coverage = covered / self.on_path as f64;
         let expected_m = coverage * path_m;

@@ -77,7 +77,7 @@ fn figures_are_those_of_another_evaluator() {
         let object = crate::common::object(&case["object"]).unwrap();
         let visible_from = seen
             .entry((scene.clone(), object.clone()))
-            .or_insert_with(|| platform.visible_from(&scene, &object).unwrap().unwrap());
+            .or_insert_with(|| platform.catalogue().visible_from(&scene, &object).unwrap().unwrap());
         let demand = crate::common::demand(case, Some(visible_from.clone()));
         all.push((atlas.scene_distances(&scene).unwrap(), demand, crate::common::trajectory(case)));
     }

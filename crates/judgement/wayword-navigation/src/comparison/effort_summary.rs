@@ -1,7 +1,6 @@
 //! Summarises the efforts of the walks in a row of the table: calls, tokens, money, hops, time and useless replies of an agent with
 //! a language model.
 
-use super::WalkScores;
 use crate::walk::{AgentWalkRecord, UselessReplies, WalkEffort, WalkEnd};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -46,6 +45,9 @@ pub(super) struct OfWalk {
     end: WalkEnd,
 }
 
+/// The efforts of one agent on one set: by item, then by the text's index in its set.
+pub(super) type OfWalks = BTreeMap<String, BTreeMap<usize, OfWalk>>;
+
 impl OfWalk {
     /// The effort of a walk; `None` if no language model decided.
     pub(super) fn from_walk(walk: &AgentWalkRecord) -> Option<Self> {
@@ -56,12 +58,10 @@ impl OfWalk {
 
 impl EffortSummary {
     /// Summarises the walks of an agent by a set. `estimate` computes the mean of the items' figures with its interval.
-    pub(super) fn from_results(
-        results: &WalkScores,
-        (agent, set): (&str, &str),
+    pub(super) fn from_efforts(
+        by_item: &OfWalks,
         estimate: impl Fn(BTreeMap<&str, f64>) -> Option<MeanEstimate>,
     ) -> Option<Self> {
-        let by_item = results.walk_efforts(agent, set)?;
         let mean = |figure: &dyn Fn(&OfWalk) -> Option<f64>| {
             let mut means = BTreeMap::new();
             for (item, texts) in by_item {

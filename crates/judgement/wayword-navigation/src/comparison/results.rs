@@ -1,14 +1,11 @@
 //! Collects the scores and the efforts of walks by agent, set, item and text, for the table to average.
 
-use super::effort_summary::OfWalk;
+use super::effort_summary::{OfWalk, OfWalks};
 use std::collections::{BTreeMap, BTreeSet};
 use wayword_metrics::{TrajectoryMetric, TrajectoryScore, TrajectorySuccessRule};
 
 /// The scores of one agent on one set: by item, then by the text's index in its set.
 type ScoresByItem = BTreeMap<String, BTreeMap<usize, TrajectoryScore>>;
-
-/// The efforts of one agent on one set: by item, then by the text's index in its set.
-type OfWalks = BTreeMap<String, BTreeMap<usize, OfWalk>>;
 
 /// All scores of a comparison.
 #[derive(Debug, Clone, Default)]

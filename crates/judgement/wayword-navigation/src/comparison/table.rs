@@ -92,15 +92,15 @@ impl TableBuilder<'_> {
     fn comparison_row(&self, walker: &ComparedAgent, set: Option<&str>, first: Option<&str>) -> ComparisonRow {
         let kept = set.unwrap_or(UNREAD_SET_NAME);
         let against = |first: &str| self.row_difference(&walker.name, (kept, None), (first, None));
+        let efforts = self.results.walk_efforts(&walker.name, kept);
         ComparisonRow {
             agent: walker.name.clone(),
             kind: walker.kind,
             set: set.map(str::to_owned),
             figures: self.mean_figures(&walker.name, kept, None),
             against_first: first.map(against),
-            effort: EffortSummary::from_results(self.results, (&walker.name, kept), |by_item| {
-                self.estimate_mean(&by_item)
-            }),
+            effort: efforts
+                .and_then(|efforts| EffortSummary::from_efforts(efforts, |by_item| self.estimate_mean(&by_item))),
         }
     }
 

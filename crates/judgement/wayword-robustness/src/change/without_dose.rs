@@ -1,6 +1,6 @@
-//! Changes without a dose, and what each of them does.
+//! Changes without a dose: each is made as a whole or not at all, so there is no amount to choose.
 
-/// A change without a dose.
+/// A change that is made as a whole, without a dose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum WholeChange {
     /// The world is mirrored: left becomes right.

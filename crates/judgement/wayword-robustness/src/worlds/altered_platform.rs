@@ -4,8 +4,9 @@
 use super::labels::with_truth;
 use std::{collections::BTreeSet, path::PathBuf, sync::Arc};
 use wayword_core::{
-    DVec3, DepthImage, Frame, FromAbove, GroundIsland, GroundRoute, Heading, ObjectId, Path, PathRequest, PlacedObject,
-    Platform, PlatformError, Pose, SceneId, View, ViewGaze, ViewpointGraph, ViewpointId, graph::GraphError,
+    DVec3, DepthImage, Frame, Ground, GroundIsland, GroundRoute, Heading, ObjectId, Path, PathRequest, PlacedObject,
+    Platform, PlatformError, Pose, SceneCatalogue, SceneFiles, SceneId, View, ViewGaze, ViewpointGraph, ViewpointId,
+    graph::GraphError,
 };
 
 /// An alteration of a world. By default every method leaves its argument unchanged.
@@ -123,6 +124,7 @@ impl<P: Platform, A: WorldAlteration> AlteredPlatform<P, A> {
     }
 }
 
+/// It has no `inner`: nothing of the original world may be passed on without a look at the alteration.
 impl<P: Platform, A: WorldAlteration> Platform for AlteredPlatform<P, A> {
     fn name(&self) -> &'static str {
         self.platform.name()
@@ -130,10 +132,6 @@ impl<P: Platform, A: WorldAlteration> Platform for AlteredPlatform<P, A> {
 
     fn list_scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
         self.platform.list_scenes()
-    }
-
-    fn check_scenes(&self, scenes: &BTreeSet<&SceneId>) -> Result<(), PlatformError> {
-        self.platform.check_scenes(scenes)
     }
 
     fn graph_for_scene(&self, scene: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {
@@ -154,27 +152,30 @@ impl<P: Platform, A: WorldAlteration> Platform for AlteredPlatform<P, A> {
         self.altered_view(scene, from, gaze, |from, gaze| self.platform.look_without_picture(scene, from, gaze))
     }
 
+    fn ground(&self) -> &dyn Ground {
+        self
+    }
+
+    fn catalogue(&self) -> &dyn SceneCatalogue {
+        self
+    }
+
+    fn files(&self) -> &dyn SceneFiles {
+        self
+    }
+}
+
+/// `look_down` keeps its default, because an altered world has no picture from above.
+impl<P: Platform, A: WorldAlteration> Ground for AlteredPlatform<P, A> {
     fn view_depth(&self, scene: &SceneId, from: &Frame, gaze: ViewGaze) -> Result<Option<DepthImage>, PlatformError> {
         let (from, gaze) = self.alter.look_before(scene, from, gaze);
-        let before = self.platform.view_depth(scene, &from, gaze)?;
+        let before = self.platform.ground().view_depth(scene, &from, gaze)?;
         Ok(before.and_then(|before| self.alter.depth_after(before)))
     }
 
-    /// An altered world has no picture from above.
-    fn look_down(&self, _scene: &SceneId, _level: u32) -> Result<Option<FromAbove>, PlatformError> {
-        Ok(None)
-    }
-
-    fn object_name(&self, scene: &SceneId, near: &Frame, object: &ObjectId) -> Result<Option<String>, PlatformError> {
-        self.platform.object_name(scene, &self.alter.frame_before(near), object)
-    }
-
-    fn visible_from(&self, scene: &SceneId, object: &ObjectId) -> Result<Option<BTreeSet<ViewpointId>>, PlatformError> {
-        self.platform.visible_from(scene, object)
-    }
-
     fn ground_route(&self, scene: &SceneId, from: &Frame, to: &Frame) -> Result<Option<GroundRoute>, PlatformError> {
-        let before = self.platform.ground_route(scene, &self.alter.frame_before(from), &self.alter.frame_before(to))?;
+        let (from, to) = (self.alter.frame_before(from), self.alter.frame_before(to));
+        let before = self.platform.ground().ground_route(scene, &from, &to)?;
         let after = |way: GroundRoute| GroundRoute {
             corners: way.corners.into_iter().map(|corner| self.alter.place_after(corner)).collect(),
             ..way
@@ -183,25 +184,42 @@ impl<P: Platform, A: WorldAlteration> Platform for AlteredPlatform<P, A> {
     }
 
     fn ground_islands(&self, scene: &SceneId) -> Result<Vec<GroundIsland>, PlatformError> {
-        self.platform.ground_islands(scene)
+        self.platform.ground().ground_islands(scene)
+    }
+}
+
+impl<P: Platform, A: WorldAlteration> SceneCatalogue for AlteredPlatform<P, A> {
+    fn object_name(&self, scene: &SceneId, near: &Frame, object: &ObjectId) -> Result<Option<String>, PlatformError> {
+        self.platform.catalogue().object_name(scene, &self.alter.frame_before(near), object)
+    }
+
+    fn visible_from(&self, scene: &SceneId, object: &ObjectId) -> Result<Option<BTreeSet<ViewpointId>>, PlatformError> {
+        self.platform.catalogue().visible_from(scene, object)
     }
 
     fn listed_objects(&self, scene: &SceneId) -> Result<Vec<PlacedObject>, PlatformError> {
         let after = |placed: PlacedObject| PlacedObject { position: self.alter.place_after(placed.position), ..placed };
-        Ok(self.platform.listed_objects(scene)?.into_iter().map(after).collect())
+        Ok(self.platform.catalogue().listed_objects(scene)?.into_iter().map(after).collect())
     }
 
     fn lists_everything(&self) -> bool {
-        self.platform.lists_everything()
+        self.platform.catalogue().lists_everything()
+    }
+}
+
+/// The names of scenes and the files behind them stay the same. `scene_file` keeps its default, because no file holds an altered world;
+/// `candidate_scenes` and `examine_scene` keep theirs, because the files show only what the original world offers.
+impl<P: Platform, A: WorldAlteration> SceneFiles for AlteredPlatform<P, A> {
+    fn check_scenes(&self, scenes: &BTreeSet<&SceneId>) -> Result<(), PlatformError> {
+        self.platform.files().check_scenes(scenes)
     }
 
-    /// No file holds an altered world.
-    fn scene_file(&self, _scene: &SceneId) -> Result<Option<PathBuf>, PlatformError> {
-        Ok(None)
+    fn canonical_scene(&self, scene: &SceneId) -> SceneId {
+        self.platform.files().canonical_scene(scene)
     }
 
     fn source_files(&self, scene: &SceneId) -> Result<Vec<PathBuf>, PlatformError> {
-        self.platform.source_files(scene)
+        self.platform.files().source_files(scene)
     }
 }
 

@@ -11,8 +11,8 @@ use std::{
     sync::Arc,
 };
 use wayword_core::{
-    DepthImage, Frame, FromAbove, GroundIsland, GroundRoute, GroundTruth, Image, ObjectId, ObjectLabel, Path,
-    PathRequest, PlacedObject, Platform, PlatformError, SceneId, View, ViewGaze, ViewpointGraph, ViewpointId,
+    Frame, GroundTruth, Image, ObjectId, ObjectLabel, Path, PathRequest, PlacedObject, Platform, PlatformError,
+    SceneCatalogue, SceneFiles, SceneId, View, ViewGaze, ViewpointGraph, ViewpointId,
 };
 
 /// How good a scripted eye is, as a function of the strength of a change ([`Change::dose_strength`](crate::Change::dose_strength)): 0 without a
@@ -153,10 +153,6 @@ impl<P: Platform, O: Platform> Platform for ScriptedEye<P, O> {
         self.pictures.list_scenes()
     }
 
-    fn check_scenes(&self, scenes: &BTreeSet<&SceneId>) -> Result<(), PlatformError> {
-        self.pictures.check_scenes(scenes)
-    }
-
     fn graph_for_scene(&self, scene: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {
         self.pictures.graph_for_scene(scene)
     }
@@ -179,44 +175,54 @@ impl<P: Platform, O: Platform> Platform for ScriptedEye<P, O> {
         Ok(view)
     }
 
-    fn view_depth(&self, scene: &SceneId, from: &Frame, gaze: ViewGaze) -> Result<Option<DepthImage>, PlatformError> {
-        self.pictures.view_depth(scene, from, gaze)
+    fn inner(&self) -> Option<&dyn Platform> {
+        Some(&self.pictures)
     }
 
-    fn look_down(&self, scene: &SceneId, level: u32) -> Result<Option<FromAbove>, PlatformError> {
-        self.pictures.look_down(scene, level)
+    fn catalogue(&self) -> &dyn SceneCatalogue {
+        self
     }
 
+    fn files(&self) -> &dyn SceneFiles {
+        self
+    }
+}
+
+impl<P: Platform, O: Platform> SceneCatalogue for ScriptedEye<P, O> {
     fn object_name(&self, scene: &SceneId, near: &Frame, object: &ObjectId) -> Result<Option<String>, PlatformError> {
-        self.pictures.object_name(scene, near, object)
+        self.pictures.catalogue().object_name(scene, near, object)
     }
 
     fn visible_from(&self, scene: &SceneId, object: &ObjectId) -> Result<Option<BTreeSet<ViewpointId>>, PlatformError> {
-        self.pictures.visible_from(scene, object)
-    }
-
-    fn ground_route(&self, scene: &SceneId, from: &Frame, to: &Frame) -> Result<Option<GroundRoute>, PlatformError> {
-        self.pictures.ground_route(scene, from, to)
-    }
-
-    fn ground_islands(&self, scene: &SceneId) -> Result<Vec<GroundIsland>, PlatformError> {
-        self.pictures.ground_islands(scene)
+        self.pictures.catalogue().visible_from(scene, object)
     }
 
     fn listed_objects(&self, scene: &SceneId) -> Result<Vec<PlacedObject>, PlatformError> {
-        self.pictures.listed_objects(scene)
+        self.pictures.catalogue().listed_objects(scene)
     }
 
     fn lists_everything(&self) -> bool {
-        self.oracle.lists_everything()
+        self.oracle.catalogue().lists_everything()
+    }
+}
+
+/// `candidate_scenes` and `examine_scene` keep their defaults, because the files of the pictures do not show which labels and rooms the
+/// oracle knows.
+impl<P: Platform, O: Platform> SceneFiles for ScriptedEye<P, O> {
+    fn check_scenes(&self, scenes: &BTreeSet<&SceneId>) -> Result<(), PlatformError> {
+        self.pictures.files().check_scenes(scenes)
+    }
+
+    fn canonical_scene(&self, scene: &SceneId) -> SceneId {
+        self.pictures.files().canonical_scene(scene)
     }
 
     fn scene_file(&self, scene: &SceneId) -> Result<Option<PathBuf>, PlatformError> {
-        self.pictures.scene_file(scene)
+        self.pictures.files().scene_file(scene)
     }
 
     fn source_files(&self, scene: &SceneId) -> Result<Vec<PathBuf>, PlatformError> {
-        self.pictures.source_files(scene)
+        self.pictures.files().source_files(scene)
     }
 }
 

@@ -1,12 +1,8 @@
 //! Helpers for the tests of changed worlds.
 
-use std::{
-    collections::BTreeSet,
-    sync::{Arc, LazyLock},
-};
+use std::sync::{Arc, LazyLock};
 use wayword_core::{
-    Frame, ObjectId, ObjectLabel, Path, PathRequest, Platform, PlatformError, SceneId, View, ViewGaze, ViewpointGraph,
-    ViewpointId,
+    Frame, ObjectLabel, Path, PathRequest, Platform, PlatformError, SceneId, View, ViewGaze, ViewpointGraph,
 };
 use wayword_house::{HouseOptions, HousePlatform};
 
@@ -38,12 +34,8 @@ impl Platform for House {
         HOUSE.look_from(scene, from, gaze)
     }
 
-    fn object_name(&self, scene: &SceneId, near: &Frame, object: &ObjectId) -> Result<Option<String>, PlatformError> {
-        HOUSE.object_name(scene, near, object)
-    }
-
-    fn visible_from(&self, scene: &SceneId, object: &ObjectId) -> Result<Option<BTreeSet<ViewpointId>>, PlatformError> {
-        HOUSE.visible_from(scene, object)
+    fn inner(&self) -> Option<&dyn Platform> {
+        Some(&*HOUSE)
     }
 }
 

@@ -2,14 +2,15 @@
 
 /// Longest name in a table, characters. Longer ones, which files may contain, are cut off.
 const MOST_NAME_CHARS: usize = 80;
-/// Replaces a character that cannot be shown.
-const REPLACEMENT_CHARACTER: char = '\u{fffd}';
 
 /// Replaces characters that act instead of being seen: control characters, and those that reverse the direction of the text around
 /// them. Ends of lines become `\n`, and tabs stay.
 pub(super) fn strip_active_characters(text: &str) -> String {
     let lines = text.replace("\r\n", "\n").replace('\r', "\n");
-    lines.chars().map(|c| if is_active(c) && c != '\n' && c != '\t' { REPLACEMENT_CHARACTER } else { c }).collect()
+    lines
+        .chars()
+        .map(|c| if is_active(c) && c != '\n' && c != '\t' { char::REPLACEMENT_CHARACTER } else { c })
+        .collect()
 }
 
 /// Plain text on one line.
@@ -50,27 +51,7 @@ pub(super) fn escape_markdown(text: &str) -> String {
 
 /// Escapes text for LaTeX, on one line.
 pub(super) fn escape_latex(text: &str) -> String {
-    let mut escaped = String::with_capacity(text.len());
-    for c in to_single_line(text).chars() {
-        match c {
-            '\\' => escaped.push_str("\\textbackslash{}"),
-            '~' => escaped.push_str("\\textasciitilde{}"),
-            '^' => escaped.push_str("\\textasciicircum{}"),
-            '<' => escaped.push_str("\\textless{}"),
-            '>' => escaped.push_str("\\textgreater{}"),
-            '|' => escaped.push_str("\\textbar{}"),
-            '"' => escaped.push_str("\\textquotedbl{}"),
-            '−' => escaped.push_str("$-$"),
-            '≥' => escaped.push_str("$\\geq$"),
-            '…' => escaped.push_str("\\ldots{}"),
-            // At the beginning of a table row, `[` would begin an option of the `\\` before it.
-            '[' => escaped.push_str("{[}"),
-            '{' | '}' | '$' | '&' | '#' | '_' | '%' => escaped.extend(['\\', c]),
-            REPLACEMENT_CHARACTER => escaped.push('?'),
-            c => escaped.push(c),
-        }
-    }
-    escaped
+    wayword_metrics::escape_latex(&to_single_line(text))
 }
 
 /// Writes text as a cell of a CSV file (RFC 4180).

@@ -6,7 +6,7 @@
 use super::{names::ParticipantNames, walks::WalkScorer};
 use crate::{ItemSlot, PairChoice, Participant, ParticipantAnswer, ParticipantStatus, SlotState, StudyData, StudyItem};
 use std::collections::BTreeMap;
-use wayword_metrics::{AgentTrajectory, TrajectoryScore};
+use wayword_metrics::TrajectoryScore;
 
 /// The judgement of one person on one text. A comparison of two texts gives two of them.
 #[derive(Debug, Clone)]
@@ -179,13 +179,4 @@ impl ParticipantFilter {
             Self::Finished => participant.status == ParticipantStatus::Complete && failed <= most_failed,
         }
     }
-}
-
-/// A walk as the metrics take it: its viewpoints, the start included.
-pub(super) fn walked_trajectory(
-    start: &wayword_core::ViewpointId,
-    moves: &[crate::ParticipantMove],
-) -> AgentTrajectory {
-    let viewpoints = std::iter::once(start).chain(moves.iter().map(|step| &step.viewpoint)).cloned().collect();
-    AgentTrajectory { viewpoints, object: None }
 }

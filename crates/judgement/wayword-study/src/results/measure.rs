@@ -57,10 +57,15 @@ enum MeasureSource {
     Walk(WalkFigure),
     Seconds,
     Presses,
+    /// The level that was given to the question with this index.
     Level(usize),
+    /// Whether the level of the question with this index is at least the second number.
     AtLeast(usize, u8),
+    /// Whether the level of the question with this index is at most the second number.
     AtMost(usize, u8),
+    /// Whether the text was preferred to another: 1, a half or 0.
     Gain,
+    /// Whether both texts of a comparison were bad.
     BothBad,
 }
 
@@ -77,7 +82,7 @@ enum WalkFigure {
 }
 
 impl WalkFigure {
-    fn from_score(self, score: &TrajectoryScore) -> Option<f64> {
+    fn score_value(self, score: &TrajectoryScore) -> Option<f64> {
         let yes = |is: bool| f64::from(u8::from(is));
         match self {
             Self::Success => Some(yes(score.distance.success)),
@@ -92,7 +97,7 @@ impl WalkFigure {
 }
 
 impl StudyMeasure {
-    /// All figures of a mode, in the order of the tables.
+    /// All figures of a study in which participants have this task, in the order of the tables.
     #[must_use]
     pub fn for_mode(mode: StudyTask) -> &'static [Self] {
         match mode {
@@ -107,7 +112,7 @@ impl StudyMeasure {
         let level = |at: usize| given.levels.get(at).copied();
         let yes = |is: bool| f64::from(u8::from(is));
         match self.of {
-            MeasureSource::Walk(figure) => given.walk.and_then(|score| figure.from_score(score)),
+            MeasureSource::Walk(figure) => given.walk.and_then(|score| figure.score_value(score)),
             MeasureSource::Seconds => given.seconds,
             MeasureSource::Presses => given.presses.map(f64::from),
             MeasureSource::Level(at) => level(at).map(f64::from),
@@ -126,7 +131,7 @@ impl StudyMeasure {
     /// The value of this figure for one walk; `None` if it is not a figure of walks.
     pub(super) fn walk_value(&self, score: &TrajectoryScore) -> Option<f64> {
         match self.of {
-            MeasureSource::Walk(figure) => figure.from_score(score),
+            MeasureSource::Walk(figure) => figure.score_value(score),
             _ => None,
         }
     }
@@ -144,7 +149,7 @@ impl StudyMeasure {
     }
 }
 
-/// The names of the figures that count levels as arXiv 2403.11487 does.
+/// The names of the figures that count levels as arXiv 2403.11487 does. The meanings below call it "the paper".
 pub(super) const OF_THE_PAPER: [&str; 4] = ["similar_low", "accurate_high", "ghosts_any", "reachable_high"];
 
 const fn new_measure(

@@ -1,10 +1,9 @@
 //! Computes the metrics of the participants' walks.
 
-use super::judgements::walked_trajectory;
 use crate::{ParticipantMove, StudyData, StudyRoute};
 use std::collections::BTreeMap;
 use wayword_core::{SceneId, ViewpointId};
-use wayword_metrics::{EpisodeDemand, SceneDistances, TrajectoryScore, score_trajectory};
+use wayword_metrics::{AgentTrajectory, EpisodeDemand, SceneDistances, TrajectoryScore, score_trajectory};
 
 /// Scores walks; the distances of a scene are computed once.
 pub(super) struct WalkScorer<'a> {
@@ -50,4 +49,10 @@ impl<'a> WalkScorer<'a> {
         });
         made.as_ref().map_err(Clone::clone)
     }
+}
+
+/// A walk as the metrics take it: its viewpoints, the start included.
+fn walked_trajectory(start: &ViewpointId, moves: &[ParticipantMove]) -> AgentTrajectory {
+    let viewpoints = std::iter::once(start).chain(moves.iter().map(|step| &step.viewpoint)).cloned().collect();
+    AgentTrajectory { viewpoints, object: None }
 }

@@ -11,7 +11,7 @@ use crate::{
     wording::{AGREEMENT_LEVELS, FOLLOW_STATEMENTS, RATE_QUESTIONS},
 };
 use minijinja::{Environment, Value, context};
-use wayword_core::{Heading, ViewpointId, doubt::split_at_doubts};
+use wayword_core::{Heading, ViewpointId, doubt::split_at_doubts, hex_text};
 
 const TEMPLATES: [(&str, &str); 13] = [
     ("base.html", include_str!("pages/base.html")),
@@ -55,12 +55,12 @@ pub(super) struct PageContext {
 /// A public mark of a person for the pages. It is the same in each session, so an answer that was kept in the browser can still be
 /// sent after the participant has come in again.
 pub(super) fn person_mark(name: &str) -> String {
-    hash_parts(&["mark", name])[..8].iter().map(|byte| format!("{byte:02x}")).collect()
+    hex_text(&hash_parts(&["mark", name])[..8])
 }
 
 /// A short hash of the consent text. A changed text has another version.
 pub(super) fn consent_version(study: &Study) -> String {
-    hash_parts(&study.settings.consent_words())[..6].iter().map(|byte| format!("{byte:02x}")).collect()
+    hex_text(&hash_parts(&study.settings.consent_words())[..6])
 }
 
 impl PageTemplates {

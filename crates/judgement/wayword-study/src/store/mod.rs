@@ -11,10 +11,10 @@ mod stage;
 
 pub(crate) use answers::{InputRefusal, LONGEST_TEXT, MOST_MOVES, ParticipantInput};
 pub use counts::{ConditionProgress, StudyProgress};
-pub(crate) use people::{ArrivalOutcome, ParticipantArrival, ParticipationOutcome, WithdrawalChoice};
+pub(crate) use people::{ArrivalOutcome, ParticipantArrival, WithdrawalChoice};
 pub use people::{ErasureReport, InviteTokens};
 pub use recruits::{Reconciliation, ReconciliationRow};
-pub(crate) use stage::{AnswerProgress, ParticipantStage, StoredSlot};
+pub(crate) use stage::{AnswerProgress, ParticipantStage, ParticipationOutcome, StoredSlot};
 
 #[cfg(test)]
 mod tests;

@@ -1,6 +1,9 @@
 //! The participants: how they arrive, consent, come back, stop, and are forgotten.
 
-use super::{StudyTransaction, stage::ParticipantStage};
+use super::{
+    StudyTransaction,
+    stage::{ParticipantStage, ParticipationOutcome},
+};
 use crate::{
     study::{ParticipantStatus, RecruiterSettings, StudyError},
     token::{hash_parts, is_token, random_token},
@@ -65,13 +68,6 @@ pub(crate) enum ArrivalOutcome {
     Full,
     /// Nowhere: the study is over.
     Closed,
-}
-
-/// How a participation ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct ParticipationOutcome {
-    pub(crate) status: ParticipantStatus,
-    pub(crate) answers: u32,
 }
 
 /// What happens to the answers of a participant who stops.

@@ -1,7 +1,7 @@
 //! Finds out which stage a participant has reached and what comes next. The stage is stored only in the database, so that a reload, a
 //! second tab and another device all show the same.
 
-use super::{StudyTransaction, people::ParticipationOutcome};
+use super::StudyTransaction;
 use crate::study::{ParticipantStatus, StudyError, StudyItem, StudyRoute, StudyScene, StudyTask};
 use rusqlite::{OptionalExtension as _, params};
 use wayword_core::{ViewpointId, seed::derive_seed};
@@ -20,6 +20,13 @@ pub(crate) enum ParticipantStage {
     Attention { number: u32, level: u8 },
     /// At the end.
     Over(ParticipationOutcome),
+}
+
+/// How a participation ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct ParticipationOutcome {
+    pub(crate) status: ParticipantStatus,
+    pub(crate) answers: u32,
 }
 
 /// A slot of the database: an item that was handed out to a person.

@@ -1,7 +1,6 @@
-//! Creates and reads the folder of a study.
+//! Writes and reads the folder of a study.
 
 use super::{StudyDesign, StudyError, StudyItem, StudyRoute, StudyScene, StudySettings};
-use crate::store::StudyStore;
 use serde::{Serialize, de::DeserializeOwned};
 use std::{
     fs,
@@ -40,12 +39,11 @@ pub struct Study {
 }
 
 impl Study {
-    /// Writes a new study. Its folder `pictures` already has the pictures. The plan is written last, so a folder without a plan is not
-    /// a complete study.
+    /// Writes the files of a new study, but for its plan and its database.
     ///
     /// # Errors
-    /// When there is one already, or a file cannot be written.
-    pub fn create(&self) -> Result<(), StudyError> {
+    /// When there is a study already, or a file cannot be written.
+    pub(crate) fn write_contents(&self) -> Result<(), StudyError> {
         if self.folder.join(PLAN_FILE).exists() {
             let problem = format!("{}: there is a study already", self.folder.display());
             return Err(StudyError::refused_request(
@@ -61,8 +59,14 @@ impl Study {
         self.write_lines(SCENES_FILE, &self.scenes)?;
         let settings =
             toml::to_string_pretty(&self.settings).map_err(|error| self.wrong_file(SETTINGS_FILE, &error))?;
-        self.write_file(SETTINGS_FILE, settings.as_bytes())?;
-        StudyStore::open(&self.database_file())?;
+        self.write_file(SETTINGS_FILE, settings.as_bytes())
+    }
+
+    /// Writes the plan, which completes a new study.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub(crate) fn write_plan(&self) -> Result<(), StudyError> {
         let plan = self.plan.to_file().map_err(|error| self.wrong_file(PLAN_FILE, &error))?;
         self.write_file(PLAN_FILE, &plan)
     }

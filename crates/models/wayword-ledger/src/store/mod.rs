@@ -3,13 +3,14 @@
 //! Architecture invariant: everything that a store reports as written survives the end of the program, and a loss of power too.
 
 mod chunks;
+mod commit_queue;
 #[cfg(feature = "postgres")]
 mod postgres;
 mod sqlite;
 
 use crate::{
     CallAnswer, CallKey, CostGrouping, CostLine, LedgerEntry, LedgerError, LedgerFilter, LedgerLocation, ProviderRates,
-    RequestRefusedError, RunLimits, RunSpending, budget::SpentBudget, run::SentRequest,
+    RequestRefusedError, RunLimits, RunSpending, budget::SpentBudget,
 };
 use serde::{Deserialize, Serialize};
 use std::{fmt, path::Path, time::Instant};
@@ -117,6 +118,15 @@ pub(crate) struct PendingRequest<'a> {
     pub(crate) at_unix_s: i64,
     /// The limits of the run, for a store that keeps the budget.
     pub(crate) limits: RunLimits,
+}
+
+/// A request that the store has written down.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct SentRequest {
+    /// Its number in the store.
+    pub(crate) number: i64,
+    /// Its upper bound, US dollars.
+    pub(crate) most_usd: Option<f64>,
 }
 
 /// How a request without an answer ended.

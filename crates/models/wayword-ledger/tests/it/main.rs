@@ -1,5 +1,7 @@
 //! The integration tests of `wayword-ledger`, one program: a module for each topic.
 
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 mod calls_made_once;
 mod changed_answers;
 mod chunks;

@@ -34,7 +34,7 @@ pub(crate) struct BertSizes {
     pub(crate) type_vocab_size: usize,
 }
 
-/// The most layers. BERT-large has 24.
+/// The most layers that a configuration may have; more are refused. BERT-large has 24.
 const MOST_LAYERS: usize = 64;
 
 impl BertSizes {
@@ -59,7 +59,7 @@ impl BertSizes {
     }
 }
 
-/// `1_Pooling/config.json`.
+/// `1_Pooling/config.json`: how sentence-transformers makes one vector of the vectors of a sentence's tokens.
 #[derive(Debug, Deserialize)]
 struct PoolingConfig {
     #[serde(default)]
@@ -68,7 +68,7 @@ struct PoolingConfig {
     pooling_mode_mean_tokens: bool,
 }
 
-/// `sentence_bert_config.json`.
+/// `sentence_bert_config.json`: the limit that a sentence encoder sets below that of its BERT.
 #[derive(Debug, Deserialize)]
 struct LengthConfig {
     max_seq_length: Option<usize>,
@@ -77,9 +77,9 @@ struct LengthConfig {
 /// How a sentence's vector is made from the vectors of its tokens.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum SentencePooling {
-    /// The mean of all.
+    /// The mean of the vectors of all tokens.
     Mean,
-    /// The first token's.
+    /// The vector of the first token.
     First,
 }
 
@@ -146,9 +146,9 @@ impl BertConfig {
 
     /// The most tokens of a text: the model's limit, or the lower one that the sentence encoder sets.
     pub(super) fn max_text_tokens(&self, folder: &Path) -> Result<usize, LocalError> {
-        let own: Option<LengthConfig> = json::read_if_there(folder, "sentence_bert_config.json")?;
-        let own = own.and_then(|own| own.max_seq_length).unwrap_or(usize::MAX);
-        Ok(own.min(self.max_position_embeddings))
+        let config: Option<LengthConfig> = json::read_if_there(folder, "sentence_bert_config.json")?;
+        let limit = config.and_then(|config| config.max_seq_length).unwrap_or(usize::MAX);
+        Ok(limit.min(self.max_position_embeddings))
     }
 }
 

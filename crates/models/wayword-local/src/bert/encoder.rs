@@ -8,11 +8,11 @@ use crate::{
 };
 use candle_core::{Result, Tensor};
 
-/// Computes a state for each token of a text.
+/// Computes a state for each token of a text: a vector that depends on the token and on the tokens around it.
 pub(crate) struct BertEncoder {
     words: EmbeddingTable,
     positions: EmbeddingTable,
-    /// Added to every token: the first of the token types, because a text is not a pair.
+    /// The vector of the first token type, which is added to every token. The second type is for pairs of texts.
     kind: Tensor,
     norm: LayerNorm,
     layers: Vec<BertLayer>,
@@ -21,9 +21,12 @@ pub(crate) struct BertEncoder {
 /// One layer of an encoder: attention, then two linear layers, each with a residual and a norm. GLIP also uses single
 /// layers.
 pub(crate) struct BertLayer {
+    /// The layer for queries, keys and values, side by side.
     qkv: LinearLayer,
+    /// The layer behind the attention, and the norm behind its residual.
     mixed: LinearLayer,
     mixed_norm: LayerNorm,
+    /// The feed-forward network: from the width of a state to the inner width, and back.
     wide: LinearLayer,
     narrow: LinearLayer,
     norm: LayerNorm,
@@ -56,8 +59,8 @@ impl BertEncoder {
         self.of_at(ids, &Tensor::arange(0, ids.dim(1)? as u32, ids.device())?, mask)
     }
 
-    /// Like [`BertEncoder::of`], for tokens with other positions [length] than 0, 1, 2 .., and a mask that can be broadcast
-    /// to [batch, heads, length, length].
+    /// Like [`BertEncoder::encode_tokens`], for tokens with other positions [length] than 0, 1, 2 .., and a mask that
+    /// can be broadcast to [batch, heads, length, length].
     pub(crate) fn of_at(&self, ids: &Tensor, positions: &Tensor, mask: Option<&Tensor>) -> Result<Tensor> {
         let positions = self.positions.look_up(positions)?;
         let x = self
@@ -94,13 +97,13 @@ impl BertLayer {
         let scale = 1.0 / ((size / self.heads) as f32).sqrt();
         let mixed =
             MultiHeadAttention { heads: self.heads, scale, bias: mask }.attend_to(&part(0)?, &part(1)?, &part(2)?)?;
-        let then = FeedForward {
+        let feed_forward = FeedForward {
             before: None,
             wide: &self.wide,
             activation: self.activation,
             narrow: &self.narrow,
             after: Some(&self.norm),
         };
-        then.apply_to(&self.mixed.apply_onto_then(&mixed, x, &self.mixed_norm)?)
+        feed_forward.apply_to(&self.mixed.apply_onto_then(&mixed, x, &self.mixed_norm)?)
     }
 }

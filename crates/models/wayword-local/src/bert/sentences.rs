@@ -18,6 +18,7 @@ pub struct SentenceEncoder {
     tokenizer: TextTokenizer,
     encoder: BertEncoder,
     pooling: SentencePooling,
+    /// The most tokens of a text. The rest is cut off.
     longest: usize,
     device: ModelDevice,
 }
@@ -37,9 +38,9 @@ impl SentenceEncoder {
         let config = BertConfig::from_folder(folder)?;
         let weights = CheckpointWeights::open(folder, device, precision)?;
         // A checkpoint of a whole BERT model has the encoder under the name `bert`.
-        let all = weights.scope_under("");
+        let root = weights.scope_under("");
         let encoder =
-            if all.has_tensor("embeddings.word_embeddings.weight") { all } else { weights.scope_under("bert") };
+            if root.has_tensor("embeddings.word_embeddings.weight") { root } else { weights.scope_under("bert") };
         Ok(Self {
             name: name.to_owned(),
             tokenizer: TextTokenizer::load(folder)?,
@@ -61,39 +62,43 @@ impl SentenceEncoder {
         order.sort_by_key(|&at| ids[at].len());
         let mut vectors = vec![Vec::new(); texts.len()];
         for batch in order.chunks(TEXTS_PER_BATCH) {
-            let of_batch: Vec<&[u32]> = batch.iter().map(|&at| &ids[at][..]).collect();
-            let found = self.encode_batch(&of_batch);
-            let found =
-                found.map_err(|error| LocalError::Compute { model: self.name.clone(), problem: error.to_string() })?;
-            for (&at, vector) in batch.iter().zip(found) {
+            let batch_ids: Vec<&[u32]> = batch.iter().map(|&at| &ids[at][..]).collect();
+            let batch_vectors = self.encode_batch(&batch_ids);
+            let batch_vectors = batch_vectors
+                .map_err(|error| LocalError::Compute { model: self.name.clone(), problem: error.to_string() })?;
+            for (&at, vector) in batch.iter().zip(batch_vectors) {
                 vectors[at] = vector;
             }
         }
         Ok(vectors)
     }
 
+    /// Unit vectors of texts, given as ids. Shorter texts are padded to the longest, and the padding is hidden from the
+    /// attention and from the mean.
     fn encode_batch(&self, texts: &[&[u32]]) -> candle_core::Result<Vec<Vec<f32>>> {
         let device = &self.device.0;
         let longest = texts.iter().map(|ids| ids.len()).max().unwrap_or(0).max(1);
         let padded = |ids: &&[u32]| ids.iter().copied().chain(std::iter::repeat(0)).take(longest).collect::<Vec<_>>();
         let ids = Tensor::from_vec(texts.iter().flat_map(padded).collect(), (texts.len(), longest), device)?;
         let is_token = |at: usize| at % longest < texts[at / longest].len();
-        let weights = |of_token: f32, of_padding: f32| {
-            let weights =
-                (0..texts.len() * longest).map(|at| if is_token(at) { of_token } else { of_padding }).collect();
-            Tensor::from_vec(weights, (texts.len(), longest), device)
+        let per_token = |for_token: f32, for_padding: f32| {
+            let numbers =
+                (0..texts.len() * longest).map(|at| if is_token(at) { for_token } else { for_padding }).collect();
+            Tensor::from_vec(numbers, (texts.len(), longest), device)
         };
         let is_even = texts.iter().all(|ids| ids.len() == longest);
-        let hides = if is_even { None } else { Some(weights(0.0, f32::NEG_INFINITY)?.unsqueeze(1)?.unsqueeze(1)?) };
-        let states = self.encoder.encode_tokens(&ids, hides.as_ref())?.to_dtype(DType::F32)?;
+        let padding_mask =
+            if is_even { None } else { Some(per_token(0.0, f32::NEG_INFINITY)?.unsqueeze(1)?.unsqueeze(1)?) };
+        let states = self.encoder.encode_tokens(&ids, padding_mask.as_ref())?.to_dtype(DType::F32)?;
         let pooled = match self.pooling {
             SentencePooling::First => states.narrow(1, 0, 1)?.squeeze(1)?,
             SentencePooling::Mean if is_even => states.mean(1)?,
             SentencePooling::Mean => {
-                let weights = weights(1.0, 0.0)?.unsqueeze(2)?;
+                let weights = per_token(1.0, 0.0)?.unsqueeze(2)?;
                 states.broadcast_mul(&weights)?.sum(1)?.broadcast_div(&weights.sum(1)?)?
             }
         };
+        // The minimum keeps a vector of zeros from a division by 0.
         let length = pooled.sqr()?.sum_keepdim(1)?.sqrt()?;
         pooled.broadcast_div(&length.maximum(1e-12)?)?.to_vec2()
     }

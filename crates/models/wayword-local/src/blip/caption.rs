@@ -63,12 +63,12 @@ impl BlipCaptioner {
     ) -> Result<Vec<u32>, LocalError> {
         let prompt = self.tokenizer.inner_ids(beginning)?;
         let pixels = self.processor.to_tensor(&[picture], &self.device)?;
-        let said = self.vision.encode_pictures(&pixels).and_then(|states| {
+        let continuation = self.vision.encode_pictures(&pixels).and_then(|states| {
             let attended = self.decoder.text.cross_keys_values(&states)?;
             self.decoder.generate_tokens(&prompt, &attended, most_tokens, &self.device.0)
         });
-        let said = said.map_err(|error| LocalError::compute_failed(&self.name, &error))?;
-        Ok([prompt, said].concat())
+        let continuation = continuation.map_err(|error| LocalError::compute_failed(&self.name, &error))?;
+        Ok([prompt, continuation].concat())
     }
 
     /// The vision model's states of a picture, [patches + 1, size] row by row.

@@ -4,7 +4,7 @@ use crate::{LocalError, json, ops::Activation};
 use serde::Deserialize;
 use std::path::Path;
 
-/// `config.json`.
+/// `config.json`, with the names of transformers.
 #[derive(Debug, Deserialize)]
 pub(super) struct BlipConfig {
     model_type: Option<String>,
@@ -14,7 +14,7 @@ pub(super) struct BlipConfig {
     pub(super) vision_config: VisionConfig,
 }
 
-/// `vision_config`.
+/// `vision_config`: the sizes of the vision model.
 #[derive(Debug, Deserialize)]
 #[serde(default)]
 pub(crate) struct VisionConfig {
@@ -28,7 +28,7 @@ pub(crate) struct VisionConfig {
     pub(crate) layer_norm_eps: f64,
 }
 
-/// `text_config`.
+/// `text_config`: the sizes of the text encoder and of the text decoder.
 #[derive(Debug, Deserialize)]
 #[serde(default)]
 pub(super) struct TextConfig {

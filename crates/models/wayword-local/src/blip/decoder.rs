@@ -15,12 +15,15 @@ use candle_core::{Device, Result, Tensor};
 /// A text model with a head that predicts the next token.
 pub(super) struct BlipDecoder {
     pub(super) text: TextModel,
+    /// The head: a layer with an activation, a norm, and the layer that scores all words of the vocabulary.
     dense: LinearLayer,
     activation: Activation,
     norm: LayerNorm,
     words: LinearLayer,
+    /// The ids of the tokens that begin and end every text.
     begin: u32,
     end: u32,
+    /// The most tokens of a text.
     longest: usize,
 }
 
@@ -57,19 +60,19 @@ impl BlipDecoder {
         self.words.apply_to(&self.norm.apply_to(&self.dense.apply_then(states, self.activation)?)?)
     }
 
-    /// The tokens that continue a prompt: at most `most`, without the one that ends a text. `prompt` does not contain
-    /// the token that begins every text.
+    /// The tokens that continue a prompt: at most `max_tokens`, without the one that ends a text. `prompt` does not
+    /// contain the token that begins every text. `attended` comes from the picture or the question.
     pub(super) fn generate_tokens(
         &self,
         prompt: &[u32],
         attended: &BlipKeysValues,
-        most: usize,
+        max_tokens: usize,
         device: &Device,
     ) -> Result<Vec<u32>> {
-        let begun: Vec<u32> = std::iter::once(self.begin).chain(prompt.iter().copied()).collect();
+        let first_tokens: Vec<u32> = std::iter::once(self.begin).chain(prompt.iter().copied()).collect();
         let mut past = self.text.empty_past();
-        decode_greedily(most.min(self.longest.saturating_sub(begun.len())), self.end, |token| {
-            let next = token.map_or_else(|| begun.clone(), |token| vec![token]);
+        decode_greedily(max_tokens.min(self.longest.saturating_sub(first_tokens.len())), self.end, |token| {
+            let next = token.map_or_else(|| first_tokens.clone(), |token| vec![token]);
             let states = self.text.continue_text(&Tensor::new(next, device)?.unsqueeze(0)?, attended, &mut past)?;
             self.token_logits(&states.narrow(1, states.dim(1)? - 1, 1)?)
         })

@@ -1,5 +1,5 @@
-//! BLIP's text model: a BERT with a second attention in each layer. In the encoder and in the describing decoder it looks
-//! at the picture, in the answering decoder at the encoder's states of the question.
+//! BLIP's text model: a BERT with a second attention in each layer. In the encoder and in the describing decoder it
+//! looks at the picture, in the answering decoder at the encoder's states of the question.
 
 use super::config::TextConfig;
 use crate::{
@@ -20,11 +20,14 @@ pub(super) struct TextModel {
 /// The keys and values, layer by layer, of the states that tokens attend to. They are computed once.
 pub(super) type BlipKeysValues = Vec<(Tensor, Tensor)>;
 
+/// One layer: attention among the tokens, attention to the picture or the question, then a feed-forward network.
 struct BlipTextLayer {
     own: BlipSelfAttention,
+    /// The attention to the picture or the question: queries of the tokens, and keys and values of what they look at.
     cross_query: LinearLayer,
     cross_keys_values: LinearLayer,
     cross: BlipTextOutput,
+    /// The feed-forward network: from the width of a state to the inner width, and back.
     wide: LinearLayer,
     narrow: BlipTextOutput,
     heads: usize,
@@ -33,6 +36,7 @@ struct BlipTextLayer {
 
 /// Attention among the tokens themselves.
 struct BlipSelfAttention {
+    /// The layer for queries, keys and values, side by side.
     qkv: LinearLayer,
     output: BlipTextOutput,
 }
@@ -92,18 +96,19 @@ impl TextModel {
         attended: &BlipKeysValues,
         past: &mut [KeyValueCache],
     ) -> Result<Tensor> {
-        let before = past.first().map_or(Ok(0), KeyValueCache::len)?;
+        let past_length = past.first().map_or(Ok(0), KeyValueCache::len)?;
         let length = ids.dim(1)?;
-        let mask = if length > 1 { Some(causal_mask(length, before + length, ids.device())?) } else { None };
-        let mut x = self.embed_tokens(ids, before)?;
+        let mask = if length > 1 { Some(causal_mask(length, past_length + length, ids.device())?) } else { None };
+        let mut x = self.embed_tokens(ids, past_length)?;
         for ((layer, attended), past) in self.layers.iter().zip(attended).zip(past) {
             x = layer.apply_to(&x, attended, mask.as_ref(), past)?;
         }
         Ok(x)
     }
 
-    fn embed_tokens(&self, ids: &Tensor, before: usize) -> Result<Tensor> {
-        let (from, to) = (before as u32, (before + ids.dim(1)?) as u32);
+    /// The states of tokens before the first layer. The first of them has the position `past_length`.
+    fn embed_tokens(&self, ids: &Tensor, past_length: usize) -> Result<Tensor> {
+        let (from, to) = (past_length as u32, (past_length + ids.dim(1)?) as u32);
         let positions = self.positions.look_up(&Tensor::arange(from, to, ids.device())?)?;
         self.norm.apply_to(&self.words.look_up(ids)?.broadcast_add(&positions)?)
     }
@@ -149,14 +154,16 @@ impl BlipTextLayer {
         let (keys, values) = past.append_tokens(part(1)?, part(2)?)?;
         let mixed = MultiHeadAttention { heads: self.heads, scale, bias: mask }.attend_to(&part(0)?, &keys, &values)?;
         let x = self.own.output.add_and_norm(&mixed, x)?;
-        let seen = MultiHeadAttention { heads: self.heads, scale, bias: None };
-        let x =
-            self.cross.add_and_norm(&seen.attend_to(&self.cross_query.apply_to(&x)?, &attended.0, &attended.1)?, &x)?;
+        let cross_attention = MultiHeadAttention { heads: self.heads, scale, bias: None };
+        let x = self
+            .cross
+            .add_and_norm(&cross_attention.attend_to(&self.cross_query.apply_to(&x)?, &attended.0, &attended.1)?, &x)?;
         self.narrow.add_and_norm(&self.wide.apply_then(&x, self.activation)?, &x)
     }
 }
 
 impl BlipTextOutput {
+    /// The norm of the layer's output for x, plus the earlier state `before`.
     fn add_and_norm(&self, x: &Tensor, before: &Tensor) -> Result<Tensor> {
         self.norm.apply_to(&(self.dense.apply_to(x)? + before)?)
     }

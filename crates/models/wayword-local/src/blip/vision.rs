@@ -10,19 +10,26 @@ use candle_core::{Result, Tensor};
 
 /// Computes the states of the patches of pictures.
 pub(crate) struct BlipVision {
+    /// Turns the pixels of a patch into its first state.
     patch: LinearLayer,
+    /// The edge of a patch.
     patch_px: usize,
+    /// The first state of the class token, which represents the whole picture, [1, 1, size].
     class: Tensor,
     positions: Tensor,
     layers: Vec<BlipVisionLayer>,
     norm: LayerNorm,
 }
 
+/// One layer: attention among the patches, then a feed-forward network, each with a norm before it.
 struct BlipVisionLayer {
     norm: LayerNorm,
+    /// The layer for queries, keys and values, side by side.
     qkv: LinearLayer,
+    /// The layer behind the attention, and the norm before the feed-forward network.
     mixed: LinearLayer,
     mixed_norm: LayerNorm,
+    /// The feed-forward network: from the width of a state to the inner width, and back.
     wide: LinearLayer,
     narrow: LinearLayer,
     heads: usize,
@@ -86,13 +93,13 @@ impl BlipVisionLayer {
         let scale = 1.0 / ((size / self.heads) as f32).sqrt();
         let mixed =
             MultiHeadAttention { heads: self.heads, scale, bias: None }.attend_to(&part(0)?, &part(1)?, &part(2)?)?;
-        let then = FeedForward {
+        let feed_forward = FeedForward {
             before: Some(&self.mixed_norm),
             wide: &self.wide,
             activation: self.activation,
             narrow: &self.narrow,
             after: None,
         };
-        then.apply_to(&self.mixed.apply_onto(&mixed, x)?)
+        feed_forward.apply_to(&self.mixed.apply_onto(&mixed, x)?)
     }
 }

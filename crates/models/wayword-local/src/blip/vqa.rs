@@ -16,8 +16,8 @@ use candle_core::{DType, Tensor};
 use std::path::Path;
 use wayword_core::{Image, RecentCache};
 
-/// The number of pictures for which keys and values are kept, about 45 MB each. A frame gets about ten questions, so
-/// recomputing them would waste most of the time.
+/// The most pictures for which keys and values are kept, about 45 MB each; the oldest is dropped. A frame gets about
+/// ten questions, so recomputing these numbers for each question would waste most of the time.
 const MAX_KEPT_PICTURES: usize = 4;
 
 /// A BLIP that answers questions about pictures. An encoder reads the question and attends to the picture, and a
@@ -29,7 +29,9 @@ pub struct BlipVqa {
     vision: BlipVision,
     encoder: TextModel,
     pub(super) decoder: BlipDecoder,
+    /// The most tokens of a question.
     longest: usize,
+    /// Keys and values of recent pictures, by the hash of the picture.
     seen: RecentCache<[u8; 32], BlipKeysValues>,
     device: ModelDevice,
 }
@@ -67,13 +69,13 @@ impl BlipVqa {
     /// # Errors
     /// When the computation fails.
     pub fn answer_question(&self, picture: &Image, question: &str, most_tokens: usize) -> Result<String, LocalError> {
-        let said = self.encode_question(picture, question)?;
-        let said = self
+        let states = self.encode_question(picture, question)?;
+        let tokens = self
             .decoder
             .text
-            .cross_keys_values(&said)
+            .cross_keys_values(&states)
             .and_then(|attended| self.decoder.generate_tokens(&[], &attended, most_tokens, &self.device.0));
-        self.tokenizer.decode_ids(&said.map_err(|error| LocalError::compute_failed(&self.name, &error))?)
+        self.tokenizer.decode_ids(&tokens.map_err(|error| LocalError::compute_failed(&self.name, &error))?)
     }
 
     /// The encoder's states of a question and a picture, [tokens, size] row by row.
@@ -86,18 +88,19 @@ impl BlipVqa {
         states.map_err(|error| LocalError::compute_failed(&self.name, &error))
     }
 
+    /// The encoder's states of a question and a picture, [1, tokens, size].
     pub(super) fn encode_question(&self, picture: &Image, question: &str) -> Result<Tensor, LocalError> {
-        let compute = |error: candle_core::Error| LocalError::compute_failed(&self.name, &error);
-        let seen = self.seen.get_or_make(picture_digest(picture), || {
+        let to_local_error = |error: candle_core::Error| LocalError::compute_failed(&self.name, &error);
+        let keys_values = self.seen.get_or_make(picture_digest(picture), || {
             let pixels = self.processor.to_tensor(&[picture], &self.device)?;
             self.vision
                 .encode_pictures(&pixels)
                 .and_then(|states| self.encoder.cross_keys_values(&states))
-                .map_err(compute)
+                .map_err(to_local_error)
         })?;
         let ids = self.tokenizer.text_ids(question, self.longest)?;
-        let read =
-            Tensor::new(&ids[..], &self.device.0).and_then(|ids| self.encoder.encode_text(&ids.unsqueeze(0)?, &seen));
-        read.map_err(compute)
+        let encoded = Tensor::new(&ids[..], &self.device.0)
+            .and_then(|ids| self.encoder.encode_text(&ids.unsqueeze(0)?, &keys_values));
+        encoded.map_err(to_local_error)
     }
 }

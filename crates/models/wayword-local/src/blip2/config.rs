@@ -4,7 +4,7 @@ use crate::{LocalError, blip::VisionConfig as BlipVisionConfig, json, ops::Activ
 use serde::Deserialize;
 use std::path::Path;
 
-/// `config.json`.
+/// `config.json`, with the names of transformers.
 #[derive(Debug, Deserialize)]
 pub(super) struct Blip2Config {
     model_type: Option<String>,
@@ -17,7 +17,7 @@ pub(super) struct Blip2Config {
     pub(super) num_query_tokens: usize,
 }
 
-/// `vision_config`.
+/// `vision_config`: the sizes of the vision model.
 #[derive(Debug, Deserialize)]
 #[serde(default)]
 pub(super) struct VisionConfig {
@@ -31,7 +31,7 @@ pub(super) struct VisionConfig {
     layer_norm_eps: f64,
 }
 
-/// `qformer_config`.
+/// `qformer_config`: the sizes of the Q-Former, which condenses the states of a picture.
 #[derive(Debug, Deserialize)]
 #[serde(default)]
 pub(super) struct QFormerConfig {

@@ -22,7 +22,8 @@ use std::path::Path;
 use t5::T5Model;
 use wayword_core::{Image, RecentCache};
 
-/// The number of pictures for which the condensed tokens are kept, because a frame gets about ten questions.
+/// The most pictures for which the condensed tokens are kept, because a frame gets about ten questions. The oldest is
+/// dropped.
 const MAX_KEPT_PICTURES: usize = 4;
 
 /// A BLIP-2: answers questions about pictures, and continues texts about them.
@@ -32,19 +33,22 @@ pub struct Blip2Model {
     tokenizer: TextTokenizer,
     vision: BlipVision,
     queries: QFormer,
+    /// Brings the Q-Former's states to the width of the language model.
     projection: LinearLayer,
+    /// The model that writes the answer.
     speaker: Blip2LanguageModel,
+    /// The condensed tokens of recent pictures, by the hash of the picture.
     seen: RecentCache<[u8; 32], Tensor>,
     device: ModelDevice,
 }
 
-/// The language model that writes the answer.
+/// The language models that checkpoints of BLIP-2 come with: FlanT5 or OPT.
 enum Blip2LanguageModel {
     T5(Box<T5Model>),
     Opt(Box<OptModel>),
 }
 
-/// The most tokens of a prompt.
+/// The most tokens of a prompt. The rest is cut off.
 const LONGEST_PROMPT: usize = 512;
 
 impl Blip2Model {
@@ -96,18 +100,18 @@ impl Blip2Model {
         self.tokenizer.decode_ids(&self.answer_tokens(picture, prompt, most_tokens)?)
     }
 
-    /// The tokens of that text.
+    /// The tokens of the text that [`Blip2Model::continue_prompt`] returns.
     ///
     /// # Errors
     /// When the computation fails.
     pub fn answer_tokens(&self, picture: &Image, prompt: &str, most_tokens: usize) -> Result<Vec<u32>, LocalError> {
-        let seen = self.seen.get_or_make(picture_digest(picture), || self.encode_picture(picture))?;
+        let picture_tokens = self.seen.get_or_make(picture_digest(picture), || self.encode_picture(picture))?;
         let ids = self.tokenizer.text_ids(prompt, LONGEST_PROMPT)?;
-        let said = Tensor::new(&ids[..], &self.device.0).and_then(|ids| match &self.speaker {
-            Blip2LanguageModel::T5(t5) => t5.generate_tokens(&seen, &ids.unsqueeze(0)?, most_tokens),
-            Blip2LanguageModel::Opt(opt) => opt.generate_tokens(&seen, &ids.unsqueeze(0)?, most_tokens),
+        let tokens = Tensor::new(&ids[..], &self.device.0).and_then(|ids| match &self.speaker {
+            Blip2LanguageModel::T5(t5) => t5.generate_tokens(&picture_tokens, &ids.unsqueeze(0)?, most_tokens),
+            Blip2LanguageModel::Opt(opt) => opt.generate_tokens(&picture_tokens, &ids.unsqueeze(0)?, most_tokens),
         });
-        said.map_err(|error| LocalError::compute_failed(&self.name, &error))
+        tokens.map_err(|error| LocalError::compute_failed(&self.name, &error))
     }
 
     /// The condensed states of a picture, [queries, width] row by row, as the language model gets them.
@@ -115,17 +119,18 @@ impl Blip2Model {
     /// # Errors
     /// When the computation fails.
     pub fn query_states(&self, picture: &Image) -> Result<Vec<f32>, LocalError> {
-        let seen = self.encode_picture(picture)?;
-        let numbers = seen.flatten_all().and_then(|seen| seen.to_dtype(DType::F32)?.to_vec1());
+        let states = self.encode_picture(picture)?;
+        let numbers = states.flatten_all().and_then(|states| states.to_dtype(DType::F32)?.to_vec1());
         numbers.map_err(|error| LocalError::compute_failed(&self.name, &error))
     }
 
+    /// The condensed states of a picture, [1, queries, width].
     fn encode_picture(&self, picture: &Image) -> Result<Tensor, LocalError> {
         let pixels = self.processor.to_tensor(&[picture], &self.device)?;
-        let seen = self
+        let condensed = self
             .vision
             .encode_pictures(&pixels)
             .and_then(|states| self.projection.apply_to(&self.queries.condense_states(&states)?));
-        seen.map_err(|error| LocalError::compute_failed(&self.name, &error))
+        condensed.map_err(|error| LocalError::compute_failed(&self.name, &error))
     }
 }

@@ -12,7 +12,7 @@ use candle_core::{Result, Tensor};
 /// The number of the first position. OPT does not count from 0.
 const FIRST_POSITION: usize = 2;
 
-/// The epsilon of OPT's norms.
+/// The epsilon of OPT's norms, which is added to variances so that no division is by 0.
 const NORM_EPSILON: f64 = 1e-5;
 
 /// An OPT that has its norms before each layer, as all but the 350m model have.
@@ -21,16 +21,23 @@ pub(super) struct OptModel {
     positions: EmbeddingTable,
     layers: Vec<OptLayer>,
     norm: LayerNorm,
+    /// Scores all words of the vocabulary as the next token.
     head: LinearLayer,
+    /// The most tokens of a text, with those of the picture.
     longest: usize,
+    /// The id of the token that ends a text.
     end: u32,
 }
 
+/// One layer: attention among the tokens, then a feed-forward network, each with a norm before it.
 struct OptLayer {
     own_norm: LayerNorm,
+    /// The layer for queries, keys and values, side by side.
     qkv: LinearLayer,
+    /// The layer behind the attention.
     mixed: LinearLayer,
     norm: LayerNorm,
+    /// The feed-forward network: from the width of a state to the inner width, and back.
     wide: LinearLayer,
     narrow: LinearLayer,
     heads: usize,
@@ -61,14 +68,14 @@ impl OptModel {
         })
     }
 
-    /// The tokens that follow a picture's tokens [1, count, size] and a prompt's ids [1, length].
-    pub(super) fn generate_tokens(&self, seen: &Tensor, ids: &Tensor, most: usize) -> Result<Vec<u32>> {
+    /// The tokens that follow a picture's tokens [1, count, size] and a prompt's ids [1, length]: at most `max_tokens`.
+    pub(super) fn generate_tokens(&self, picture: &Tensor, ids: &Tensor, max_tokens: usize) -> Result<Vec<u32>> {
         let mut past = vec![KeyValueCache::default(); self.layers.len()];
-        let most = most.min(self.longest.saturating_sub(seen.dim(1)? + ids.dim(1)?));
-        decode_greedily(most, self.end, |token| {
+        let max_tokens = max_tokens.min(self.longest.saturating_sub(picture.dim(1)? + ids.dim(1)?));
+        decode_greedily(max_tokens, self.end, |token| {
             let x = match token {
-                None => Tensor::cat(&[seen, &self.words.look_up(ids)?], 1)?,
-                Some(token) => self.words.look_up(&Tensor::new(&[[token]], seen.device())?)?,
+                None => Tensor::cat(&[picture, &self.words.look_up(ids)?], 1)?,
+                Some(token) => self.words.look_up(&Tensor::new(&[[token]], picture.device())?)?,
             };
             self.continue_text(&x, &mut past)
         })
@@ -76,11 +83,11 @@ impl OptModel {
 
     /// Reads the next tokens [1, length, size], and returns the logits of the token after them.
     fn continue_text(&self, x: &Tensor, past: &mut [KeyValueCache]) -> Result<Tensor> {
-        let before = past.first().map_or(Ok(0), KeyValueCache::len)?;
+        let past_length = past.first().map_or(Ok(0), KeyValueCache::len)?;
         let length = x.dim(1)?;
-        let from = (before + FIRST_POSITION) as u32;
+        let from = (past_length + FIRST_POSITION) as u32;
         let positions = Tensor::arange(from, from + length as u32, x.device())?;
-        let mask = if length > 1 { Some(causal_mask(length, before + length, x.device())?) } else { None };
+        let mask = if length > 1 { Some(causal_mask(length, past_length + length, x.device())?) } else { None };
         let mut x = x.broadcast_add(&self.positions.look_up(&positions)?)?;
         for (layer, past) in self.layers.iter().zip(past) {
             x = layer.apply_to(&x, mask.as_ref(), past)?;

@@ -11,15 +11,20 @@ use candle_core::{Result, Tensor};
 
 /// Condenses the states of a picture to a few states.
 pub(super) struct QFormer {
+    /// The learned queries before the first layer, [1, queries, size].
     tokens: Tensor,
     norm: LayerNorm,
     layers: Vec<QFormerLayer>,
 }
 
+/// One layer: attention among the queries, in some layers attention to the picture, then a feed-forward network.
 struct QFormerLayer {
+    /// The layer for queries, keys and values, side by side.
     qkv: LinearLayer,
+    /// The layer behind the attention among the queries.
     own: QFormerOutput,
     cross: Option<QFormerCrossAttention>,
+    /// The feed-forward network: from the width of a state to the inner width, and back.
     wide: LinearLayer,
     narrow: QFormerOutput,
     heads: usize,
@@ -115,6 +120,7 @@ impl QFormerLayer {
 }
 
 impl QFormerOutput {
+    /// The norm of the layer's output for x, plus the earlier state `before`.
     fn add_and_norm(&self, x: &Tensor, before: &Tensor) -> Result<Tensor> {
         self.norm.apply_to(&(self.dense.apply_to(x)? + before)?)
     }

@@ -21,10 +21,12 @@ pub(super) struct T5Model {
     head: LinearLayer,
     /// The factor for the decoder's states.
     scale: Option<f64>,
+    /// The ids of the tokens that begin and end an answer.
     begin: u32,
     end: u32,
 }
 
+/// The encoder or the decoder: blocks, one behind the other.
 struct T5Stack {
     blocks: Vec<T5Block>,
     norm: RmsNorm,
@@ -35,16 +37,22 @@ struct T5Stack {
 struct T5DistanceBias {
     table: EmbeddingTable,
     buckets: usize,
+    /// The distance from which on all distances share the last bucket, tokens.
     farthest: usize,
+    /// Whether later tokens have buckets of their own. They have in the encoder; the decoder does not see later tokens.
     both_ways: bool,
 }
 
+/// One block: attention among the tokens, in the decoder attention to the encoder's states, then the gated layers.
 struct T5Block {
     norm: RmsNorm,
+    /// The layer for queries, keys and values, side by side.
     qkv: LinearLayer,
+    /// The layer behind the attention.
     mixed: LinearLayer,
     cross: Option<T5CrossAttention>,
     wide_norm: RmsNorm,
+    /// The gated layers: `narrow(activation(gate(x)) * wide(x))`.
     gate: LinearLayer,
     wide: LinearLayer,
     narrow: LinearLayer,
@@ -82,13 +90,14 @@ impl T5Model {
         })
     }
 
-    /// The tokens of the answer to a picture's tokens [1, count, size] and a prompt's ids [1, length].
-    pub(super) fn generate_tokens(&self, seen: &Tensor, ids: &Tensor, most: usize) -> Result<Vec<u32>> {
-        let read = self.encoder.encode_text(&Tensor::cat(&[seen, &self.words.look_up(ids)?], 1)?)?;
-        let attended = self.decoder.cross_keys_values(&read)?;
+    /// The tokens of the answer to a picture's tokens [1, count, size] and a prompt's ids [1, length]: at
+    /// most `max_tokens`.
+    pub(super) fn generate_tokens(&self, picture: &Tensor, ids: &Tensor, max_tokens: usize) -> Result<Vec<u32>> {
+        let encoded = self.encoder.encode_text(&Tensor::cat(&[picture, &self.words.look_up(ids)?], 1)?)?;
+        let attended = self.decoder.cross_keys_values(&encoded)?;
         let mut past = vec![KeyValueCache::default(); self.decoder.blocks.len()];
-        decode_greedily(most, self.end, |token| {
-            let token = self.words.look_up(&Tensor::new(&[[token.unwrap_or(self.begin)]], seen.device())?)?;
+        decode_greedily(max_tokens, self.end, |token| {
+            let token = self.words.look_up(&Tensor::new(&[[token.unwrap_or(self.begin)]], picture.device())?)?;
             let states = self.decoder.continue_text(&token, &attended, &mut past)?;
             let states = self.scale.map_or(Ok(states.clone()), |scale| states * scale)?;
             self.head.apply_to(&states)
@@ -123,26 +132,27 @@ impl T5Stack {
     /// The states of a whole text [1, length, size]. Each token sees all others.
     fn encode_text(&self, x: &Tensor) -> Result<Tensor> {
         let bias = self.distances.score_bias(0, x.dim(1)?, x)?;
-        let read = |x, block: &T5Block| block.apply_to(&x, &bias, None, &mut KeyValueCache::default());
-        self.norm.apply_to(&self.blocks.iter().try_fold(x.clone(), read)?)
+        let apply_block = |x, block: &T5Block| block.apply_to(&x, &bias, None, &mut KeyValueCache::default());
+        self.norm.apply_to(&self.blocks.iter().try_fold(x.clone(), apply_block)?)
     }
 
-    fn cross_keys_values(&self, read: &Tensor) -> Result<T5KeysValues> {
+    /// The keys and values of the encoder's states, block by block.
+    fn cross_keys_values(&self, encoded: &Tensor) -> Result<T5KeysValues> {
         let keys_values = |cross: &T5CrossAttention| {
-            let both = cross.keys_values.apply_to(read)?;
+            let both = cross.keys_values.apply_to(encoded)?;
             let width = both.dim(2)? / 2;
             Ok((both.narrow(2, 0, width)?, both.narrow(2, width, width)?))
         };
         self.blocks.iter().filter_map(|block| block.cross.as_ref()).map(keys_values).collect()
     }
 
-    /// The states of the next tokens [1, length, size].
+    /// The states of the next tokens [1, length, size], after those of `past`.
     fn continue_text(&self, x: &Tensor, attended: &T5KeysValues, past: &mut [KeyValueCache]) -> Result<Tensor> {
-        let before = past.first().map_or(Ok(0), KeyValueCache::len)?;
+        let past_length = past.first().map_or(Ok(0), KeyValueCache::len)?;
         let length = x.dim(1)?;
-        let mut bias = self.distances.score_bias(before, length, x)?;
+        let mut bias = self.distances.score_bias(past_length, length, x)?;
         if length > 1 {
-            bias = bias.broadcast_add(&causal_mask(length, before + length, x.device())?)?;
+            bias = bias.broadcast_add(&causal_mask(length, past_length + length, x.device())?)?;
         }
         let mut x = x.clone();
         for ((block, attended), past) in self.blocks.iter().zip(attended).zip(past) {
@@ -170,15 +180,15 @@ impl T5DistanceBias {
             (true, false) => (self.buckets / 2, 0),
             (false, _) => (self.buckets, 0),
         };
-        let far = if self.both_ways { distance.unsigned_abs() } else { (-distance).max(0).unsigned_abs() } as usize;
+        let tokens = if self.both_ways { distance.unsigned_abs() } else { (-distance).max(0).unsigned_abs() } as usize;
         // Half of the buckets are for one distance each. The others are for ranges that become wider with the distance.
         let exact = buckets / 2;
-        if far < exact {
-            return (first + far) as u32;
+        if tokens < exact {
+            return (first + tokens) as u32;
         }
-        let ratio = (far as f32 / exact as f32).ln() / (self.farthest as f32 / exact as f32).ln();
-        let wide = exact + (ratio * (buckets - exact) as f32) as usize;
-        (first + wide.min(buckets - 1)) as u32
+        let ratio = (tokens as f32 / exact as f32).ln() / (self.farthest as f32 / exact as f32).ln();
+        let bucket = exact + (ratio * (buckets - exact) as f32) as usize;
+        (first + bucket.min(buckets - 1)) as u32
     }
 }
 

@@ -15,6 +15,7 @@ pub(crate) struct ClipConfig {
     pub(crate) projection_dim: usize,
 }
 
+/// The settings of the text tower.
 #[derive(Debug, Deserialize)]
 pub(crate) struct TextConfig {
     #[serde(flatten)]
@@ -25,6 +26,7 @@ pub(crate) struct TextConfig {
     pub(crate) eos_token_id: Option<u32>,
 }
 
+/// The settings of the vision tower.
 #[derive(Debug, Deserialize)]
 pub(crate) struct VisionConfig {
     #[serde(flatten)]
@@ -44,10 +46,12 @@ pub(crate) struct LayersConfig {
     pub(crate) layer_norm_eps: f64,
 }
 
-/// A family of checkpoints with these towers.
+/// A family of checkpoints with these towers. The families differ in their defaults.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum TowerFamily {
+    /// CLIP.
     Clip,
+    /// OWLv2.
     Owl,
 }
 
@@ -64,7 +68,7 @@ struct ClipConfigFile {
     vision_config_dict: Option<Map<String, Value>>,
 }
 
-/// Longest edge of a picture for a model, pixels.
+/// The longest edge of a picture that a configuration may ask for, pixels. A longer one is refused.
 const LONGEST_EDGE: usize = 2048;
 
 impl ClipConfig {
@@ -104,7 +108,7 @@ impl TowerFamily {
         let (positions, end) = match self {
             Self::Clip => (77, Some(49407)),
             Self::Owl => {
-                // transformers does not read it, and some files have a list there.
+                // transformers does not read this field, and some files have a list there.
                 given.remove("eos_token_id");
                 (16, None)
             }
@@ -132,6 +136,7 @@ impl TowerFamily {
 }
 
 impl ClipConfigFile {
+    /// Fills in missing values, and checks the sizes.
     fn fill_defaults(self, family: TowerFamily) -> Result<ClipConfig, String> {
         let expected = family.model_type();
         if let Some(kind) = self.model_type.filter(|kind| kind != expected) {

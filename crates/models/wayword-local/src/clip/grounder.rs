@@ -53,26 +53,28 @@ impl PhraseGrounder for ClipGrounder {
     fn score_phrases(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<f32>, ModelError>> {
         let images: Vec<Result<&Image, ModelError>> =
             views.iter().map(|view| picture_of_view(view, self.clip.name())).collect();
-        let seen: Vec<&Image> = images.iter().filter_map(|image| image.as_ref().ok().copied()).collect();
-        let vectors = cached_vectors(&self.images, &seen, picture_digest, |images| self.clip.image_features(images))
-            .and_then(|seen| {
-                let texts = |texts: &[&str]| self.clip.text_features(texts);
-                Ok((seen, cached_vectors(&self.texts, phrases, |text| Sha256::digest(text).into(), texts)?))
-            })
-            .map_err(|error| self.to_model_error(&error));
+        let pictures: Vec<&Image> = images.iter().filter_map(|image| image.as_ref().ok().copied()).collect();
+        let vectors =
+            cached_vectors(&self.images, &pictures, picture_digest, |images| self.clip.image_features(images))
+                .and_then(|pictures| {
+                    let texts = |texts: &[&str]| self.clip.text_features(texts);
+                    Ok((pictures, cached_vectors(&self.texts, phrases, |text| Sha256::digest(text).into(), texts)?))
+                })
+                .map_err(|error| self.to_model_error(&error));
+        // Views without a picture have an error in `images`, and no vector.
         let mut at = 0;
         let scores = |image: Result<&Image, ModelError>| {
             image?;
             at += 1;
-            let (seen, texts) = vectors.as_ref().map_err(Clone::clone)?;
-            Ok(texts.iter().map(|text| dot_product(&seen[at - 1], text)).collect())
+            let (pictures, texts) = vectors.as_ref().map_err(Clone::clone)?;
+            Ok(texts.iter().map(|text| dot_product(&pictures[at - 1], text)).collect())
         };
         images.into_iter().map(scores).collect()
     }
 }
 
 /// The vectors of pictures or texts, in their order. Recent vectors are reused, and each of the others is computed
-/// once.
+/// once, even if the same thing is there several times.
 fn cached_vectors<T: Copy>(
     recent: &RecentCache<GrounderKey, Vec<f32>>,
     things: &[T],

@@ -11,13 +11,17 @@ use candle_core::{Result, Tensor};
 
 /// A stack of layers that computes the states of all tokens, or of one token of each text or picture.
 pub(crate) struct ClipLayers {
+    /// All layers before the last one.
     before: Vec<ClipLayer>,
     last: ClipLayer,
 }
 
+/// One layer: a norm and attention among the tokens, then a norm and a feed-forward network.
 struct ClipLayer {
     mix_norm: LayerNorm,
+    /// The layer for queries, keys and values, side by side.
     qkv: LinearLayer,
+    /// The layer behind the attention.
     mixed: LinearLayer,
     think_norm: LayerNorm,
     wide: LinearLayer,
@@ -49,7 +53,7 @@ impl ClipLayers {
         let (batch, length, size) = x.dims3()?;
         let place = |(text, at): (usize, &u32)| (text * length) as u32 + at;
         let rows = Tensor::from_vec(at.iter().enumerate().map(place).collect(), batch, x.device())?;
-        let picked = |x: &Tensor| {
+        let pick_rows = |x: &Tensor| {
             let width = x.dim(2)?;
             x.contiguous()?.reshape((batch * length, width))?.index_select(&rows, 0)?.reshape((batch, 1, width))
         };
@@ -58,8 +62,8 @@ impl ClipLayers {
             mask.index_select(&at, 0)?.reshape((batch, 1, 1, length))
         });
         let qkv = self.last.qkv.apply_to_normed(&x, &self.last.mix_norm)?;
-        let q = picked(&qkv)?.narrow(2, 0, size)?;
-        self.last.apply_to(&picked(&x)?, &qkv, &q, mask.transpose()?.as_ref())
+        let q = pick_rows(&qkv)?.narrow(2, 0, size)?;
+        self.last.apply_to(&pick_rows(&x)?, &qkv, &q, mask.transpose()?.as_ref())
     }
 }
 
@@ -96,13 +100,13 @@ impl ClipLayer {
         let scale = 1.0 / ((x.dim(2)? / self.heads) as f32).sqrt();
         let attention = MultiHeadAttention { heads: self.heads, scale, bias: mask };
         let mixed = attention.attend_to(q, &qkv_part(qkv, 1)?, &qkv_part(qkv, 2)?)?;
-        let then = FeedForward {
+        let feed_forward = FeedForward {
             before: Some(&self.think_norm),
             wide: &self.wide,
             activation: self.activation,
             narrow: &self.narrow,
             after: None,
         };
-        then.apply_to(&self.mixed.apply_onto(&mixed, x)?)
+        feed_forward.apply_to(&self.mixed.apply_onto(&mixed, x)?)
     }
 }

@@ -73,7 +73,7 @@ impl ClipModel {
         })
     }
 
-    /// `hf/ORG/NAME`.
+    /// The name of the model, `hf/ORG/NAME`.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
@@ -87,11 +87,11 @@ impl ClipModel {
         let mut vectors = Vec::with_capacity(images.len());
         for batch in images.chunks(ITEMS_PER_BATCH) {
             let pictures = self.processor.to_tensor(batch, &self.device)?;
-            let found = self
+            let batch_vectors = self
                 .vision
                 .encode_pictures(&pictures)
                 .and_then(|states| unit_vectors(&self.visual_projection.apply_to(&states)?));
-            vectors.extend(found.map_err(|error| self.compute_error(&error))?);
+            vectors.extend(batch_vectors.map_err(|error| self.compute_error(&error))?);
         }
         Ok(vectors)
     }
@@ -108,10 +108,10 @@ impl ClipModel {
         order.sort_by_key(|&at| ids[at].len());
         let mut vectors = vec![Vec::new(); texts.len()];
         for batch in order.chunks(ITEMS_PER_BATCH) {
-            let of_batch: Vec<&[u32]> = batch.iter().map(|&at| &ids[at][..]).collect();
-            let states = self.text.encode_texts(&of_batch, &self.device.0);
-            let found = states.and_then(|states| unit_vectors(&self.text_projection.apply_to(&states)?));
-            for (&at, vector) in batch.iter().zip(found.map_err(|error| self.compute_error(&error))?) {
+            let batch_ids: Vec<&[u32]> = batch.iter().map(|&at| &ids[at][..]).collect();
+            let states = self.text.encode_texts(&batch_ids, &self.device.0);
+            let batch_vectors = states.and_then(|states| unit_vectors(&self.text_projection.apply_to(&states)?));
+            for (&at, vector) in batch.iter().zip(batch_vectors.map_err(|error| self.compute_error(&error))?) {
                 vectors[at] = vector;
             }
         }

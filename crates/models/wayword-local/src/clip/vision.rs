@@ -10,7 +10,9 @@ use candle_core::{DType, Result, Tensor};
 
 /// Computes one state for each picture, or the states of all its tokens.
 pub(crate) struct VisionTower {
+    /// The edge of a patch, pixels.
     patch_size: usize,
+    /// Turns the pixels of a patch into its first state.
     patches: LinearLayer,
     /// The class token with its position, [1, 1, size]. It comes before the patches, and its state is the result.
     class: Tensor,
@@ -35,13 +37,13 @@ impl VisionTower {
         let kernel = kernel.flatten_from(1).and_then(|kernel| LinearLayer::new(&kernel, None));
         let class = embeddings.read_tensor("class_embedding", &[size])?;
         let positions = embeddings.read_tensor("position_embedding.weight", &[count + 1, size])?;
-        let placed =
+        let class_and_positions =
             split_positions(&class, &positions).map_err(|error| embeddings.tensor_error("class_embedding", &error))?;
         Ok(Self {
             patch_size: patch,
             patches: kernel.map_err(|error| embeddings.tensor_error("patch_embedding.weight", &error))?,
-            class: placed.0,
-            positions: placed.1,
+            class: class_and_positions.0,
+            positions: class_and_positions.1,
             first_norm: weights.layer_norm(first_norm, size, epsilon)?,
             layers: ClipLayers::from_weights(&weights.sub_scope("encoder.layers"), &config.layers)?,
             last_norm: weights.layer_norm("post_layernorm", size, epsilon)?,
@@ -64,20 +66,20 @@ impl VisionTower {
     fn embed_patches(&self, pictures: &Tensor) -> Result<Tensor> {
         let batch = pictures.dim(0)?;
         let cut = cut_patches(&pictures.to_dtype(self.positions.dtype())?, self.patch_size)?;
-        let seen = self.patches.apply_to(&cut)?.broadcast_add(&self.positions)?;
-        let size = seen.dim(2)?;
-        let x = Tensor::cat(&[&self.class.expand((batch, 1, size))?, &seen], 1)?;
+        let patch_states = self.patches.apply_to(&cut)?.broadcast_add(&self.positions)?;
+        let size = patch_states.dim(2)?;
+        let x = Tensor::cat(&[&self.class.expand((batch, 1, size))?, &patch_states], 1)?;
         self.first_norm.apply_to(&x)
     }
 }
 
 /// The class token with its position added, and the positions of the patches. On the CPU they have 32 bits.
 fn split_positions(class: &Tensor, positions: &Tensor) -> Result<(Tensor, Tensor)> {
-    let wide = |tensor: &Tensor| match tensor.device().is_cpu() {
+    let widen = |tensor: &Tensor| match tensor.device().is_cpu() {
         true => tensor.to_dtype(DType::F32),
         false => Ok(tensor.clone()),
     };
-    let (class, positions) = (wide(class)?, wide(positions)?);
+    let (class, positions) = (widen(class)?, widen(positions)?);
     let class = (class + positions.get(0)?)?.reshape((1, 1, ()))?;
     Ok((class, positions.narrow(0, 1, positions.dim(0)? - 1)?.contiguous()?))
 }

@@ -18,6 +18,7 @@ use wayword_ledger::LedgerRun;
 /// boxes as JSON.
 pub struct LocalDetector {
     kept: CallLedger,
+    /// The detector itself, for views and phrases that the ledger lacks.
     ready: LoadedDetector,
 }
 
@@ -35,6 +36,8 @@ impl LocalDetector {
         &self.kept.origin
     }
 
+    /// The boxes of each phrase in one view. `phrases_meet` is true for detectors in which the phrases of a call
+    /// influence each other's scores.
     fn in_view(&self, view: &View, phrases: &[&str]) -> Result<Vec<PhraseBoxes>, ModelError> {
         let picture = picture_hash(picture_of_view(view, &self.kept.name)?);
         match phrases {
@@ -44,6 +47,7 @@ impl LocalDetector {
         }
     }
 
+    /// One call for the view and all phrases.
     fn detect_together(&self, view: &View, picture: &str, phrases: &[&str]) -> Result<Vec<PhraseBoxes>, ModelError> {
         let answer = self.kept.answer_once(self.request_json(picture, phrases), 0, || {
             let found = self.compute_boxes(view, phrases)?;
@@ -56,10 +60,12 @@ impl LocalDetector {
         Ok(found)
     }
 
+    /// One call for each phrase. Phrases that the ledger lacks are computed together nevertheless.
     fn one_by_one(&self, view: &View, picture: &str, phrases: &[&str]) -> Result<Vec<PhraseBoxes>, ModelError> {
-        // The first phrase that the ledger lacks computes all phrases from there on. Their boxes wait here.
+        // The first phrase that the ledger lacks computes all phrases from there on. The boxes of those
+        // that follow wait in `ahead` until their own call.
         let ahead: RefCell<VecDeque<PhraseBoxes>> = RefCell::default();
-        let one = |(at, phrase): (usize, &&str)| {
+        let detect_one = |(at, phrase): (usize, &&str)| {
             let answer = self.kept.answer_once(self.request_json(picture, &[phrase]), 0, || {
                 if ahead.borrow().is_empty() {
                     *ahead.borrow_mut() = self.compute_boxes(view, &phrases[at..])?.into();
@@ -70,7 +76,7 @@ impl LocalDetector {
             ahead.borrow_mut().pop_front();
             self.parse_answer(&answer.text)
         };
-        phrases.iter().enumerate().map(one).collect()
+        phrases.iter().enumerate().map(detect_one).collect()
     }
 
     /// The boxes that the detector finds, one list per phrase.

@@ -1,7 +1,8 @@
 //! Detectors in process: which checkpoints are detectors, how they are loaded, and how the ledger keeps their answers.
 //!
-//! To add an architecture, add a variant to [`DetectorCheckpoint`], the line by which [`DetectorCheckpoint::find_files`] recognises it, its
-//! line in [`DetectorCheckpoint::load`], and the bytes of features that it keeps in [`DetectorCheckpoint::memory_bytes`].
+//! To add an architecture, add a variant to [`DetectorCheckpoint`], the line by which
+//! [`DetectorCheckpoint::find_files`] recognises the architecture, its line in [`DetectorCheckpoint::load`], and the
+//! bytes of features that it keeps in [`DetectorCheckpoint::memory_bytes`].
 
 mod local_detector;
 
@@ -21,8 +22,11 @@ use wayword_core::ObjectDetector;
 /// The files of a detector, by its kind.
 #[derive(Debug)]
 pub(crate) enum DetectorCheckpoint {
+    /// GLIP, from a `.pth` file.
     Glip(GlipFiles),
+    /// Grounding DINO, MM Grounding DINO or LLMDet.
     Dino(ModelFolder),
+    /// OWLv2.
     Owl(ModelFolder),
 }
 
@@ -98,11 +102,11 @@ impl DetectorCheckpoint {
     /// The memory that the detector takes, bytes: its weights at a precision, and the features of pictures that it
     /// keeps.
     pub(crate) fn memory_bytes(&self, precision: WeightPrecision) -> Result<u64, LocalError> {
-        let (weights, kept) = match self {
+        let (weights, feature_bytes) = match self {
             Self::Glip(files) => (memory::of_file(&files.weights, precision)?, glip::FEATURES_BYTES),
             Self::Dino(folder) => (memory::checkpoint_bytes(&folder.path, precision)?, dino::KEPT_BYTES),
             Self::Owl(folder) => (memory::checkpoint_bytes(&folder.path, precision)?, owl::KEPT_BYTES),
         };
-        Ok(weights.saturating_add(kept as u64))
+        Ok(weights.saturating_add(feature_bytes as u64))
     }
 }

@@ -46,7 +46,7 @@ impl Default for DinoBackboneConfig {
     }
 }
 
-/// Reads and checks the sizes of a Swin transformer.
+/// Reads and checks the sizes of a Swin transformer from a `backbone_config`.
 pub(super) fn swin_config(given: Map<String, Value>) -> Result<SwinConfig, String> {
     let given = given.into_iter().filter(|(_, value)| !value.is_null()).collect();
     let written: DinoBackboneConfig =
@@ -54,8 +54,8 @@ pub(super) fn swin_config(given: Map<String, Value>) -> Result<SwinConfig, Strin
     if written.model_type != "swin" {
         return Err(format!("model_type: {} is not swin", written.model_type));
     }
-    let kind = (written.patch_size, written.num_channels, written.qkv_bias, &written.hidden_act[..]);
-    if kind != (4, 3, true, "gelu") || written.use_absolute_embeddings {
+    let fixed_values = (written.patch_size, written.num_channels, written.qkv_bias, &written.hidden_act[..]);
+    if fixed_values != (4, 3, true, "gelu") || written.use_absolute_embeddings {
         return Err("patch_size, num_channels, qkv_bias, hidden_act and use_absolute_embeddings must be 4, 3, true, gelu and false, as in all public checkpoints".to_owned());
     }
     if !(written.mlp_ratio >= 1.0 && written.mlp_ratio.fract() == 0.0 && written.mlp_ratio <= 32.0) {

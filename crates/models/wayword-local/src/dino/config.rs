@@ -12,7 +12,7 @@ use serde::Deserialize;
 use serde_json::{Map, Value};
 use std::path::Path;
 
-/// The most levels of a picture's features. A level is a grid of cells; each next level is coarser.
+/// The most levels of a picture's features; more are refused. A level is a grid of cells; each next level is coarser.
 const MOST_LEVELS: usize = 8;
 
 /// The groups of channels of the norm that follows each projection of the backbone's maps.
@@ -38,6 +38,7 @@ pub(super) struct DinoConfig {
     pub(super) longest: usize,
     /// The temperature of the sines that encode a position in a picture.
     pub(super) temperature: f32,
+    /// Added to variances in norms, so that no division is by 0.
     pub(super) epsilon: f64,
     pub(super) activation: Activation,
     pub(super) text: BertConfig,

@@ -2,6 +2,7 @@
 //! boxes.
 
 use super::{
+    LoadResult,
     config::DinoConfig,
     deformable::{DeformableAttention, SamplingOrigin},
     features::FeatureLevel,
@@ -10,10 +11,8 @@ use super::{
     position,
     queries::{rows_of_four, sigmoid},
 };
-use crate::{LocalError, ops::LayerNorm, weights::WeightScope};
+use crate::{ops::LayerNorm, weights::WeightScope};
 use candle_core::{Result, Tensor};
-
-type DinoDecoderResult<T> = std::result::Result<T, LocalError>;
 
 /// The numbers of a box are kept this far from 0 and 1 before it is moved, so that their logits stay finite.
 const BOX_SHARE_EPSILON: f32 = 1e-5;
@@ -24,11 +23,14 @@ pub(super) struct DinoDecoder {
     begin: Tensor,
     layers: Vec<DinoDecoderLayer>,
     norm: LayerNorm,
+    /// Turns the encoded position of a query's box into a vector that is added to its state.
     places: ReluPerceptron,
     heads: DinoHeads,
     size: usize,
 }
 
+/// One layer: queries look at each other (`mix`), at the text (`read`) and at the picture (`look`), then comes a
+/// feed-forward network (`feed`). A norm follows each step.
 struct DinoDecoderLayer {
     mix: ProjectedAttention,
     mix_norm: LayerNorm,
@@ -49,13 +51,13 @@ pub(super) struct DinoPredictions {
 
 impl DinoDecoder {
     /// Reads the decoder from a whole checkpoint.
-    pub(super) fn from_weights(all: &WeightScope<'_>, config: &DinoConfig) -> DinoDecoderResult<Self> {
+    pub(super) fn from_weights(all: &WeightScope<'_>, config: &DinoConfig) -> LoadResult<Self> {
         let (size, model) = (config.size, all.sub_scope("model"));
         let decoder = model.sub_scope("decoder");
         let layer = |at: usize| DinoDecoderLayer::from_weights(&decoder.sub_scope("layers").sub_scope(at), config);
         Ok(Self {
             begin: model.read_state("query_position_embeddings.weight", &[config.queries, size])?,
-            layers: (0..config.decoder.count).map(layer).collect::<DinoDecoderResult<_>>()?,
+            layers: (0..config.decoder.count).map(layer).collect::<LoadResult<_>>()?,
             norm: decoder.layer_norm("layer_norm", size, config.epsilon)?,
             places: ReluPerceptron::from_weights(&decoder.sub_scope("reference_points_head"), &[2 * size, size, size])?,
             heads: DinoHeads::from_weights(all, config)?,
@@ -99,12 +101,13 @@ fn move_boxes(boxes: &[[f32; 4]], moves: &Tensor) -> Result<Vec<[f32; 4]>> {
         let share = share.clamp(BOX_SHARE_EPSILON, 1.0 - BOX_SHARE_EPSILON);
         (share / (1.0 - share)).ln()
     };
-    let one = |(from, by): (&[f32; 4], [f32; 4])| std::array::from_fn(|edge| sigmoid(by[edge] + logit(from[edge])));
-    Ok(boxes.iter().zip(rows_of_four(moves)?).map(one).collect())
+    let move_one =
+        |(from, by): (&[f32; 4], [f32; 4])| std::array::from_fn(|edge| sigmoid(by[edge] + logit(from[edge])));
+    Ok(boxes.iter().zip(rows_of_four(moves)?).map(move_one).collect())
 }
 
 impl DinoDecoderLayer {
-    fn from_weights(weights: &WeightScope<'_>, config: &DinoConfig) -> DinoDecoderResult<Self> {
+    fn from_weights(weights: &WeightScope<'_>, config: &DinoConfig) -> LoadResult<Self> {
         let (size, heads, epsilon) = (config.size, config.decoder.heads, config.epsilon);
         let norm = |name: &str| weights.layer_norm(name, size, epsilon);
         let widths = (size, config.decoder.inner);

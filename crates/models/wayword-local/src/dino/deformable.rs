@@ -18,6 +18,7 @@ const QUERIES_PER_TASK: usize = 64;
 
 /// Deformable attention of one layer.
 pub(super) struct DeformableAttention {
+    /// Turns the state of a cell into the values that queries sample.
     value: LinearLayer,
     /// The outputs are two offsets for each head, level and point; then a weight for each head, level and point.
     points: LinearLayer,
@@ -78,8 +79,8 @@ impl DeformableAttention {
         let points = self.points.apply_to(queries)?.squeeze(0)?;
         let from = sampling_starts(from, levels, self.shape.points);
         let mixed = if value.device().is_cpu() {
-            let look = DeformableSampler { shape: self.shape, levels, from: &from };
-            value.contiguous()?.apply_op2_no_bwd(&points.contiguous()?, &look)?
+            let sampler = DeformableSampler { shape: self.shape, levels, from: &from };
+            value.contiguous()?.apply_op2_no_bwd(&points.contiguous()?, &sampler)?
         } else {
             sample_on_device(self.shape, &value, &points, levels, &from)?
         };
@@ -139,8 +140,8 @@ impl CustomOp2 for DeformableSampler<'_> {
         p_layout: &Layout,
     ) -> Result<(CpuStorage, Shape)> {
         let ((cells, size), (queries, width)) = (v_layout.shape().dims2()?, p_layout.shape().dims2()?);
-        let held: usize = self.levels.iter().map(|level| level.height * level.width).sum();
-        if held != cells || self.from.len() != queries || width != 3 * self.shape.sample_count() {
+        let level_cells: usize = self.levels.iter().map(|level| level.height * level.width).sum();
+        if level_cells != cells || self.from.len() != queries || width != 3 * self.shape.sample_count() {
             bail!("{cells} cells and {queries} queries do not fit together");
         }
         let (values, points) = (contiguous_slice::<f32>(v, v_layout)?, contiguous_slice::<f32>(p, p_layout)?);
@@ -160,22 +161,24 @@ impl CustomOp2 for DeformableSampler<'_> {
 }
 
 impl DeformableSampler<'_> {
+    /// Writes the sum for one query into `mixed`: for each head, the values at its places times their weights. `points`
+    /// has the offsets and then the weights before their softmax; `shares` is memory for the weights of one head.
     fn sample_query(&self, values: &[f32], points: &[f32], from: SamplingStart, shares: &mut [f32], mixed: &mut [f32]) {
-        let each = mixed.len() / self.shape.heads;
+        let head_width = mixed.len() / self.shape.heads;
         let size = mixed.len();
         let (offsets, weights) = points.split_at(2 * self.shape.sample_count());
         let heads = offsets.chunks(2 * shares.len()).zip(weights.chunks(shares.len()));
-        for (head, ((offsets, weights), mixed)) in heads.zip(mixed.chunks_mut(each)).enumerate() {
+        for (head, ((offsets, weights), mixed)) in heads.zip(mixed.chunks_mut(head_width)).enumerate() {
             softmax_into(weights, shares);
             let mut begin = 0;
-            let of_levels = offsets.chunks(2 * self.shape.points).zip(shares.chunks(self.shape.points));
-            for (&level, (offsets, shares)) in self.levels.iter().zip(of_levels) {
+            let level_points = offsets.chunks(2 * self.shape.points).zip(shares.chunks(self.shape.points));
+            for (&level, (offsets, shares)) in self.levels.iter().zip(level_points) {
                 let cells = level.height * level.width;
                 let map = HeadValueMap {
                     values: &values[begin * size..(begin + cells) * size],
                     level,
                     size,
-                    from: head * each,
+                    from: head * head_width,
                 };
                 for (offset, &share) in offsets.chunks(2).zip(shares) {
                     let (x, y) = sample_position(from, level, [offset[0], offset[1]]);
@@ -188,10 +191,10 @@ impl DeformableSampler<'_> {
 }
 
 fn softmax_into(weights: &[f32], shares: &mut [f32]) {
-    let most = weights.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+    let largest = weights.iter().copied().fold(f32::NEG_INFINITY, f32::max);
     let mut sum = 0.0;
     for (share, weight) in shares.iter_mut().zip(weights) {
-        *share = (weight - most).exp();
+        *share = (weight - largest).exp();
         sum += *share;
     }
     shares.iter_mut().for_each(|share| *share /= sum);
@@ -218,21 +221,22 @@ impl HeadValueMap<'_> {
         let (left, top) = (x.floor(), y.floor());
         let (right_share, low_share) = (x - left, y - top);
         // A cell outside of the map has the weight 0, so its index may be that of any other cell.
-        let both = |at: f32, count: usize, share: f32| {
+        let neighbours = |at: f32, count: usize, share: f32| {
             let first = at as isize;
             let is_in = |at: isize| if at >= 0 && at < count as isize { 1.0 } else { 0.0 };
             let inside = |at: isize| at.clamp(0, count as isize - 1) as usize;
             ([inside(first), inside(first + 1)], [(1.0 - share) * is_in(first), share * is_in(first + 1)])
         };
-        let (columns, across) = both(left, width, right_share);
-        let (rows, down) = both(top, height, low_share);
+        let (columns, across) = neighbours(left, width, right_share);
+        let (rows, down) = neighbours(top, height, low_share);
         let cell = |row: usize, column: usize| {
             let begin = (rows[row] * width + columns[column]) * self.size + self.from;
             (&self.values[begin..begin + sum.len()], share * down[row] * across[column])
         };
-        let ((a, of_a), (b, of_b), (c, of_c), (d, of_d)) = (cell(0, 0), cell(0, 1), cell(1, 0), cell(1, 1));
+        let ((a, weight_a), (b, weight_b), (c, weight_c), (d, weight_d)) =
+            (cell(0, 0), cell(0, 1), cell(1, 0), cell(1, 1));
         for ((((sum, a), b), c), d) in sum.iter_mut().zip(a).zip(b).zip(c).zip(d) {
-            *sum += a * of_a + b * of_b + c * of_c + d * of_d;
+            *sum += a * weight_a + b * weight_b + c * weight_c + d * weight_d;
         }
     }
 }

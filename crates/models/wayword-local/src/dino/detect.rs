@@ -1,4 +1,5 @@
-//! Uses the family's models as a [`ObjectDetector`]: turns the scores and boxes of queries into finds for each phrase.
+//! Uses the models of the Grounding DINO family as an [`ObjectDetector`]: turns the scores and boxes of queries into
+//! finds for each phrase.
 
 use super::{
     config::DinoFamily, decoder::DinoPredictions, model::GroundingDino, prompt::DinoPrompt, queries::sigmoid,
@@ -33,10 +34,10 @@ impl GroundingDino {
         let mut found = vec![Vec::new(); phrases];
         let features = self.picture_features(image)?;
         for (prompt, text) in prompts {
-            let seen = self.predict_boxes(&features, text)?;
-            let of_prompt =
-                phrase_boxes(&seen, prompt, image).map_err(|error| LocalError::compute_failed(&self.name, &error))?;
-            for ((at, _), boxes) in prompt.phrases.iter().zip(of_prompt) {
+            let predictions = self.predict_boxes(&features, text)?;
+            let prompt_boxes = phrase_boxes(&predictions, prompt, image)
+                .map_err(|error| LocalError::compute_failed(&self.name, &error))?;
+            for ((at, _), boxes) in prompt.phrases.iter().zip(prompt_boxes) {
                 found[*at] = boxes;
             }
         }
@@ -46,11 +47,11 @@ impl GroundingDino {
 
 /// The best boxes for each phrase of a prompt. The score of a box for a phrase is that of the phrase's best token.
 fn phrase_boxes(
-    seen: &DinoPredictions,
+    predictions: &DinoPredictions,
     prompt: &DinoPrompt,
     image: &Image,
 ) -> candle_core::Result<Vec<Vec<DetectedBox>>> {
-    let logits: Vec<Vec<f32>> = seen.logits.to_dtype(DType::F32)?.to_vec2()?;
+    let logits: Vec<Vec<f32>> = predictions.logits.to_dtype(DType::F32)?.to_vec2()?;
     let (width, height) = (image.width_px() as f32, image.height_px() as f32);
     let edges = |&[x, y, across, down]: &[f32; 4]| {
         let edge = |middle: f32, part: f32, length: f32| (middle + part).clamp(0.0, 1.0) * length;
@@ -61,8 +62,8 @@ fn phrase_boxes(
             edge(y, down / 2.0, height),
         ]
     };
-    let edges: Vec<[f32; 4]> = seen.boxes.iter().map(edges).collect();
-    let of_phrase = |(_, tokens): &(usize, std::ops::Range<usize>)| {
+    let edges: Vec<[f32; 4]> = predictions.boxes.iter().map(edges).collect();
+    let best_boxes = |(_, tokens): &(usize, std::ops::Range<usize>)| {
         let best = |logits: &Vec<f32>| logits[tokens.clone()].iter().copied().fold(f32::NEG_INFINITY, f32::max);
         let scores = logits.iter().map(|logits| sigmoid(best(logits)));
         let mut found: Vec<DetectedBox> = scores
@@ -74,7 +75,7 @@ fn phrase_boxes(
         found.truncate(MOST_BOXES);
         found
     };
-    Ok(prompt.phrases.iter().map(of_phrase).collect())
+    Ok(prompt.phrases.iter().map(best_boxes).collect())
 }
 
 /// Whether score and box are finite. A damaged checkpoint may give other numbers.
@@ -103,11 +104,11 @@ impl ObjectDetector for GroundingDino {
 
     fn detect_phrases(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<Vec<DetectedBox>>, ModelError>> {
         let prompts = self.encode_prompts(phrases).map_err(|error| self.to_model_error(&error));
-        let one = |view: &&View| {
+        let detect_one = |view: &&View| {
             let image = picture_of_view(view, &self.name)?;
             let prompts = prompts.as_ref().map_err(Clone::clone)?;
             self.find_in_prompts(image, prompts, phrases.len()).map_err(|error| self.to_model_error(&error))
         };
-        views.iter().map(one).collect()
+        views.iter().map(detect_one).collect()
     }
 }

@@ -11,7 +11,8 @@ use super::{
 use crate::{LocalError, ops::LayerNorm, weights::WeightScope};
 use candle_core::{Result, Tensor};
 
-/// One layer of the encoder.
+/// One layer of the encoder: `fusion` lets cells and tokens look at each other, `text_..` lets tokens look at tokens,
+/// and `look` lets cells look at other cells.
 pub(super) struct EncoderLayer {
     fusion: DinoFusion,
     text_mix: ProjectedAttention,
@@ -29,8 +30,8 @@ impl EncoderLayer {
     ) -> std::result::Result<Self, LocalError> {
         let (size, inner, epsilon) = (config.size, config.encoder.inner, config.epsilon);
         let (text, cells) = (weights.sub_scope("text_enhancer_layer"), weights.sub_scope("deformable_layer"));
-        let feed = |of: &WeightScope<'_>, norm, inner| {
-            NormedFeedForward::from_weights(of, norm, (size, inner), config.activation, epsilon)
+        let feed = |scope: &WeightScope<'_>, norm, inner| {
+            NormedFeedForward::from_weights(scope, norm, (size, inner), config.activation, epsilon)
         };
         Ok(Self {
             fusion: DinoFusion::from_weights(&weights.sub_scope("fusion_layer"), config)?,

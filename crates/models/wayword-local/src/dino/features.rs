@@ -1,19 +1,18 @@
-//! Turns a picture into the states of its cells, which do not depend on the text. The backbone computes maps of the
+//! Turns a picture into the states of its cells, which do not depend on the text. A cell is one position of a map. The
+//! backbone computes maps of the
 //! picture at several resolutions. Each is projected to the same width, and becomes one level.
 
 use super::{
+    LoadResult,
     config::{DinoConfig, NORM_GROUP_COUNT},
     position,
 };
 use crate::{
-    LocalError,
     ops::LinearLayer,
     swin::{SwinBackbone, SwinTensorNames},
     weights::WeightScope,
 };
 use candle_core::{DType, Result, Tensor};
-
-type DinoFeaturesResult<T> = std::result::Result<T, LocalError>;
 
 /// Edge and stride, in cells, of the convolution that makes the levels that are coarser than the backbone's maps.
 const KERNEL_EDGE_CELLS: usize = 3;
@@ -30,7 +29,9 @@ pub(super) struct DinoFeatureExtractor {
     maps: usize,
     /// A learned vector for each level, [levels, size], which is added to the positions of its cells.
     level_embed: Tensor,
+    /// The length of a state.
     size: usize,
+    /// The temperature of the sines that encode a position.
     temperature: f32,
 }
 
@@ -64,13 +65,13 @@ impl FeatureLevel {
 
     /// The middles of the cells, as shares of the picture's width and height.
     pub(super) fn cell_middles(self) -> impl Iterator<Item = [f32; 2]> {
-        let share = |at: usize, of: usize| (at as f32 + 0.5) / of as f32;
+        let share = |at: usize, count: usize| (at as f32 + 0.5) / count as f32;
         (0..self.cell_count()).map(move |at| [share(at % self.width, self.width), share(at / self.width, self.height)])
     }
 }
 
 impl DinoFeatureExtractor {
-    pub(super) fn from_weights(model: &WeightScope<'_>, config: &DinoConfig) -> DinoFeaturesResult<Self> {
+    pub(super) fn from_weights(model: &WeightScope<'_>, config: &DinoConfig) -> LoadResult<Self> {
         let backbone = &config.backbone;
         let maps = backbone.outputs.len();
         let width = |map: usize| backbone.outputs.get(map).map_or(config.size, |&stage| backbone.width_of(stage));
@@ -86,7 +87,7 @@ impl DinoFeatureExtractor {
                 &SwinTensorNames::TRANSFORMERS,
                 backbone,
             )?,
-            projections: (0..config.levels).map(projection).collect::<DinoFeaturesResult<_>>()?,
+            projections: (0..config.levels).map(projection).collect::<LoadResult<_>>()?,
             maps,
             level_embed: model.read_state("level_embed", &[config.levels, config.size])?,
             size: config.size,
@@ -121,12 +122,7 @@ impl DinoFeatureExtractor {
 }
 
 impl LevelProjection {
-    fn from_weights(
-        weights: &WeightScope<'_>,
-        inputs: usize,
-        size: usize,
-        is_coarser: bool,
-    ) -> DinoFeaturesResult<Self> {
+    fn from_weights(weights: &WeightScope<'_>, inputs: usize, size: usize, is_coarser: bool) -> LoadResult<Self> {
         let (convolution, norm) = (weights.sub_scope(0), weights.sub_scope(1));
         let edge = if is_coarser { KERNEL_EDGE_CELLS } else { 1 };
         let kernel = convolution.read_tensor("weight", &[size, inputs, edge, edge])?;
@@ -186,9 +182,9 @@ fn normalise_groups(x: &Tensor) -> Result<Tensor> {
         .contiguous()?
         .reshape((NORM_GROUP_COUNT, cells * each))?;
     let wide = groups.to_dtype(DType::F32)?;
-    let off = wide.broadcast_sub(&wide.mean_keepdim(1)?)?;
-    let variance = (off.sqr()?.mean_keepdim(1)? + GROUP_NORM_EPSILON)?;
-    let normed = off.broadcast_div(&variance.sqrt()?)?.to_dtype(x.dtype())?;
+    let centred = wide.broadcast_sub(&wide.mean_keepdim(1)?)?;
+    let variance = (centred.sqr()?.mean_keepdim(1)? + GROUP_NORM_EPSILON)?;
+    let normed = centred.broadcast_div(&variance.sqrt()?)?.to_dtype(x.dtype())?;
     normed.reshape((NORM_GROUP_COUNT, cells, each))?.transpose(0, 1)?.contiguous()?.reshape((cells, size))
 }
 

@@ -31,6 +31,7 @@ pub(super) struct DinoFusion {
     /// The layer of the cells' values: [heads, size, head size] and [heads, 1, head size].
     value: Tensor,
     value_bias: Tensor,
+    /// The output layer of the tokens, and the factor (`text_param`) for its output.
     text_out: LinearLayer,
     text_share: Tensor,
     heads: usize,
@@ -43,20 +44,20 @@ impl DinoFusion {
         config: &DinoConfig,
     ) -> std::result::Result<Self, LocalError> {
         let (size, width, heads) = (config.size, config.encoder.inner / 2, config.encoder.heads / 2);
-        let each = width / heads;
+        let head_size = width / heads;
         let attn = weights.sub_scope("attn");
         let wrong = |name: &str, error| attn.tensor_error(name, &error);
         let weight = |name: &str, shape: &[usize]| attn.read_state(&format!("{name}.weight"), shape);
         let bias = |name: &str, count: usize| attn.read_state(&format!("{name}.bias"), &[count]);
         let share = weights.read_state("vision_param", &[size])?;
-        let query = weight("vision_proj", &[width, size])?.reshape((heads, each, size));
-        let query_bias = bias("vision_proj", width)?.reshape((heads, each, 1));
+        let query = weight("vision_proj", &[width, size])?.reshape((heads, head_size, size));
+        let query_bias = bias("vision_proj", width)?.reshape((heads, head_size, 1));
         let out = weight("out_vision_proj", &[size, width])?;
-        let out = out.t().and_then(|out| out.broadcast_mul(&share)?.reshape((heads, each, size)));
+        let out = out.t().and_then(|out| out.broadcast_mul(&share)?.reshape((heads, head_size, size)));
         let out_bias = bias("out_vision_proj", size)? * &share;
         let value = weight("values_vision_proj", &[width, size])?;
-        let value = value.reshape((heads, each, size)).and_then(|value| value.transpose(1, 2)?.contiguous());
-        let value_bias = bias("values_vision_proj", width)?.reshape((heads, 1, each));
+        let value = value.reshape((heads, head_size, size)).and_then(|value| value.transpose(1, 2)?.contiguous());
+        let value_bias = bias("values_vision_proj", width)?.reshape((heads, 1, head_size));
         Ok(Self {
             vision_norm: weights.layer_norm("layer_norm_vision", size, config.epsilon)?,
             text_norm: weights.layer_norm("layer_norm_text", size, config.epsilon)?,
@@ -70,12 +71,13 @@ impl DinoFusion {
             text_out: attn.read_linear("out_text_proj", width, size)?,
             text_share: weights.read_state("text_param", &[size])?,
             heads,
-            scale: 1.0 / (each as f64).sqrt(),
+            scale: 1.0 / (head_size as f64).sqrt(),
         })
     }
 
     /// The fused states of cells [1, cells, size] and tokens [1, tokens, size].
     pub(super) fn fuse_states(&self, vision: &Tensor, text: &Tensor) -> Result<(Tensor, Tensor)> {
+        // v: the cells (vision), l: the tokens (language).
         let (v, l) = (self.vision_norm.apply_to(vision)?, self.text_norm.apply_to(text)?);
         let (cells, tokens, size) = (v.dim(1)?, l.dim(1)?, v.dim(2)?);
         let both = self.text.apply_to(&l)?;

@@ -1,22 +1,21 @@
 //! The output layers: they turn states into scores for each token, and into movements of boxes.
 
 use super::{
+    LoadResult,
     config::{DinoConfig, DinoFamily},
     layers::ReluPerceptron,
 };
-use crate::{LocalError, weights::WeightScope};
+use crate::weights::WeightScope;
 use candle_core::{DType, Result, Tensor};
 
-type DinoHeadsResult<T> = std::result::Result<T, LocalError>;
-
-/// Scores how well states fit tokens.
+/// Scores how well states fit tokens: their dot product times `scale`, plus `bias`.
 pub(super) struct TokenContrast {
     scale: f64,
     bias: f64,
 }
 
 impl TokenContrast {
-    pub(super) fn from_weights(weights: &WeightScope<'_>, config: &DinoConfig) -> DinoHeadsResult<Self> {
+    pub(super) fn from_weights(weights: &WeightScope<'_>, config: &DinoConfig) -> LoadResult<Self> {
         if config.family == DinoFamily::Plain {
             return Ok(Self { scale: 1.0, bias: 0.0 });
         }
@@ -35,7 +34,7 @@ impl TokenContrast {
 
 /// The heads of the decoder's layers.
 pub(super) struct DinoHeads {
-    /// One for each layer of the decoder, or one for all.
+    /// The networks that compute the movements of boxes: one for each layer of the decoder, or one for all.
     boxes: Vec<ReluPerceptron>,
     /// Scores of the last layer's states.
     pub(super) contrast: TokenContrast,
@@ -43,22 +42,22 @@ pub(super) struct DinoHeads {
 
 impl DinoHeads {
     /// Reads the heads from a whole checkpoint. They are at the top of it, or within the decoder, or in both places.
-    pub(super) fn from_weights(all: &WeightScope<'_>, config: &DinoConfig) -> DinoHeadsResult<Self> {
+    pub(super) fn from_weights(all: &WeightScope<'_>, config: &DinoConfig) -> LoadResult<Self> {
         let head = |name: &str, shares: bool, layer: usize, tensor: &str| {
             let layer = if shares { 0 } else { layer };
-            let (own, decoders) =
+            let (at_top, in_decoder) =
                 (all.sub_scope(name).sub_scope(layer), all.sub_scope("model.decoder").sub_scope(name).sub_scope(layer));
-            if !own.has_tensor(tensor) && decoders.has_tensor(tensor) { decoders } else { own }
+            if !at_top.has_tensor(tensor) && in_decoder.has_tensor(tensor) { in_decoder } else { at_top }
         };
         let last = config.decoder.count - 1;
         let widths = [config.size, config.size, config.size, 4];
         let count = if config.shares_boxes { 1 } else { config.decoder.count };
-        let of_layer = |layer| {
+        let box_head = |layer| {
             let weights = head("bbox_embed", config.shares_boxes, layer, "layers.0.weight");
             ReluPerceptron::from_weights(&weights, &widths)
         };
         Ok(Self {
-            boxes: (0..count).map(of_layer).collect::<DinoHeadsResult<_>>()?,
+            boxes: (0..count).map(box_head).collect::<LoadResult<_>>()?,
             contrast: TokenContrast::from_weights(&head("class_embed", config.shares_classes, last, "bias"), config)?,
         })
     }

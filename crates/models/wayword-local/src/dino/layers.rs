@@ -1,8 +1,8 @@
 //! The parts that the encoder's and the decoder's layers have in common: attention, feed-forward layers, and a
 //! perceptron.
 
+use super::LoadResult;
 use crate::{
-    LocalError,
     ops::{
         Activation, LayerNorm, LinearLayer, MultiHeadAttention,
         kernels::{is_ours, with_numbers},
@@ -12,10 +12,8 @@ use crate::{
 };
 use candle_core::{Result, Tensor};
 
-type DinoLayersResult<T> = std::result::Result<T, LocalError>;
-
-/// The width of a part of a wide layer. Rows that are much longer, at distances of a power of 2, would fall into the
-/// same lines of the processor's cache and push each other out.
+/// The width of a part of a wide layer, numbers. Rows that are much longer, at distances of a power of 2, would fall
+/// into the same lines of the processor's cache and push each other out.
 const PART_WIDTH: usize = 256;
 
 /// Multi-head attention with layers for queries, keys, values and the result.
@@ -42,7 +40,7 @@ pub(super) struct NormedFeedForward {
 pub(super) struct ReluPerceptron(Vec<LinearLayer>);
 
 impl ProjectedAttention {
-    pub(super) fn from_weights(weights: &WeightScope<'_>, size: usize, heads: usize) -> DinoLayersResult<Self> {
+    pub(super) fn from_weights(weights: &WeightScope<'_>, size: usize, heads: usize) -> LoadResult<Self> {
         let layer = |name: &str| weights.read_linear(name, size, size);
         Ok(Self {
             query: layer("query")?,
@@ -75,7 +73,7 @@ impl NormedFeedForward {
         (size, inner): (usize, usize),
         activation: Activation,
         epsilon: f64,
-    ) -> DinoLayersResult<Self> {
+    ) -> LoadResult<Self> {
         let (first, second) = (weights.sub_scope("fc1"), weights.sub_scope("fc2"));
         let (wide, wide_bias) = (first.read_tensor("weight", &[inner, size])?, first.read_tensor("bias", &[inner])?);
         let (narrow, narrow_bias) =
@@ -131,10 +129,10 @@ impl NormedFeedForward {
 
 impl ReluPerceptron {
     /// The layers `layers.0`, `layers.1`, .. between these widths.
-    pub(super) fn from_weights(weights: &WeightScope<'_>, widths: &[usize]) -> DinoLayersResult<Self> {
+    pub(super) fn from_weights(weights: &WeightScope<'_>, widths: &[usize]) -> LoadResult<Self> {
         let layers = weights.sub_scope("layers");
         let layer = |(at, ends): (usize, &[usize])| layers.read_linear(&at.to_string(), ends[0], ends[1]);
-        widths.windows(2).enumerate().map(layer).collect::<DinoLayersResult<_>>().map(Self)
+        widths.windows(2).enumerate().map(layer).collect::<LoadResult<_>>().map(Self)
     }
 
     pub(super) fn apply_to(&self, x: &Tensor) -> Result<Tensor> {

@@ -25,5 +25,8 @@ mod text;
 pub(crate) use model::KEPT_BYTES;
 pub use model::{DinoOutputs, GroundingDino};
 
+/// A result of reading weights; `Result` alone is that of a computation.
+type LoadResult<T> = std::result::Result<T, crate::LocalError>;
+
 #[cfg(test)]
 mod tests;

@@ -1,4 +1,4 @@
-//! A whole model: from a picture and a prompt to the scores and boxes of its queries.
+//! A whole model of the Grounding DINO family: from a picture and a prompt to the scores and boxes of its queries.
 
 use super::{
     config::{DinoConfig, DinoFamily},
@@ -18,7 +18,7 @@ use candle_core::{DType, Result as Computed, Tensor};
 use std::{path::Path, sync::Arc};
 use wayword_core::{Image, RecentCache};
 
-/// The memory that the features of recent pictures may take, bytes.
+/// The memory that the features of recent pictures may take, bytes. The oldest are dropped beyond this.
 pub(crate) const KEPT_BYTES: usize = 256 << 20;
 
 /// The edge of the patches into which the backbone cuts a picture, pixels.
@@ -31,9 +31,12 @@ const PATCH_PX: usize = 4;
 pub struct GroundingDino {
     pub(super) name: String,
     pub(super) family: DinoFamily,
+    /// Resizes pictures and turns them into tensors.
     shown: DinoPictureProcessor,
     tokenizer: TextTokenizer,
+    /// Computes the features of pictures.
     eye: DinoFeatureExtractor,
+    /// Computes the states of prompts.
     reader: TextTower,
     encoder: Vec<EncoderLayer>,
     chooser: QueryChooser,
@@ -41,6 +44,7 @@ pub struct GroundingDino {
     /// The most tokens of a prompt.
     longest: usize,
     device: ModelDevice,
+    /// The features of recent pictures, by the hash of the picture.
     kept: RecentCache<[u8; 32], PictureFeatures>,
 }
 
@@ -73,9 +77,9 @@ impl GroundingDino {
         let weights = CheckpointWeights::open(folder, device, precision)?;
         let (all, model) = (weights.scope_under(""), weights.scope_under("model"));
         let layer = |at: usize| EncoderLayer::from_weights(&model.sub_scope("encoder.layers").sub_scope(at), &config);
-        // The finest level, and a quarter as many cells for each coarser one.
+        // The bytes of one picture: the cells of the finest level, and a quarter as many for each coarser one.
         let cell_px = PATCH_PX << config.backbone.outputs.first().copied().unwrap_or_default();
-        let of_one = (shown.most_pixels() / (cell_px * cell_px) + 1) * 4 / 3 * config.size * size_of::<f32>();
+        let picture_bytes = (shown.most_pixels() / (cell_px * cell_px) + 1) * 4 / 3 * config.size * size_of::<f32>();
         Ok(Self {
             name: name.to_owned(),
             family: config.family,
@@ -88,17 +92,17 @@ impl GroundingDino {
             decoder: DinoDecoder::from_weights(&all, &config)?,
             longest: config.longest,
             device: device.clone(),
-            kept: RecentCache::new((KEPT_BYTES / of_one).max(1)),
+            kept: RecentCache::new((KEPT_BYTES / picture_bytes).max(1)),
         })
     }
 
     /// Puts phrases into prompts, and computes the states of their texts.
     pub(super) fn encode_prompts(&self, phrases: &[&str]) -> Result<Vec<(DinoPrompt, PromptStates)>, LocalError> {
-        let read = |prompt: DinoPrompt| {
+        let encode = |prompt: DinoPrompt| {
             let text = self.reader.encode_prompt(&prompt, &self.device.0);
             text.map(|text| (prompt, text)).map_err(|error| self.compute_error(&error))
         };
-        prompt::build_prompts(&self.name, &self.tokenizer, phrases, self.longest)?.into_iter().map(read).collect()
+        prompt::build_prompts(&self.name, &self.tokenizer, phrases, self.longest)?.into_iter().map(encode).collect()
     }
 
     /// The features of a picture: kept ones, or else new ones, which are then kept.
@@ -118,19 +122,20 @@ impl GroundingDino {
         self.predict_with_candidates(features, text, |best| best).map_err(|error| self.compute_error(&error))
     }
 
-    /// Like [`GroundingDino::predict_boxes`], but `picked` may replace the best candidates, or reorder them. The order matters: each
-    /// query begins with its own learned state, so that two equal candidates that change places change the result.
+    /// Like [`GroundingDino::predict_boxes`], but `choose` may replace the best candidates, or reorder them. The order
+    /// matters: each query begins with its own learned state, so that two equal candidates that change places change
+    /// the result.
     pub(super) fn predict_with_candidates(
         &self,
         features: &PictureFeatures,
         text: &PromptStates,
-        picked: impl FnOnce(Vec<u32>) -> Vec<u32>,
+        choose: impl FnOnce(Vec<u32>) -> Vec<u32>,
     ) -> Computed<DinoPredictions> {
-        let (cells, read) = self.encode_states(features, text)?;
+        let (cells, tokens) = self.encode_states(features, text)?;
         let levels = &features.levels[..];
-        let candidates = self.chooser.score_candidates(&cells, &read, levels)?;
-        let picked = picked(self.chooser.best_candidates(&candidates));
-        self.decoder.refine_boxes(self.chooser.candidate_boxes(&candidates, &picked)?, &cells, &read, levels)
+        let candidates = self.chooser.score_candidates(&cells, &tokens, levels)?;
+        let picked = choose(self.chooser.best_candidates(&candidates));
+        self.decoder.refine_boxes(self.chooser.candidate_boxes(&candidates, &picked)?, &cells, &tokens, levels)
     }
 
     /// The states of cells and tokens after the encoder.
@@ -161,11 +166,12 @@ impl GroundingDino {
         };
         let features = self.picture_features(image)?;
         let mut picked = Vec::new();
-        let seen = self.predict_with_candidates(&features, text, |best| {
+        let predictions = self.predict_with_candidates(&features, text, |best| {
             picked.clone_from(&best);
             order.map_or(best, <[u32]>::to_vec)
         });
-        let numbers = seen.and_then(|seen| Ok((seen.logits.to_dtype(DType::F32)?.to_vec2()?, seen.boxes)));
+        let numbers = predictions
+            .and_then(|predictions| Ok((predictions.logits.to_dtype(DType::F32)?.to_vec2()?, predictions.boxes)));
         let (logits, boxes) = numbers.map_err(|error| self.compute_error(&error))?;
         Ok(DinoOutputs { picked, logits, boxes })
     }

@@ -1,4 +1,5 @@
-//! Prepares pictures for the family's models. The numbers are those of transformers' processor with Pillow.
+//! Prepares pictures for the models of the Grounding DINO family. The numbers are those of transformers' processor with
+//! Pillow.
 
 use crate::{
     LocalError, ModelDevice, json,
@@ -11,7 +12,7 @@ use wayword_core::Image;
 
 const PREPROCESSOR_FILE: &str = "preprocessor_config.json";
 
-/// Longest edge of a picture for a model, pixels.
+/// The longest edge of a picture that a configuration may ask for, pixels. A longer one is refused.
 const LONGEST_EDGE: usize = 2048;
 
 /// ImageNet's means and standard deviations of red, green and blue.
@@ -38,16 +39,19 @@ struct DinoPictureConfig {
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(untagged)]
 enum DinoEdgeLimits {
+    /// The length of the shorter edge, and the most for the longer one, pixels.
     Both { shortest_edge: usize, longest_edge: usize },
+    /// The length of the shorter edge, pixels. The most for the longer one is in `max_size`.
     One(usize),
 }
 
-/// Prepares pictures: the shorter edge gets one length, but the longer one at most another.
+/// Prepares pictures: resizes them until the shorter edge has `shortest` pixels, or fewer where the longer edge would
+/// otherwise exceed `longest` pixels.
 #[derive(Debug)]
 pub(super) struct DinoPictureProcessor {
     shortest: usize,
     longest: usize,
-    /// The model's input for each value of a byte, for each colour.
+    /// For each colour a table with the model's input for each value of a byte.
     numbers: [[f32; 256]; 3],
 }
 

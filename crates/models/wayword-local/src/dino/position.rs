@@ -5,7 +5,8 @@ use std::f32::consts::TAU;
 /// The ratio of the longest to the shortest wave length, for tokens and boxes.
 const TOKEN_TEMPERATURE: f32 = 10_000.0;
 
-/// The wave lengths of `count` numbers. Each is there twice: for a sine and a cosine.
+/// The wave lengths of `count` numbers. Each is there twice, for a sine and a cosine. The longest is nearly
+/// `temperature` times the shortest.
 fn wave_lengths(count: usize, temperature: f32) -> Vec<f32> {
     (0..count).map(|at| temperature.powf(2.0 * (at / 2) as f32 / count as f32)).collect()
 }
@@ -20,9 +21,10 @@ fn write_waves(phase: f32, lengths: &[f32], to: &mut [f32]) {
 
 /// The positions of the cells of a map, row by row, `size` numbers each: first those of the row, then of the column.
 pub(super) fn map_positions(height: usize, width: usize, size: usize, temperature: f32) -> Vec<f32> {
+    // As in transformers, so that no division is by 0.
     const POSITION_EPSILON: f32 = 1e-6;
     let lengths = wave_lengths(size / 2, temperature);
-    let along = |count: usize| -> Vec<Vec<f32>> {
+    let axis_waves = |count: usize| -> Vec<Vec<f32>> {
         let at = |at: usize| {
             let mut numbers = vec![0.0; size / 2];
             write_waves((at + 1) as f32 / (count as f32 + POSITION_EPSILON) * TAU, &lengths, &mut numbers);
@@ -30,7 +32,7 @@ pub(super) fn map_positions(height: usize, width: usize, size: usize, temperatur
         };
         (0..count).map(at).collect()
     };
-    let (rows, columns) = (along(height), along(width));
+    let (rows, columns) = (axis_waves(height), axis_waves(width));
     let mut all = Vec::with_capacity(height * width * size);
     for row in &rows {
         for column in &columns {

@@ -1,4 +1,5 @@
-//! Puts phrases into the prompts of the family: `a red door. stairs.`, in lower case, each phrase closed by a dot.
+//! Puts phrases into the prompts of the Grounding DINO family: `a red door. stairs.`, in lower case, each phrase closed
+//! by a dot.
 //!
 //! Phrases do not see each other in the text encoder: a token sees the tokens of its own phrase and the dot that closes
 //! it, and positions count from 0 again after each dot. But all phrases change the picture's features, so the scores of
@@ -80,7 +81,7 @@ pub(super) fn build_prompts(
     phrases: &[&str],
     longest: usize,
 ) -> Result<Vec<DinoPrompt>, LocalError> {
-    let mut done = Vec::new();
+    let mut prompts = Vec::new();
     let mut open = DinoPrompt::new();
     for (at, phrase) in phrases.iter().enumerate() {
         let mut ids = tokenizer.inner_ids(&phrase.trim().to_lowercase())?;
@@ -99,12 +100,12 @@ pub(super) fn build_prompts(
             });
         }
         if open.length_with(ids.len()) > longest {
-            done.push(std::mem::replace(&mut open, DinoPrompt::new()).close_prompt());
+            prompts.push(std::mem::replace(&mut open, DinoPrompt::new()).close_prompt());
         }
         open.push_phrase(at, &ids);
     }
     if !open.phrases.is_empty() {
-        done.push(open.close_prompt());
+        prompts.push(open.close_prompt());
     }
-    Ok(done)
+    Ok(prompts)
 }

@@ -1,7 +1,7 @@
 //! Chooses the queries: the cells that fit the text best, each with a first box.
 //!
-//! Every cell has an own box around its middle, with a size that depends on the level. The network moves this box a
-//! little.
+//! Every cell has a box of its own around its middle, with a size that depends on the level. The network moves this box
+//! a little.
 
 use super::{config::DinoConfig, features::FeatureLevel, heads::TokenContrast, layers::ReluPerceptron};
 use crate::{
@@ -14,7 +14,7 @@ use candle_core::{Result, Tensor};
 /// The width and height of a cell's own box on the finest level, as a share of the picture. Each level doubles them.
 const FINEST_BOX_SHARE: f32 = 0.05;
 
-/// A cell's own box counts if all its numbers lie within these.
+/// A cell's own box is valid if all its numbers lie between these two shares of the picture.
 const MIN_BOX_SHARE: f32 = 0.01;
 const MAX_BOX_SHARE: f32 = 0.99;
 
@@ -22,14 +22,16 @@ const MAX_BOX_SHARE: f32 = 0.99;
 pub(super) struct QueryChooser {
     layer: LinearLayer,
     norm: LayerNorm,
+    /// Computes how far a cell's own box is moved.
     boxes: ReluPerceptron,
     contrast: TokenContrast,
+    /// The most cells that become queries.
     queries: usize,
 }
 
 /// All cells as candidates.
 pub(super) struct QueryCandidates {
-    /// [1, cells, size].
+    /// The states of the cells, [1, cells, size].
     states: Tensor,
     /// The logits of each cell's own box; infinite for a cell that cannot be chosen for lack of a valid box.
     own: Vec<[f32; 4]>,
@@ -57,9 +59,9 @@ impl QueryChooser {
         levels: &[FeatureLevel],
     ) -> Result<QueryCandidates> {
         let own: Vec<[f32; 4]> = levels.iter().enumerate().flat_map(|(at, &level)| own_boxes(at, level)).collect();
-        let counts = own.iter().map(|own| if own[0].is_finite() { 1.0_f32 } else { 0.0 }).collect();
-        let counts = Tensor::from_vec(counts, (1, own.len(), 1), cells.device())?.to_dtype(cells.dtype())?;
-        let states = self.norm.apply_to(&self.layer.apply_to(&cells.broadcast_mul(&counts)?)?)?;
+        let is_valid = own.iter().map(|own| if own[0].is_finite() { 1.0_f32 } else { 0.0 }).collect();
+        let is_valid = Tensor::from_vec(is_valid, (1, own.len(), 1), cells.device())?.to_dtype(cells.dtype())?;
+        let states = self.norm.apply_to(&self.layer.apply_to(&cells.broadcast_mul(&is_valid)?)?)?;
         let logits = self.contrast.token_logits(&states, text)?;
         let scores = logits.max(candle_core::D::Minus1)?.flatten_all()?.to_dtype(candle_core::DType::F32)?.to_vec1()?;
         Ok(QueryCandidates { states, own, scores })
@@ -87,13 +89,13 @@ impl QueryChooser {
     }
 }
 
-/// The logits of the own boxes of a level's cells.
+/// The logits of the own boxes of a level's cells; infinite for a box that is not valid.
 fn own_boxes(at: usize, level: FeatureLevel) -> impl Iterator<Item = [f32; 4]> {
     let share = FINEST_BOX_SHARE * (at as f32).exp2();
     level.cell_middles().map(move |[x, y]| {
         let own = [x, y, share, share];
-        let counts = own.iter().all(|edge| (MIN_BOX_SHARE..MAX_BOX_SHARE).contains(edge) && *edge > MIN_BOX_SHARE);
-        if counts { own.map(|edge| (edge / (1.0 - edge)).ln()) } else { [f32::INFINITY; 4] }
+        let is_valid = own.iter().all(|edge| (MIN_BOX_SHARE..MAX_BOX_SHARE).contains(edge) && *edge > MIN_BOX_SHARE);
+        if is_valid { own.map(|edge| (edge / (1.0 - edge)).ln()) } else { [f32::INFINITY; 4] }
     })
 }
 

@@ -14,7 +14,7 @@ pub(super) struct TextTower {
 
 /// The states of a prompt's tokens. They are the same for all pictures.
 pub(super) struct PromptStates {
-    /// [1, tokens, size].
+    /// The states, [1, tokens, size].
     pub(super) states: Tensor,
     /// The encoded positions of the tokens in their phrases, [1, tokens, size].
     pub(super) places: Tensor,
@@ -31,6 +31,7 @@ impl TextTower {
         })
     }
 
+    /// Computes the states of a prompt's tokens.
     pub(super) fn encode_prompt(&self, prompt: &DinoPrompt, device: &Device) -> Result<PromptStates> {
         let count = prompt.ids.len();
         let ids = Tensor::from_slice(&prompt.ids, (1, count), device)?;

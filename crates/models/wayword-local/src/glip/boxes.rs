@@ -9,7 +9,7 @@ use wayword_core::{DetectedBox, MOST_BOXES};
 /// A phrase with a lower probability at a position gets no box there.
 const MIN_PHRASE_PROBABILITY: f64 = 0.05;
 
-/// The most candidates of a level. A candidate is a pair of position and phrase.
+/// The most candidates of a level; those with lower scores are dropped. A candidate is a pair of position and phrase.
 const MOST_CANDIDATES: usize = 1000;
 
 /// A box that overlaps with a better one of the same phrase by more than this share of their union is left out.
@@ -34,50 +34,54 @@ struct GlipCandidate {
 
 /// For each phrase of a prompt, in their order, its boxes in the picture, the best first, at most [`MOST_BOXES`].
 pub(super) fn phrase_boxes(
-    said: &[GlipLevelOutputs],
+    outputs: &[GlipLevelOutputs],
     prompt: &GlipPrompt,
     sizes: GlipPictureSizes,
 ) -> Vec<Vec<DetectedBox>> {
-    let mut found: Vec<GlipCandidate> =
-        said.iter().enumerate().flat_map(|(level, said)| level_candidates(level, said, prompt, sizes)).collect();
-    found.sort_by(|a, b| b.score.total_cmp(&a.score));
+    let mut candidates: Vec<GlipCandidate> = outputs
+        .iter()
+        .enumerate()
+        .flat_map(|(level, outputs)| level_candidates(level, outputs, prompt, sizes))
+        .collect();
+    candidates.sort_by(|a, b| b.score.total_cmp(&a.score));
     let mut kept: Vec<Vec<GlipCandidate>> = prompt.phrases.iter().map(|_| Vec::new()).collect();
-    for candidate in found {
-        let of_phrase = &mut kept[candidate.phrase];
-        if of_phrase.len() < MOST_BOXES
-            && of_phrase.iter().all(|better| box_overlap(&better.edges, &candidate.edges) <= MOST_OVERLAP)
+    for candidate in candidates {
+        let better_boxes = &mut kept[candidate.phrase];
+        if better_boxes.len() < MOST_BOXES
+            && better_boxes.iter().all(|better| box_overlap(&better.edges, &candidate.edges) <= MOST_OVERLAP)
         {
-            of_phrase.push(candidate);
+            better_boxes.push(candidate);
         }
     }
     let (across, down) =
         (sizes.picture.0 as f64 / sizes.shown.0.max(1) as f64, sizes.picture.1 as f64 / sizes.shown.1.max(1) as f64);
-    let back = |candidate: GlipCandidate| DetectedBox {
+    let to_detected_box = |candidate: GlipCandidate| DetectedBox {
         box_px: [(0, across), (1, down), (2, across), (3, down)].map(|(edge, by)| (candidate.edges[edge] * by) as f32),
         score: candidate.score as f32,
     };
-    kept.into_iter().map(|of_phrase| of_phrase.into_iter().map(back).collect()).collect()
+    kept.into_iter().map(|better_boxes| better_boxes.into_iter().map(to_detected_box).collect()).collect()
 }
 
 /// The best candidates of a level.
 fn level_candidates(
     level: usize,
-    said: &GlipLevelOutputs,
+    outputs: &GlipLevelOutputs,
     prompt: &GlipPrompt,
     sizes: GlipPictureSizes,
 ) -> Vec<GlipCandidate> {
-    let count = said.height * said.width;
-    let tokens = said.logits.len() / count.max(1);
+    let count = outputs.height * outputs.width;
+    let tokens = outputs.logits.len() / count.max(1);
     let mut values = Vec::new();
     for (position, (logits, boxes)) in
-        said.logits.chunks_exact(tokens.max(1)).zip(said.boxes.chunks_exact(5)).enumerate()
+        outputs.logits.chunks_exact(tokens.max(1)).zip(outputs.boxes.chunks_exact(5)).enumerate()
     {
         let centre = sigmoid(boxes[4]);
-        for (phrase, (_, of_phrase)) in prompt.phrases.iter().enumerate() {
-            let sum: f64 = of_phrase.iter().filter_map(|&token| logits.get(token)).map(|&logit| sigmoid(logit)).sum();
-            let p = sum / of_phrase.len().max(1) as f64;
-            if p > MIN_PHRASE_PROBABILITY {
-                values.push((p * centre, position, phrase));
+        for (phrase, (_, phrase_tokens)) in prompt.phrases.iter().enumerate() {
+            let sum: f64 =
+                phrase_tokens.iter().filter_map(|&token| logits.get(token)).map(|&logit| sigmoid(logit)).sum();
+            let probability = sum / phrase_tokens.len().max(1) as f64;
+            if probability > MIN_PHRASE_PROBABILITY {
+                values.push((probability * centre, position, phrase));
             }
         }
     }
@@ -85,8 +89,8 @@ fn level_candidates(
     values.sort_by(|a, b| b.0.total_cmp(&a.0));
     values.truncate(MOST_CANDIDATES);
     let candidate = |(value, position, phrase): (f64, usize, usize)| {
-        let deltas = &said.boxes[position * 5..position * 5 + 4];
-        let edges = box_edges(level, position % said.width, position / said.width, deltas, sizes.shown);
+        let deltas = &outputs.boxes[position * 5..position * 5 + 4];
+        let edges = box_edges(level, position % outputs.width, position / outputs.width, deltas, sizes.shown);
         GlipCandidate { edges, score: value.sqrt(), phrase }
     };
     values.into_iter().map(candidate).collect()
@@ -94,20 +98,22 @@ fn level_candidates(
 
 /// The edges of the box at a column and row of a level, clamped to the picture as the model sees it.
 fn box_edges(level: usize, column: usize, row: usize, deltas: &[f32], (width, height): (usize, usize)) -> [f64; 4] {
+    // The distance between two positions of the level, and the side of an anchor, pixels.
     let (stride, side) = ((8_usize << level) as f64, (64_usize << level) as f64);
+    // `moved` is in tenths of the side, and `grown` in fifths of the logarithm of the growth, as in the original.
     let axis = |at: usize, moved: f32, grown: f32, length: usize| {
         let centre = f64::from(moved) / 10.0 * side + at as f64 * stride + (stride - 1.0) / 2.0;
         let half = ((f64::from(grown) / 5.0).min(MAX_LOG_BOX_GROWTH).exp() * side - 1.0) / 2.0;
-        let most = length.saturating_sub(1) as f64;
-        [(centre - half).clamp(0.0, most), (centre + half).clamp(0.0, most)]
+        let last_pixel = length.saturating_sub(1) as f64;
+        [(centre - half).clamp(0.0, last_pixel), (centre + half).clamp(0.0, last_pixel)]
     };
     let ([left, right], [top, bottom]) =
         (axis(column, deltas[0], deltas[2], width), axis(row, deltas[1], deltas[3], height));
     [left, top, right, bottom]
 }
 
-/// The area that two boxes share, divided by the area that they cover together. Both edges of a box count as its
-/// pixels.
+/// The area that two boxes share, divided by the area that they cover together. The pixels at both edges belong to a
+/// box, so that a box from 3 to 5 is 3 pixels long.
 fn box_overlap(a: &[f64; 4], b: &[f64; 4]) -> f64 {
     let length = |from: f64, to: f64| (to - from + 1.0).max(0.0);
     let area = |edges: &[f64; 4]| length(edges[0], edges[2]) * length(edges[1], edges[3]);

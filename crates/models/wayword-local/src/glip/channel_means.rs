@@ -10,13 +10,16 @@ use rayon::prelude::*;
 
 /// Means over the positions of a map, for each channel.
 pub(super) struct ChannelMeans {
+    /// The means of the numbers.
     pub(super) plain: Vec<f64>,
+    /// The means of the squares of the numbers.
     pub(super) square: Vec<f64>,
-    /// The mean with the given weight for each position.
+    /// The means with the given weight for each position.
     pub(super) shared: Vec<f64>,
 }
 
 impl ChannelMeans {
+    /// The means of a map. `shares` are the weights of its positions; without them all positions count the same.
     pub(super) fn from_map(map: &FeatureMap, shares: Option<&[f32]>) -> Result<Self> {
         let (count, width) = map.x.dims2()?;
         if !is_ours(&map.x) {

@@ -17,7 +17,7 @@ pub(super) struct GlipConfig {
 pub(super) struct HeadConfig {
     /// Channels of the features.
     pub(super) width: usize,
-    /// Groups of the norms.
+    /// Groups of channels of the norms.
     pub(super) groups: usize,
     /// Rounds of the head, each with a fusion, a text layer and convolutions.
     pub(super) rounds: usize,
@@ -45,7 +45,7 @@ struct GlipSwinConfig {
     window: usize,
 }
 
-/// The most rounds. GLIP-L has 8.
+/// The most rounds of the head that a configuration may have; more are refused. GLIP-L has 8.
 const MOST_ROUNDS: usize = 16;
 
 impl GlipConfig {

@@ -1,4 +1,4 @@
-//! A whole GLIP as a [`ObjectDetector`]: from a picture and phrases to boxes with scores.
+//! A whole GLIP as an [`ObjectDetector`]: from a picture and phrases to boxes with scores.
 
 use super::{
     GlipFiles,
@@ -19,7 +19,7 @@ use candle_core::{Result as Computed, Tensor};
 use std::path::Path;
 use wayword_core::{DetectedBox, DetectorScoring, Image, ModelError, ObjectDetector, RecentCache, View};
 
-/// The most memory for the features of recent pictures, bytes.
+/// The most memory for the features of recent pictures, bytes. The oldest are dropped beyond this.
 pub(crate) const FEATURES_BYTES: usize = 512 << 20;
 
 /// Means and standard deviations of the bytes of blue, green and red.
@@ -38,13 +38,16 @@ pub struct GlipDetector {
     name: String,
     model: GlipModel,
     tokenizer: TextTokenizer,
+    /// Resizes and pads pictures, and turns them into tensors.
     edges: PaddedPictureProcessor,
+    /// The most tokens of a prompt.
     most_tokens: usize,
     device: ModelDevice,
+    /// The features of recent pictures, by the hash of the picture.
     seen: RecentCache<[u8; 32], GlipFeatures>,
 }
 
-/// A picture's features, and its size as the model sees it.
+/// A picture's features, and its width and height as the model sees it, pixels.
 struct GlipFeatures {
     levels: Vec<FeatureMap>,
     size: (usize, usize),
@@ -69,6 +72,7 @@ impl GlipDetector {
         let edges = PaddedPictureProcessor::new(
             short_edge_px,
             LONGEST_EDGE,
+            // Edges are padded to multiples of the backbone's largest stride. The channels are blue, green, red.
             32,
             [2, 1, 0],
             BYTE_MEANS_BGR,
@@ -85,7 +89,7 @@ impl GlipDetector {
         }
         let weights = CheckpointWeights::of_file(&files.weights, device, precision)?;
         let model = GlipModel::from_weights(&weights, &config)?;
-        let kept = (FEATURES_BYTES / model.feature_bytes(edges.most_pixels()).max(1)).max(1);
+        let picture_count = (FEATURES_BYTES / model.feature_bytes(edges.most_pixels()).max(1)).max(1);
         Ok(Self {
             name: name.to_owned(),
             model,
@@ -93,7 +97,7 @@ impl GlipDetector {
             edges,
             most_tokens: MOST_TOKENS.min(config.text.longest_text()),
             device: device.clone(),
-            seen: RecentCache::one_at_a_time(kept),
+            seen: RecentCache::one_at_a_time(picture_count),
         })
     }
 
@@ -105,10 +109,10 @@ impl GlipDetector {
     pub fn raw_outputs(&self, image: &Image, phrases: &[&str]) -> Result<(Vec<f32>, Vec<f32>), LocalError> {
         let prompts = build_prompts(&self.tokenizer, phrases, self.most_tokens)?;
         let [prompt] = &prompts[..] else { return Err(self.input_error("these phrases are not one prompt")) };
-        let seen = self.picture_features(image)?;
-        let said = self.head_outputs(&seen, prompt)?;
-        let logits = said.iter().flat_map(|said| said.logits.iter().copied()).collect();
-        Ok((logits, said.iter().flat_map(|said| said.boxes.iter().copied()).collect()))
+        let features = self.picture_features(image)?;
+        let outputs = self.head_outputs(&features, prompt)?;
+        let logits = outputs.iter().flat_map(|outputs| outputs.logits.iter().copied()).collect();
+        Ok((logits, outputs.iter().flat_map(|outputs| outputs.boxes.iter().copied()).collect()))
     }
 
     /// Finds phrases in a picture: for each phrase its boxes, the best first.
@@ -121,6 +125,7 @@ impl GlipDetector {
         self.find_all(image, phrases.len(), &prompts, &texts)
     }
 
+    /// Finds phrases, which are already in prompts, in a picture: for each phrase its boxes.
     fn find_all(
         &self,
         image: &Image,
@@ -132,22 +137,23 @@ impl GlipDetector {
         if prompts.is_empty() {
             return Ok(found);
         }
-        let seen = self.picture_features(image)?;
+        let features = self.picture_features(image)?;
         let sizes =
-            GlipPictureSizes { shown: seen.size, picture: (image.width_px() as usize, image.height_px() as usize) };
+            GlipPictureSizes { shown: features.size, picture: (image.width_px() as usize, image.height_px() as usize) };
         for (prompt, text) in prompts.iter().zip(texts) {
-            let said = self.model.head_outputs(&seen.levels, text).map_err(|error| self.compute_error(&error))?;
-            for ((number, _), of_phrase) in prompt.phrases.iter().zip(phrase_boxes(&said, prompt, sizes)) {
-                found[*number] = of_phrase;
+            let outputs =
+                self.model.head_outputs(&features.levels, text).map_err(|error| self.compute_error(&error))?;
+            for ((number, _), boxes) in prompt.phrases.iter().zip(phrase_boxes(&outputs, prompt, sizes)) {
+                found[*number] = boxes;
             }
         }
         Ok(found)
     }
 
-    fn head_outputs(&self, seen: &GlipFeatures, prompt: &GlipPrompt) -> Result<Vec<GlipLevelOutputs>, LocalError> {
+    fn head_outputs(&self, features: &GlipFeatures, prompt: &GlipPrompt) -> Result<Vec<GlipLevelOutputs>, LocalError> {
         let texts = self.encode_prompts(std::slice::from_ref(prompt))?;
         let text = texts.first().ok_or_else(|| self.input_error("there is no prompt"))?;
-        self.model.head_outputs(&seen.levels, text).map_err(|error| self.compute_error(&error))
+        self.model.head_outputs(&features.levels, text).map_err(|error| self.compute_error(&error))
     }
 
     /// The states of the tokens of prompts.
@@ -189,17 +195,17 @@ impl ObjectDetector for GlipDetector {
 
     fn detect_phrases(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<Vec<DetectedBox>>, ModelError>> {
         let failed = |error: LocalError| ModelError::Failed { model: self.name.clone(), reason: error.to_string() };
-        let read = || {
+        let encode = || {
             let prompts = build_prompts(&self.tokenizer, phrases, self.most_tokens)?;
             let texts = self.encode_prompts(&prompts)?;
             Ok((prompts, texts))
         };
-        let read = read().map_err(failed);
-        let one = |view: &&View| {
+        let encoded = encode().map_err(failed);
+        let detect_one = |view: &&View| {
             let image = picture_of_view(view, &self.name)?;
-            let (prompts, texts) = read.as_ref().map_err(Clone::clone)?;
+            let (prompts, texts) = encoded.as_ref().map_err(Clone::clone)?;
             self.find_all(image, phrases.len(), prompts, texts).map_err(failed)
         };
-        views.iter().map(one).collect()
+        views.iter().map(detect_one).collect()
     }
 }

@@ -8,6 +8,7 @@ use crate::ops::conv3::FeatureMap;
 pub(super) struct EnlargedAxis(pub(super) Vec<(usize, usize, f32)>);
 
 impl EnlargedAxis {
+    /// The enlargement from `from` positions to `to`.
     pub(super) fn new(from: usize, to: usize) -> Self {
         let step = if to > 1 { (from.saturating_sub(1)) as f32 / (to - 1) as f32 } else { 0.0 };
         let last = from.saturating_sub(1);
@@ -34,6 +35,7 @@ impl EnlargedAxis {
 pub(super) struct MapEnlargement {
     down: EnlargedAxis,
     across: EnlargedAxis,
+    /// The width of the old map, positions.
     width: usize,
 }
 

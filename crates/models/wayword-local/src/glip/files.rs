@@ -32,11 +32,11 @@ impl GlipFiles {
         if !name.is_trained() {
             return Err(wrong("GLIP is one file: hf/GLIPModel/GLIP:glip_tiny_model_o365_goldg_cc_sbu.pth"));
         }
-        let found = hub.model_folder(name, &NeededFiles::default(), progress)?;
-        let weights = found.file.ok_or_else(|| wrong("it names no file"))?;
-        let beside = weights.parent().unwrap_or(Path::new("."));
-        let tokenizer = if beside.join(TOKENIZER_FILE).is_file() {
-            beside.to_owned()
+        let checkpoint = hub.model_folder(name, &NeededFiles::default(), progress)?;
+        let weights = checkpoint.file.ok_or_else(|| wrong("it names no file"))?;
+        let folder = weights.parent().unwrap_or(Path::new("."));
+        let tokenizer = if folder.join(TOKENIZER_FILE).is_file() {
+            folder.to_owned()
         } else {
             hub.model_folder(
                 &ModelName::parse(GLIP_TOKENIZER)?,
@@ -46,6 +46,6 @@ impl GlipFiles {
             .path
         };
         progress.show_note(GLIP_LICENCE);
-        Ok(Self { weights, tokenizer, identity: found.identity })
+        Ok(Self { weights, tokenizer, identity: checkpoint.identity })
     }
 }

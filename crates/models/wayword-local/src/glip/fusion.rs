@@ -15,17 +15,21 @@ use crate::{
 };
 use candle_core::{D, Result, Tensor};
 
+/// Added to variances, so that no division is by 0.
 const NORM_EPSILON: f64 = 1e-5;
 
 /// The most columns of scores at a time. With a long text these are the columns of a few heads.
 const MOST_COLUMNS: usize = 512;
 
+/// The fusion of one round of the head. In the names of fields, `v` is the picture (vision) and `l` the text
+/// (language).
 pub(super) struct GlipFusion {
     norm_v: LayerNorm,
     norm_l: LayerNorm,
+    /// The factors for what the fusion adds to the picture and to the text.
     gamma_v: Tensor,
     gamma_l: Tensor,
-    /// [heads, size, width] and [heads, size, 1].
+    /// The layer of the picture's queries: [heads, size, width] and [heads, size, 1].
     query: (Tensor, Tensor),
     key: LinearLayer,
     values_l: LinearLayer,
@@ -35,10 +39,12 @@ pub(super) struct GlipFusion {
     out_v: (Tensor, Tensor),
     out_l: LinearLayer,
     heads: usize,
+    /// The width of a head.
     size: usize,
 }
 
 impl GlipFusion {
+    /// Reads the fusion. `text` is the width of the states of the text.
     pub(super) fn from_weights(
         weights: &WeightScope<'_>,
         config: &HeadConfig,
@@ -89,18 +95,18 @@ impl GlipFusion {
         // The residuals begin from the normed features.
         let mut new_v = v.clone();
         let mut pooled = Vec::new();
-        let each = (MOST_COLUMNS / tokens.max(1)).clamp(1, self.heads);
-        for begin in (0..self.heads).step_by(each) {
-            let heads = each.min(self.heads - begin);
-            let of_heads = |x: &Tensor| x.narrow(0, begin, heads)?.flatten_to(1);
-            let folded = of_heads(&folded)?;
+        let heads_at_a_time = (MOST_COLUMNS / tokens.max(1)).clamp(1, self.heads);
+        for begin in (0..self.heads).step_by(heads_at_a_time) {
+            let heads = heads_at_a_time.min(self.heads - begin);
+            let take_heads = |x: &Tensor| x.narrow(0, begin, heads)?.flatten_to(1);
+            let folded = take_heads(&folded)?;
             // A number that is the same for all positions does not change a softmax over them, so `added` is left out.
             let to_text = softmax_rows(&multiply_matrices(&folded, &v.t()?)?)?;
             pooled.push(multiply_matrices(&to_text, &v)?.reshape((heads, tokens, v.dim(1)?))?);
-            let added = of_heads(&added)?.reshape((1, heads * tokens))?;
+            let added = take_heads(&added)?.reshape((1, heads * tokens))?;
             let scores = multiply_matrices(&v, &folded.t()?)?.broadcast_add(&added)?;
             let to_vision = softmax_rows(&scores.reshape((v.dim(0)?, heads, tokens))?)?.flatten_from(1)?;
-            new_v = plus_times(&new_v, &to_vision, &of_heads(&outputs)?, (begin == 0).then_some(&bias))?;
+            new_v = plus_times(&new_v, &to_vision, &take_heads(&outputs)?, (begin == 0).then_some(&bias))?;
         }
         let mixed = Tensor::cat(&pooled, 0)?.matmul(&self.values_v.0.transpose(1, D::Minus1)?.contiguous()?)?;
         let mixed = mixed.broadcast_add(&self.values_v.1)?.transpose(0, 1)?.contiguous()?.flatten_from(1)?;

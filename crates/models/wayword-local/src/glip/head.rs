@@ -9,8 +9,10 @@ use crate::{
 };
 use candle_core::{DType, Result, Tensor};
 
+/// The head: rounds that join picture and text, then the output layers.
 pub(super) struct GlipHead {
     rounds: Vec<GlipRound>,
+    /// Brings the states of tokens to the width of the features of positions.
     words: LinearLayer,
     /// The bias of a token's logits: a vector for the product with its state, and a constant.
     word_bias: (Tensor, f64),
@@ -22,6 +24,7 @@ pub(super) struct GlipHead {
     scales: Vec<f32>,
 }
 
+/// One round of the head.
 struct GlipRound {
     /// The fusion and the text layer. Variant A has none.
     fusion: Option<(GlipFusion, bert::BertLayer)>,
@@ -32,7 +35,7 @@ struct GlipRound {
 pub(super) struct GlipLevelOutputs {
     pub(super) height: usize,
     pub(super) width: usize,
-    /// [positions * tokens].
+    /// The logit of each token at each position, [positions * tokens].
     pub(super) logits: Vec<f32>,
     /// [positions * 5]: the four distances of a box, and the logit of the centreness.
     pub(super) boxes: Vec<f32>,
@@ -65,15 +68,15 @@ impl GlipHead {
             Tensor::cat(&[distances, centre], 0).map_err(wrong)
         };
         let kernel = joined("weight")?.flatten_from(1).map_err(wrong)?;
-        let one = |name: &str| Ok::<_, LocalError>(read_numbers(weights, name, &[1])?[0]);
+        let read_scalar = |name: &str| Ok::<_, LocalError>(read_numbers(weights, name, &[1])?[0]);
         Ok(Self {
             rounds: (0..config.head.rounds).map(round).collect::<std::result::Result<_, _>>()?,
             words: weights.read_linear("dot_product_projection_text", text, width)?,
-            word_bias: (weights.read_state("bias_lang", &[text])?, f64::from(one("bias0")?)),
-            divisor: f64::from(one("log_scale")?).exp(),
+            word_bias: (weights.read_state("bias_lang", &[text])?, f64::from(read_scalar("bias0")?)),
+            divisor: f64::from(read_scalar("log_scale")?).exp(),
             boxes: LinearLayer::new(&kernel, Some(joined("bias")?)).map_err(wrong)?,
             scales: (0..LEVEL_COUNT)
-                .map(|level| one(&format!("scales.{level}.scale")))
+                .map(|level| read_scalar(&format!("scales.{level}.scale")))
                 .collect::<std::result::Result<_, _>>()?,
         })
     }
@@ -97,18 +100,20 @@ impl GlipHead {
         self.read_outputs(&levels, &text)
     }
 
+    /// Computes logits and boxes of all levels from their features after the last round.
     fn read_outputs(&self, levels: &[FeatureMap], text: &Tensor) -> Result<Vec<GlipLevelOutputs>> {
         let length = text.sqr()?.sum_keepdim(1)?.sqrt()?.maximum(1e-12)?;
-        let e = text.broadcast_div(&length)?;
-        let words = (self.words.apply_to(&(&e / 2.0)?)? / self.divisor)?.t()?.contiguous()?;
-        let bias = (e.broadcast_mul(&self.word_bias.0.unsqueeze(0)?)?.sum(1)? + self.word_bias.1)?.unsqueeze(0)?;
+        let unit_text = text.broadcast_div(&length)?;
+        let words = (self.words.apply_to(&(&unit_text / 2.0)?)? / self.divisor)?.t()?.contiguous()?;
+        let bias =
+            (unit_text.broadcast_mul(&self.word_bias.0.unsqueeze(0)?)?.sum(1)? + self.word_bias.1)?.unsqueeze(0)?;
         let numbers = |x: Tensor| x.to_dtype(DType::F32)?.flatten_all()?.to_vec1::<f32>();
-        let say = |(level, scale): (&FeatureMap, &f32)| {
+        let level_outputs = |(level, scale): (&FeatureMap, &f32)| {
             let mut boxes = numbers(self.boxes.apply_to(&level.x)?)?;
             boxes.chunks_exact_mut(5).for_each(|row| row[..4].iter_mut().for_each(|distance| *distance *= scale));
             let logits = numbers(multiply_matrices(&level.x, &words)?.broadcast_add(&bias)?)?;
             Ok(GlipLevelOutputs { height: level.height, width: level.width, logits, boxes })
         };
-        levels.iter().zip(&self.scales).map(say).collect()
+        levels.iter().zip(&self.scales).map(level_outputs).collect()
     }
 }

@@ -14,11 +14,13 @@ use crate::{
 };
 use candle_core::{Result, Tensor};
 
+/// The network of a GLIP.
 pub(super) struct GlipModel {
     backbone: SwinBackbone,
     pyramid: FeaturePyramid,
     text: bert::BertEncoder,
     head: GlipHead,
+    /// The channels of the features.
     width: usize,
 }
 
@@ -28,14 +30,14 @@ impl GlipModel {
         config: &GlipConfig,
     ) -> std::result::Result<Self, LocalError> {
         let all = weights.scope_under("");
-        let from = [1, 2, 3].map(|stage| config.swin.width_of(stage));
+        let map_widths = [1, 2, 3].map(|stage| config.swin.width_of(stage));
         Ok(Self {
             backbone: SwinBackbone::from_weights(
                 &all.sub_scope("backbone.body"),
                 &SwinTensorNames::ORIGINAL,
                 &config.swin,
             )?,
-            pyramid: FeaturePyramid::from_weights(&all.sub_scope("backbone.fpn"), from, config.head.width)?,
+            pyramid: FeaturePyramid::from_weights(&all.sub_scope("backbone.fpn"), map_widths, config.head.width)?,
             text: bert::BertEncoder::from_weights(&all.sub_scope("language_backbone.body.model"), &config.text)?,
             head: GlipHead::from_weights(&all.sub_scope("rpn.head"), config)?,
             width: config.head.width,
@@ -59,6 +61,7 @@ impl GlipModel {
 
     /// Bytes of the levels of a picture of this many pixels, in 32 bits.
     pub(super) fn feature_bytes(&self, pixels: usize) -> usize {
+        // A position of the first level covers 8 x 8 pixels, and one of each further level four times as many.
         let positions: usize = (0..LEVEL_COUNT).map(|level| pixels.div_ceil(64 << (2 * level))).sum();
         positions * self.width * 4
     }

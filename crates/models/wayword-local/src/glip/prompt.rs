@@ -2,12 +2,13 @@
 
 use crate::{LocalError, tokenizer::TextTokenizer};
 
-/// The most tokens of a prompt.
+/// The most tokens of a prompt. Phrases that do not fit go into the next prompt.
 pub(super) const MOST_TOKENS: usize = 256;
 
 /// A prompt of one or more phrases.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct GlipPrompt {
+    /// The token ids of the text.
     pub(super) ids: Vec<u32>,
     /// The number of each phrase, and the positions of its tokens. A phrase without tokens is in no prompt.
     pub(super) phrases: Vec<(usize, Vec<usize>)>,
@@ -31,30 +32,31 @@ fn clean_phrase(phrase: &str) -> String {
     kept.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// The prompts of phrases, in their order: a prompt ends where the next phrase would not fit.
+/// The prompts of phrases, in their order, with at most `max_tokens` tokens each: a prompt ends where the next phrase
+/// would not fit.
 ///
 /// # Errors
 /// When a phrase alone is too long for a prompt.
 pub(super) fn build_prompts(
     tokenizer: &TextTokenizer,
     phrases: &[&str],
-    most: usize,
+    max_tokens: usize,
 ) -> Result<Vec<GlipPrompt>, LocalError> {
     let cleaned: Vec<String> = phrases.iter().map(|phrase| clean_phrase(phrase)).collect();
-    let mut made: Vec<GlipPrompt> = Vec::new();
+    let mut prompts: Vec<GlipPrompt> = Vec::new();
     let mut begin = 0;
     while begin < cleaned.len() {
         let mut end = begin + 1;
         let mut prompt = join_phrases(tokenizer, &cleaned, begin, end)?;
-        if prompt.ids.len() > most {
-            let problem = format!("the phrase {:?} has more than the {most} tokens of a prompt", phrases[begin]);
+        if prompt.ids.len() > max_tokens {
+            let problem = format!("the phrase {:?} has more than the {max_tokens} tokens of a prompt", phrases[begin]);
             return Err(LocalError::Compute { model: "GLIP".to_owned(), problem });
         }
         // The end is searched by bisection, because each try cuts the whole text into tokens.
         let mut step = cleaned.len() - end;
         while step > 0 {
             let next = join_phrases(tokenizer, &cleaned, begin, (end + step).min(cleaned.len()))?;
-            if next.ids.len() <= most {
+            if next.ids.len() <= max_tokens {
                 end = (end + step).min(cleaned.len());
                 prompt = next;
                 step = step.min(cleaned.len() - end);
@@ -64,10 +66,10 @@ pub(super) fn build_prompts(
         }
         begin = end;
         if !prompt.phrases.is_empty() {
-            made.push(prompt);
+            prompts.push(prompt);
         }
     }
-    Ok(made)
+    Ok(prompts)
 }
 
 /// Joins the phrases from `begin` to `end` to one prompt, and finds the tokens of each.
@@ -80,17 +82,17 @@ fn join_phrases(
     let text = phrases[begin..end].join(". ");
     let (ids, spans) = tokenizer.ids_and_spans(&text)?;
     let mut at = 0;
-    let mut of_phrases = Vec::new();
+    let mut phrase_tokens = Vec::new();
     for (number, phrase) in phrases.iter().enumerate().take(end).skip(begin) {
         let to = at + phrase.len();
         let within = |(_, span): &(usize, &(usize, usize))| span.0 < to && span.1 > at;
         let tokens: Vec<usize> = spans.iter().enumerate().filter(within).map(|(token, _)| token).collect();
         if !tokens.is_empty() {
-            of_phrases.push((number, tokens));
+            phrase_tokens.push((number, tokens));
         }
         at = to + 2;
     }
-    Ok(GlipPrompt { ids, phrases: of_phrases })
+    Ok(GlipPrompt { ids, phrases: phrase_tokens })
 }
 
 #[cfg(test)]

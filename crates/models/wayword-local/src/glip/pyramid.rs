@@ -14,9 +14,11 @@ use candle_core::{Result, Tensor};
 /// The number of levels. The first has a stride of 8 pixels, and each further one twice that of the level before.
 pub(super) const LEVEL_COUNT: usize = 5;
 
+/// Computes the levels of features from the maps of the backbone.
 pub(super) struct FeaturePyramid {
     /// The layers for the backbone's maps, the finest first.
     inner: Vec<LinearLayer>,
+    /// The convolutions after the sum with the coarser map, the finest first.
     layer: Vec<Conv3Layer>,
     /// The convolutions for the two coarsest levels.
     top: [Conv3Layer; 2],
@@ -26,12 +28,12 @@ impl FeaturePyramid {
     /// Reads a pyramid for maps of these widths.
     pub(super) fn from_weights(
         weights: &WeightScope<'_>,
-        from: [usize; 3],
+        map_widths: [usize; 3],
         width: usize,
     ) -> std::result::Result<Self, LocalError> {
         let inner = |at: usize| {
             let part = weights.sub_scope(format!("fpn_inner{}", at + 2));
-            let kernel = part.read_tensor("weight", &[width, from[at], 1, 1])?;
+            let kernel = part.read_tensor("weight", &[width, map_widths[at], 1, 1])?;
             let bias = part.read_tensor("bias", &[width])?;
             let linear = kernel.flatten_from(1).and_then(|kernel| LinearLayer::new(&kernel, Some(bias)));
             linear.map_err(|error| part.tensor_error("weight", &error))

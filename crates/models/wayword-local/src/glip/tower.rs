@@ -20,6 +20,7 @@ use crate::{
 use candle_core::{Result, Tensor};
 use rayon::prelude::*;
 
+/// Added to the variances of groups, so that no division is by 0.
 const GROUP_NORM_EPSILON: f64 = 1e-5;
 
 /// The index of the convolution by where its input comes from: the next coarser level, the same, or the next finer one.
@@ -27,8 +28,11 @@ const CONV_FROM_COARSER: usize = 0;
 const CONV_FROM_SAME: usize = 1;
 const CONV_FROM_FINER: usize = 2;
 
+/// The convolutions of one round.
 pub(super) struct GlipTower {
+    /// By the indices [`CONV_FROM_COARSER`], [`CONV_FROM_SAME`] and [`CONV_FROM_FINER`].
     convs: [NormedConvolution; 3],
+    /// Computes the offsets and masks by which the kernels are deformed.
     bends: Conv3Layer,
     /// The layer that computes the weight of a result from the means of its channels.
     weighs: (Vec<f32>, f32),
@@ -99,31 +103,32 @@ impl GlipTower {
         (0..levels.len()).map(|at| self.update_level(levels, at)).collect()
     }
 
+    /// Computes the next features of level `at`.
     fn update_level(&self, levels: &[FeatureMap], at: usize) -> Result<FeatureMap> {
         let level = &levels[at];
         let bends = TapOffsets::new(&self.bends.convolve_plain(level, 1)?)?;
-        let mut seen = vec![self.convolve_map(CONV_FROM_SAME, level, 1, &bends, None)?];
+        let mut results = vec![self.convolve_map(CONV_FROM_SAME, level, 1, &bends, None)?];
         if let Some(finer) = at.checked_sub(1).and_then(|below| levels.get(below)) {
-            seen.push(self.convolve_map(CONV_FROM_FINER, finer, 2, &bends, None)?);
+            results.push(self.convolve_map(CONV_FROM_FINER, finer, 2, &bends, None)?);
         }
         if let Some(coarser) = levels.get(at + 1) {
-            seen.push(self.convolve_map(CONV_FROM_COARSER, coarser, 1, &bends, Some(level))?);
+            results.push(self.convolve_map(CONV_FROM_COARSER, coarser, 1, &bends, Some(level))?);
         }
         // The weighted mean of the results. It is a sum of maps, each with a factor, plus one number for each channel.
         let mut height = vec![0.0; self.width];
         let mut mean = vec![0.0; self.width];
-        let count = seen.len() as f32;
-        for seen in &mut seen {
-            let weight = self.result_weight(&seen.mean) / count;
-            seen.scale.iter_mut().for_each(|scale| *scale *= weight);
-            height.iter_mut().zip(&seen.shift).for_each(|(height, shift)| *height += shift * weight);
-            mean.iter_mut().zip(&seen.mean).for_each(|(sum, mean)| *sum += mean * weight);
+        let count = results.len() as f32;
+        for result in &mut results {
+            let weight = self.result_weight(&result.mean) / count;
+            result.scale.iter_mut().for_each(|scale| *scale *= weight);
+            height.iter_mut().zip(&result.shift).for_each(|(height, shift)| *height += shift * weight);
+            mean.iter_mut().zip(&result.mean).for_each(|(sum, mean)| *sum += mean * weight);
         }
         let lines = self.activation_lines(&mean);
         let x = if is_ours(&level.x) {
-            self.join_results(&seen, &height, &lines, level)?
+            self.join_results(&results, &height, &lines, level)?
         } else {
-            on_device(&seen, &height, &lines, level)?
+            on_device(&results, &height, &lines, level)?
         };
         Ok(FeatureMap { x, ..*level })
     }
@@ -146,11 +151,11 @@ impl GlipTower {
         let (mut scale, mut shift, mut mean) = (weight.clone(), bias.clone(), vec![0.0; self.width]);
         for group in 0..self.groups {
             let channels = group * size..(group + 1) * size;
-            let of_group = |means: &[f64]| means[channels.clone()].iter().sum::<f64>() / size as f64;
-            let (centre, square) = (of_group(&plain), of_group(&square));
-            let by = 1.0 / ((square - centre * centre).max(0.0) + GROUP_NORM_EPSILON).sqrt();
+            let group_mean = |means: &[f64]| means[channels.clone()].iter().sum::<f64>() / size as f64;
+            let (centre, square) = (group_mean(&plain), group_mean(&square));
+            let factor = 1.0 / ((square - centre * centre).max(0.0) + GROUP_NORM_EPSILON).sqrt();
             for channel in channels.clone() {
-                scale[channel] *= by as f32;
+                scale[channel] *= factor as f32;
                 shift[channel] -= (centre * f64::from(scale[channel])) as f32;
                 mean[channel] = (shared[channel] * f64::from(scale[channel])) as f32 + shift[channel];
             }
@@ -171,9 +176,9 @@ impl GlipTower {
             weight.chunks_exact(x.len()).zip(bias).map(row).collect()
         };
         let inner: Vec<f32> = layer(&self.squeeze, mean).into_iter().map(|number| number.max(0.0)).collect();
-        let made: Vec<f32> = layer(&self.widen, &inner).into_iter().map(|x| hard_sigmoid(x) - 0.5).collect();
-        let part = |at: usize, by: f32, and: f32| {
-            made[at * self.width..(at + 1) * self.width].iter().map(|number| number * by + and).collect()
+        let coefficients: Vec<f32> = layer(&self.widen, &inner).into_iter().map(|x| hard_sigmoid(x) - 0.5).collect();
+        let part = |at: usize, factor: f32, added: f32| {
+            coefficients[at * self.width..(at + 1) * self.width].iter().map(|number| number * factor + added).collect()
         };
         ActivationLines([part(0, 2.0, 1.0), part(1, 1.0, 0.0), part(2, 2.0, 0.0), part(3, 1.0, 0.0)])
     }
@@ -181,26 +186,26 @@ impl GlipTower {
     /// The sum of the results after the activation, in one pass on the processor.
     fn join_results(
         &self,
-        seen: &[ConvolvedLevel],
+        results: &[ConvolvedLevel],
         height: &[f32],
         lines: &ActivationLines,
         level: &FeatureMap,
     ) -> Result<Tensor> {
         let width = self.width;
         let mut y = vec![0.0; level.position_count() * width];
-        for (at, seen) in seen.iter().enumerate() {
-            with_numbers(&seen.map.x, |x| {
+        for (at, result) in results.iter().enumerate() {
+            with_numbers(&result.map.x, |x| {
                 each_tile(&mut y, width, |from, y, memory| {
                     let [between] = split_memory(memory, [width]);
                     for (at_row, y) in y.chunks_exact_mut(width).enumerate() {
-                        let row = match &seen.enlarged {
+                        let row = match &result.enlarged {
                             None => &x[(from + at_row) * width..(from + at_row + 1) * width],
                             Some(enlarged) => {
                                 mix_rows(x, width, &enlarged.corner_shares(from + at_row), between);
                                 &*between
                             }
                         };
-                        let each = y.iter_mut().zip(row).zip(&seen.scale);
+                        let each = y.iter_mut().zip(row).zip(&result.scale);
                         match at {
                             0 => each.zip(height).for_each(|(((y, x), scale), height)| *y = x * scale + height),
                             _ => each.for_each(|((y, x), scale)| *y += x * scale),
@@ -222,26 +227,32 @@ impl GlipTower {
 }
 
 /// The sum of the results after the activation, with candle's operators.
-fn on_device(seen: &[ConvolvedLevel], height: &[f32], lines: &ActivationLines, level: &FeatureMap) -> Result<Tensor> {
+fn on_device(
+    results: &[ConvolvedLevel],
+    height: &[f32],
+    lines: &ActivationLines,
+    level: &FeatureMap,
+) -> Result<Tensor> {
     let (device, dtype) = (level.x.device(), level.x.dtype());
     let row = |numbers: &[f32]| Tensor::from_slice(numbers, (1, numbers.len()), device)?.to_dtype(dtype);
     let mut sum = row(height)?;
-    for seen in seen {
-        let x = match &seen.enlarged {
-            None => seen.map.x.clone(),
+    for result in results {
+        let x = match &result.enlarged {
+            None => result.map.x.clone(),
             Some(enlarged) => {
                 let points: Vec<_> =
                     (0..level.position_count()).map(|position| enlarged.corner_shares(position)).collect();
-                rows_between(&seen.map.x, &points, 4, device)?
+                rows_between(&result.map.x, &points, 4, device)?
             }
         };
-        sum = x.broadcast_mul(&row(&seen.scale)?)?.broadcast_add(&sum)?;
+        sum = x.broadcast_mul(&row(&result.scale)?)?.broadcast_add(&sum)?;
     }
     let line = |slope: &[f32], at: &[f32]| sum.broadcast_mul(&row(slope)?)?.broadcast_add(&row(at)?);
     let [slope, at, other_slope, other_at] = &lines.0;
     line(slope, at)?.maximum(&line(other_slope, other_at)?)
 }
 
+/// A sigmoid made of straight lines: 0 up to -3, 1 from 3 on.
 fn hard_sigmoid(x: f32) -> f32 {
     (x + 3.0).clamp(0.0, 6.0) / 6.0
 }

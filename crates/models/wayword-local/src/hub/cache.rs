@@ -12,7 +12,7 @@ use std::{
     sync::atomic::{AtomicU64, Ordering},
 };
 
-/// The most levels of folders that are searched. Snapshots and references have few.
+/// The most levels of folders that are searched; deeper files are ignored. Snapshots and references have few levels.
 const MAX_FOLDER_DEPTH: usize = 8;
 
 /// The hash of a commit: 40 hex digits in lower case. It is checked strictly, because it names a folder.
@@ -84,7 +84,9 @@ fn is_hex(text: &str, digits: usize) -> bool {
 /// One model's part of the cache.
 #[derive(Debug)]
 pub(super) struct RepoFolder {
+    /// The folder with `refs`, `blobs` and `snapshots`.
     root: PathBuf,
+    /// The folder with the lock files.
     locks: PathBuf,
 }
 
@@ -139,6 +141,7 @@ impl RepoFolder {
     }
 
     /// Waits until no other process fetches the file of a hash. Others wait until the returned file is closed.
+    /// `waiting` is called if this process has to wait.
     pub(super) fn lock_blob(&self, hash: &BlobHash, waiting: impl FnOnce()) -> Result<File, LocalError> {
         let path = self.locks.join(format!("{}.lock", hash.as_str()));
         make_parent(&path)?;
@@ -160,7 +163,7 @@ impl RepoFolder {
         }
     }
 
-    /// Puts a blob into a snapshot under a file's name.
+    /// Puts a blob into a snapshot under a file's name: as a link, or as a copy without `symlinks` or where links fail.
     pub(super) fn link_blob(
         &self,
         hash: &BlobHash,
@@ -232,7 +235,7 @@ fn make_symlink(to: &Path, at: &Path) -> io::Result<()> {
 /// A model in the cache, at one commit.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct CachedModel {
-    /// Its name, `hf/ORG/NAME`.
+    /// The name of the model, `hf/ORG/NAME`.
     pub name: String,
     /// Branches and tags that point to the commit.
     pub revisions: Vec<String>,
@@ -240,9 +243,9 @@ pub struct CachedModel {
     pub commit: String,
     /// How many files there are.
     pub files: usize,
-    /// Their total length, bytes.
+    /// The total length of the files, bytes.
     pub bytes: u64,
-    /// Their folder.
+    /// The folder of the files.
     pub folder: PathBuf,
 }
 
@@ -265,7 +268,7 @@ pub(super) fn list_models(cache: &Path) -> Result<Vec<CachedModel>, LocalError> 
             }
             models.push(CachedModel {
                 name: format!("hf/{org}/{name}"),
-                revisions: refs.iter().filter(|(_, of)| *of == commit).map(|(name, _)| name.clone()).collect(),
+                revisions: refs.iter().filter(|(_, target)| *target == commit).map(|(name, _)| name.clone()).collect(),
                 commit,
                 files: lengths.len(),
                 bytes: lengths.iter().sum(),

@@ -19,12 +19,14 @@ use ureq::{
     http::{HeaderMap, Response, Uri},
 };
 
+/// The most redirects of one request. More are an error.
 const MOST_REDIRECTS: usize = 10;
 
-/// Longest wait for a connection.
+/// Longest wait for a connection, after which the request fails.
 const CONNECT_TIMEOUT: Duration = Duration::from_secs(10);
 
-/// Longest silence of a server. There is no limit on a whole download, because a model may be large.
+/// Longest silence of a server, after which the request fails. There is no limit on a whole download, because a model
+/// may be large.
 const SILENCE_TIMEOUT: Duration = Duration::from_secs(60);
 
 /// The characters that are percent-encoded in one segment of a path: all except those that any address may contain.
@@ -42,6 +44,7 @@ pub(super) struct HubClient {
 /// The hub's answer about a file.
 #[derive(Debug)]
 pub(super) enum HubFileAnswer {
+    /// The model has the file.
     There(HubFileFacts),
     /// The model lacks the file at this commit, if the hub names a commit.
     Absent(Option<CommitHash>),
@@ -51,8 +54,9 @@ pub(super) enum HubFileAnswer {
 #[derive(Debug)]
 pub(super) struct HubFileFacts {
     pub(super) commit: CommitHash,
+    /// The hash that the file must have.
     pub(super) hash: BlobHash,
-    /// Bytes.
+    /// The length of the file, bytes.
     pub(super) size: Option<u64>,
 }
 
@@ -64,9 +68,12 @@ struct RedirectFacts {
     linked: Option<(String, Option<u64>)>,
 }
 
+/// The method of a request.
 #[derive(Clone, Copy)]
 enum HubMethod {
+    /// Only the headers.
     Head,
+    /// The bytes from position `from` on.
     Get { from: u64 },
 }
 
@@ -123,23 +130,24 @@ impl HubClient {
         }
     }
 
+    /// One attempt of [`HubClient::ask_about_file`].
     fn ask_once(&self, model: &OnHub, address: &str) -> Result<HubFileAnswer, RequestFailure> {
-        let mut heard = RedirectFacts::default();
-        let response = self.follow_redirects(HubMethod::Head, address, |headers| heard.read_headers(headers))?;
+        let mut facts = RedirectFacts::default();
+        let response = self.follow_redirects(HubMethod::Head, address, |headers| facts.read_headers(headers))?;
         let (status, headers) = (response.status().as_u16(), response.headers());
         if is_absence(status, headers) {
-            return Ok(HubFileAnswer::Absent(heard.commit));
+            return Ok(HubFileAnswer::Absent(facts.commit));
         }
         if status >= 400 {
             return Err(self.describe_refusal(&response, address, model));
         }
         let incomplete =
             |problem: &str| RequestFailure::Lasting(LocalError::download_failed(address, problem, SEE_WHO_ANSWERS));
-        let (etag, size) = heard.linked.unwrap_or_else(|| {
+        let (etag, size) = facts.linked.unwrap_or_else(|| {
             (header_text(headers, "etag").unwrap_or_default().to_owned(), header_number(headers, "content-length"))
         });
         let hash = BlobHash::from_etag(&etag).ok_or_else(|| incomplete("the answer has no hash of the file"))?;
-        let commit = heard.commit.ok_or_else(|| incomplete("the answer has no commit"))?;
+        let commit = facts.commit.ok_or_else(|| incomplete("the answer has no commit"))?;
         Ok(HubFileAnswer::There(HubFileFacts { commit, hash, size }))
     }
 
@@ -179,17 +187,17 @@ impl HubClient {
         mut enough: impl FnMut(&HeaderMap) -> bool,
     ) -> Result<Response<Body>, RequestFailure> {
         let lasting = |problem: &str| RequestFailure::Lasting(LocalError::download_failed(address, problem, TRY_LATER));
-        let mut at = WebAddress::parse(address).map_err(lasting)?;
+        let mut current = WebAddress::parse(address).map_err(lasting)?;
         for _ in 0..MOST_REDIRECTS {
             let response = self
-                .send_request(method, &at)
-                .map_err(|error| RequestFailure::from_transport_error(&error, address, at.host()))?;
+                .send_request(method, &current)
+                .map_err(|error| RequestFailure::from_transport_error(&error, address, current.host()))?;
             if enough(response.headers()) || !response.status().is_redirection() {
                 return Ok(response);
             }
             let location =
                 header_text(response.headers(), "location").ok_or_else(|| lasting("a redirect has no address"))?;
-            at = at
+            current = current
                 .follow_location(location)
                 .map_err(|problem| lasting(&format!("a redirect cannot be followed: {problem}")))?;
         }

@@ -14,11 +14,12 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// The most bytes of a file for which the hub gives no size. It gives the size of every large file.
+/// The most bytes of a file for which the hub gives no size; a longer download is refused. The hub gives the size of
+/// every large file.
 const MOST_UNANNOUNCED: u64 = 64 << 20;
 
-/// The number of bytes that must arrive before earlier failures are forgotten. The limit makes the program give up on a
-/// server that sends only a few bytes each time.
+/// The number of bytes of one connection after which earlier failures are forgotten. The limit makes the program give
+/// up on a server that sends only a few bytes each time.
 const A_GOOD_PIECE: u64 = 1 << 20;
 
 /// Receives the progress of downloads.
@@ -112,7 +113,7 @@ impl CommitDownload<'_> {
         fs::rename(&part, &blob).map_err(|error| LocalError::from_io(&blob, "write", error))
     }
 
-    /// Downloads until all bytes are there. Returns whether some of them were there before.
+    /// Downloads into the file `part` until all bytes are there. Returns whether some of them were there before.
     fn download_whole(
         &self,
         file: &str,
@@ -122,7 +123,7 @@ impl CommitDownload<'_> {
     ) -> Result<bool, LocalError> {
         let io = |error| LocalError::from_io(part, "write", error);
         let mut out = OpenOptions::new().create(true).append(true).open(part).map_err(io)?;
-        let length = |out: &File| out.metadata().map(|about| about.len()).map_err(io);
+        let length = |out: &File| out.metadata().map(|metadata| metadata.len()).map_err(io);
         if size.is_some_and(|size| length(&out).is_ok_and(|length| length > size)) {
             out.set_len(0).map_err(io)?;
         }
@@ -145,10 +146,10 @@ impl CommitDownload<'_> {
     /// Downloads the bytes that one connection delivers.
     fn download_piece(&self, file: &str, size: Option<u64>, out: &mut File, part: &Path) -> Result<(), RequestFailure> {
         let io = |error| RequestFailure::Lasting(LocalError::from_io(part, "write", error));
-        let (address, there) = (self.file_address(file), out.seek(SeekFrom::End(0)).map_err(io)?);
-        let (mut done, mut body) = self.client.open_download(self.model, &address, there)?;
+        let (address, received) = (self.file_address(file), out.seek(SeekFrom::End(0)).map_err(io)?);
+        let (mut done, mut body) = self.client.open_download(self.model, &address, received)?;
         out.set_len(done).map_err(io)?;
-        let most = size.unwrap_or(MOST_UNANNOUNCED);
+        let max_bytes = size.unwrap_or(MOST_UNANNOUNCED);
         let mut buffer = vec![0; 1 << 18];
         self.progress.bytes_arrived(file, done, size);
         loop {
@@ -159,10 +160,10 @@ impl CommitDownload<'_> {
                 break;
             }
             done += read as u64;
-            if done > most {
+            if done > max_bytes {
                 // None of these bytes can be trusted.
                 out.set_len(0).map_err(io)?;
-                let problem = format!("the server sends more than the expected {most} bytes");
+                let problem = format!("the server sends more than the expected {max_bytes} bytes");
                 return Err(RequestFailure::Lasting(LocalError::download_failed(address, problem, TRY_LATER)));
             }
             out.write_all(&buffer[..read]).map_err(io)?;

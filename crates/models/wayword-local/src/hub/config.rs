@@ -8,9 +8,10 @@ use std::{
     time::Duration,
 };
 
+/// The address of the public hub.
 const PUBLIC_ENDPOINT: &str = "https://huggingface.co";
 
-/// The wait before a second attempt.
+/// The wait before a second attempt. It doubles with each further one.
 const FIRST_WAIT: Duration = Duration::from_millis(300);
 
 /// The settings of the cache and the hub.
@@ -27,7 +28,9 @@ pub struct HubConfig {
     /// The SHA-256 that a checkpoint of the form `hf/ORG/NAME:FILE.pth` must have. If it is not set, the file must have
     /// the published hash, or the one that it had when it was first used.
     pub trust: Option<String>,
+    /// The token that gives access to private and gated models.
     pub(super) token: Option<HubToken>,
+    /// The wait before a second attempt. Tests shorten it.
     pub(super) first_wait: Duration,
 }
 
@@ -61,6 +64,7 @@ impl HubConfig {
         Self::from_variables(&|name| std::env::var_os(name), std::env::home_dir().as_deref())
     }
 
+    /// Like [`HubConfig::from_env`], with variables from a function and this home folder, for tests.
     pub(super) fn from_variables(
         variable: &dyn Fn(&str) -> Option<OsString>,
         home: Option<&Path>,
@@ -78,12 +82,12 @@ impl HubConfig {
             (!text.is_empty()).then_some(text)
         };
         // The values that count as yes for the hub's own client.
-        let yes = |value: String| ["1", "on", "yes", "true"].iter().any(|yes| value.eq_ignore_ascii_case(yes));
-        let is_set = |name: &str| text(name).is_some_and(yes);
-        let usual = || Some(path("XDG_CACHE_HOME").or_else(|| Some(home?.join(".cache")))?.join("huggingface"));
+        let is_yes = |value: String| ["1", "on", "yes", "true"].iter().any(|yes| value.eq_ignore_ascii_case(yes));
+        let is_set = |name: &str| text(name).is_some_and(is_yes);
+        let default_home = || Some(path("XDG_CACHE_HOME").or_else(|| Some(home?.join(".cache")))?.join("huggingface"));
         let cache = path("HF_HUB_CACHE")
             .or_else(|| path("HUGGINGFACE_HUB_CACHE"))
-            .or_else(|| Some(path("HF_HOME").or_else(usual)?.join("hub")));
+            .or_else(|| Some(path("HF_HOME").or_else(default_home)?.join("hub")));
         let cache = cache.ok_or_else(|| LocalError::Missing {
             file: PathBuf::from("~/.cache/huggingface/hub"),
             what: "the home folder, where models are kept,",

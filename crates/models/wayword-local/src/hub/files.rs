@@ -9,10 +9,11 @@ use std::{
     path::{Path, PathBuf},
 };
 
+/// The weights in one file; the index of weights in several files; a pickled file of PyTorch; the tokenizer.
 const WHOLE_WEIGHTS_FILE: &str = "model.safetensors";
 const WEIGHTS_INDEX_FILE: &str = "model.safetensors.index.json";
-const TOKENIZER_FILE: &str = "tokenizer.json";
 const PICKLED_WEIGHTS_FILE: &str = "pytorch_model.bin";
+const TOKENIZER_FILE: &str = "tokenizer.json";
 
 /// Files that the models of this crate read if they exist.
 const READ_WHERE_THERE: [&str; 8] = [
@@ -36,8 +37,11 @@ const SAMPLE_BYTES: u64 = 4096;
 /// Which files of a model are needed. A file that is part of the model's name is always needed.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct NeededFiles {
+    /// Whether the weights are needed.
     weights: bool,
+    /// Files that the model must have.
     required: Vec<&'static str>,
+    /// Files that are used if the model has them.
     optional: Vec<&'static str>,
 }
 
@@ -110,7 +114,8 @@ impl NeededFiles {
         if *self == Self::for_tokenizer() { "--tokenizer " } else { "" }
     }
 
-    /// Gets all files. Small files come first, so that an error appears before gigabytes are fetched.
+    /// Gets all files, and the file `named` in the model's name, if there is one. Small files come first, so that an
+    /// error appears before gigabytes are fetched.
     pub(super) fn gather_files(
         &self,
         files: &mut dyn ModelFiles,
@@ -133,11 +138,12 @@ impl NeededFiles {
     }
 }
 
+/// The files with the weights, in the first form that the model has.
 fn weights_of(files: &mut dyn ModelFiles) -> Result<Vec<PathBuf>, LocalError> {
     let forms = [WHOLE_WEIGHTS_FILE, WEIGHTS_INDEX_FILE, PICKLED_WEIGHTS_FILE];
     // If one form of the weights is on this machine, no other form is fetched.
-    let here = forms.into_iter().find(|form| files.local_path(form).is_some());
-    for form in here.map_or(forms.to_vec(), |form| vec![form]) {
+    let local_form = forms.into_iter().find(|form| files.local_path(form).is_some());
+    for form in local_form.map_or(forms.to_vec(), |form| vec![form]) {
         if let Some(path) = files.get_file(form)? {
             return if form == WEIGHTS_INDEX_FILE { weight_parts(files, &path) } else { Ok(vec![path]) };
         }
@@ -145,6 +151,7 @@ fn weights_of(files: &mut dyn ModelFiles) -> Result<Vec<PathBuf>, LocalError> {
     Err(files.missing_error(WHOLE_WEIGHTS_FILE, "the checkpoint"))
 }
 
+/// The files that an index of weights names.
 fn weight_parts(files: &mut dyn ModelFiles, index: &Path) -> Result<Vec<PathBuf>, LocalError> {
     let names = weights::part_names(index)?;
     names
@@ -172,6 +179,7 @@ impl GatheredFiles {
     }
 }
 
+/// Adds name, length and content of a file to a hash; of a long file, samples of the content.
 fn hash_file(hasher: &mut Sha256, name: &str, path: &Path) -> io::Result<()> {
     let mut file = File::open(path)?;
     let length = file.metadata()?.len();

@@ -81,10 +81,11 @@ impl ModelHub {
         self.find_trusted(name, needs, progress, false)
     }
 
-    /// Like [`ModelHub::folder`], but asks the hub which commit the revision points to now. Offline both do the same.
+    /// Like [`ModelHub::model_folder`], but asks the hub which commit the revision points to now. Offline both do the
+    /// same.
     ///
     /// # Errors
-    /// As for [`ModelHub::folder`].
+    /// As for [`ModelHub::model_folder`].
     pub fn fetch_model(
         &self,
         name: &ModelName,
@@ -108,6 +109,8 @@ impl ModelHub {
         &self.config.cache
     }
 
+    /// Finds or fetches a model, and checks the hash of a `.pth` file. With `anew` the hub is asked for the current
+    /// commit.
     fn find_trusted(
         &self,
         name: &ModelName,
@@ -122,6 +125,7 @@ impl ModelHub {
         Ok(found)
     }
 
+    /// Finds or fetches a model, wherever its files are.
     fn find_model(
         &self,
         name: &ModelName,

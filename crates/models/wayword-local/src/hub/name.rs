@@ -12,6 +12,7 @@ const NAME_PREFIX: &str = "hf/";
 /// The revision for a name without one.
 const DEFAULT_REVISION: &str = "main";
 
+/// The longest organisation or name, revision, file, and path of a folder, bytes. Longer ones are refused.
 const LONGEST_PART: usize = 96;
 const LONGEST_REVISION: usize = 200;
 const LONGEST_FILE: usize = 200;
@@ -35,8 +36,11 @@ pub struct ModelName {
 /// The place of a model's files.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum ModelSource {
+    /// The hub, or its cache on this machine.
     Hub(OnHub),
+    /// A folder on this machine.
     Folder(PathBuf),
+    /// A file on this machine.
     File(PathBuf),
 }
 
@@ -45,6 +49,7 @@ pub(super) enum ModelSource {
 pub(super) struct OnHub {
     pub(super) org: String,
     pub(super) name: String,
+    /// A branch, a tag or a commit.
     pub(super) revision: String,
     /// The file in the name, for a GGUF file or a checkpoint as training leaves it.
     pub(super) file: Option<String>,
@@ -81,6 +86,7 @@ impl ModelName {
         self.file_path().is_some()
     }
 
+    /// The file of a name that is that of one file.
     fn file_path(&self) -> Option<&Path> {
         match &self.source {
             ModelSource::Hub(model) => model.file.as_deref().map(Path::new),
@@ -96,6 +102,7 @@ impl fmt::Display for ModelName {
     }
 }
 
+/// Reads a name. The error is the problem with it.
 fn parse_source(text: &str) -> Result<ModelSource, &'static str> {
     let rest = text.strip_prefix(NAME_PREFIX).ok_or("it does not begin with hf/")?;
     if ["/", "./", "../"].iter().any(|begin| rest.starts_with(begin)) {
@@ -123,6 +130,7 @@ fn parse_source(text: &str) -> Result<ModelSource, &'static str> {
     }))
 }
 
+/// Reads the path of a folder or file on this machine.
 fn parse_local(path: &str) -> Result<ModelSource, &'static str> {
     if path.chars().any(char::is_control) || path.len() > LONGEST_PATH {
         return Err("its path contains control characters or is too long");
@@ -131,8 +139,8 @@ fn parse_local(path: &str) -> Result<ModelSource, &'static str> {
     Ok(source(PathBuf::from(path)))
 }
 
-/// The hub's rule for organisations and names. Two dashes in a row would make the names of the cache's folders
-/// ambiguous.
+/// Whether a text may be an organisation or a name, by the hub's rule. Two dashes in a row would make the names of the
+/// cache's folders ambiguous.
 pub(super) fn is_part(part: &str) -> bool {
     let inner = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.');
     let edge = |c: Option<char>| c.is_some_and(|c| c.is_ascii_alphanumeric() || c == '_');

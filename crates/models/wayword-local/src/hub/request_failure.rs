@@ -8,7 +8,7 @@ use ureq::http::HeaderMap;
 /// The number of failures in a row after which the program gives up on a file.
 const MOST_FAILURES: u32 = 5;
 
-/// Longest wait between two requests.
+/// Longest wait between two requests, also where the server asks for more.
 const LONGEST_WAIT: Duration = Duration::from_secs(30);
 
 /// The hint for an answer of the hub that is wrong.
@@ -136,8 +136,8 @@ impl RetryPatience {
             let hint = "try again later; the received part is kept, and the next try continues from there";
             return Err(LocalError::download_failed(address, problem, hint));
         }
-        let own = self.first_wait.saturating_mul(1 << (self.failures - 1));
-        thread::sleep(wait.unwrap_or(own).min(LONGEST_WAIT));
+        let own_wait = self.first_wait.saturating_mul(1 << (self.failures - 1));
+        thread::sleep(wait.unwrap_or(own_wait).min(LONGEST_WAIT));
         Ok(())
     }
 }

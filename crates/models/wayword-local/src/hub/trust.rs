@@ -28,7 +28,7 @@ const PUBLISHED_SHA256: [(&str, &str); 3] = [
     ("glip_tiny_model_o365_goldg.pth", "4274770c817b966621097df306c5ae857a2bdf3dfc242afc402382d9604382d3"),
 ];
 
-/// The longest file of a kept hash that is read, bytes.
+/// The longest file of a kept hash that is read, bytes. A longer one cannot be a hash, and is ignored.
 const LONGEST_KEPT: u64 = 100;
 
 /// Checks the hash of a model's file. At the first use of a file without a published hash, `progress` gets a note.
@@ -42,23 +42,25 @@ pub(super) fn check_file(
     progress: &dyn DownloadProgress,
 ) -> Result<(), LocalError> {
     let found = file_sha256(path).map_err(|error| LocalError::from_io(path, "read", error))?;
-    let other = |expected: &str, what: &str| LocalError::File {
+    let wrong_hash = |expected: &str, what: &str| LocalError::File {
         file: path.to_owned(),
         problem: format!("its SHA-256 is {found}, not {expected}, {what}"),
         hint: "fetch the file again from its makers; if you know that this is the right one, say so with --trust and its SHA-256",
     };
     if let Some(given) = &config.trust {
         let is_given = given.trim().eq_ignore_ascii_case(&found);
-        return if is_given { Ok(()) } else { Err(other(given, "which was given")) };
+        return if is_given { Ok(()) } else { Err(wrong_hash(given, "which was given")) };
     }
     let file = path_name(name).unwrap_or_default();
     if let Some((_, published)) = PUBLISHED_SHA256.iter().find(|(published, _)| *published == file) {
-        return if *published == found { Ok(()) } else { Err(other(published, "which is the published one")) };
+        return if *published == found { Ok(()) } else { Err(wrong_hash(published, "which is the published one")) };
     }
     let kept = hash_path(config, name, path);
     match read_hash(&kept) {
         Some(first) if first == found => Ok(()),
-        Some(first) => Err(other(&first, &format!("as it was when it was first used (kept in {})", kept.display()))),
+        Some(first) => {
+            Err(wrong_hash(&first, &format!("as it was when it was first used (kept in {})", kept.display())))
+        }
         None => {
             keep_hash(&kept, &found)?;
             progress.show_note(&format!(
@@ -88,8 +90,8 @@ fn hash_path(config: &HubConfig, name: &ModelName, path: &Path) -> PathBuf {
         }
         _ => {
             let whole = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-            let of_path = Sha256::digest(whole.as_os_str().as_encoded_bytes());
-            config.cache.join(".trust").join(format!("{of_path:x}.sha256"))
+            let path_hash = Sha256::digest(whole.as_os_str().as_encoded_bytes());
+            config.cache.join(".trust").join(format!("{path_hash:x}.sha256"))
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Activation functions, on the CPU in parallel.
+//! Activation functions. On the CPU this crate computes them in parallel; candle computes the rest.
 
 use super::kernels::{PIECE_NUMBERS, contiguous_slice, is_ours};
 use candle_core::{CpuStorage, CustomOp1, Layout, Result, Shape, Tensor};
@@ -33,6 +33,7 @@ pub(crate) enum Activation {
 impl Activation {
     /// Applies the function to each number of a tensor.
     pub(crate) fn apply_to(self, x: &Tensor) -> Result<Tensor> {
+        // Tensors that this crate's kernels can compute go there; candle computes the others.
         if is_ours(x) {
             return x.contiguous()?.apply_op1_no_bwd(&self);
         }

@@ -18,10 +18,11 @@ use std::ops::Range;
 /// The most scores that a thread computes at a time: about as many as fit into a core's cache.
 const MAX_SCORES_AT_A_TIME: usize = 384 << 10;
 
-/// The most queries that a thread takes at a time.
+/// The most queries that a thread takes at a time, however few keys there are.
 const MOST_QUERIES: usize = 96;
 
-/// With fewer queries at a time than this, packing keys and values beforehand does not pay.
+/// The fewest queries at a time for which keys and values are packed beforehand. For fewer, packing costs more time
+/// than it saves.
 const LEAST_PACKED: usize = 24;
 
 /// softmax(q kᵀ * scale + bias) v, for each head.
@@ -95,10 +96,11 @@ pub(crate) fn causal_mask(queries: usize, keys: usize, device: &Device) -> Resul
     Tensor::from_vec((0..queries * keys).map(sees).collect(), (queries, keys), device)
 }
 
+/// [`MultiHeadAttention`] on the CPU, as an operator of candle.
 struct CpuAttention<'a> {
     heads: usize,
     scale: f32,
-    /// [batch, heads, queries, keys].
+    /// Added to the scores, [batch, heads, queries, keys].
     bias: Option<&'a [f32]>,
 }
 
@@ -146,29 +148,29 @@ impl CpuAttention<'_> {
     /// Writes the states of some queries, from query `from` of a batch on, into `mixed` [queries, width].
     fn attend_piece(
         &self,
-        of: &AttentionInputs<'_>,
+        inputs: &AttentionInputs<'_>,
         packed: &[PackedKeysValues],
         batch: usize,
         from: usize,
         mixed: &mut [f32],
     ) -> Result<()> {
-        let (width, keys) = (of.v.width, of.k.count);
+        let (width, keys) = (inputs.v.width, inputs.k.count);
         let (size, queries) = (width / self.heads, mixed.len() / width.max(1));
         with_spare(queries * keys, |scores| {
             with_spare(queries * size, |states| {
                 for head in 0..self.heads {
                     let at = batch * self.heads + head;
-                    let q = GemmInputA::Unpacked(of.q.head_rows(batch, head, self.heads, from..from + queries)?);
+                    let q = GemmInputA::Unpacked(inputs.q.head_rows(batch, head, self.heads, from..from + queries)?);
                     let (k, v) = match packed.get(at) {
                         Some((k, v)) => (GemmInputB::Packed(k), GemmInputB::Packed(v)),
                         None => (
-                            GemmInputB::Unpacked(of.k.head_rows(batch, head, self.heads, 0..keys)?.transposed()),
-                            GemmInputB::Unpacked(of.v.head_rows(batch, head, self.heads, 0..keys)?),
+                            GemmInputB::Unpacked(inputs.k.head_rows(batch, head, self.heads, 0..keys)?.transposed()),
+                            GemmInputB::Unpacked(inputs.v.head_rows(batch, head, self.heads, 0..keys)?),
                         ),
                     };
                     write_product(scores, q, k, ProductOptions { alpha: self.scale, ..ProductOptions::default() })?;
                     if let Some(bias) = self.bias {
-                        let bias = &bias[(at * of.q.count + from) * keys..];
+                        let bias = &bias[(at * inputs.q.count + from) * keys..];
                         scores.iter_mut().zip(bias).for_each(|(score, bias)| *score += bias);
                     }
                     // The division by the sum comes after the product with the values, where there are fewer numbers.
@@ -187,16 +189,19 @@ impl CpuAttention<'_> {
 
     /// Packs the keys and values of all heads, if several pieces of the queries use them. Otherwise returns an empty
     /// list.
-    fn pack_heads(&self, of: &AttentionInputs<'_>, queries: usize) -> Result<Vec<PackedKeysValues>> {
-        if queries >= of.q.count || queries < LEAST_PACKED {
+    fn pack_heads(&self, inputs: &AttentionInputs<'_>, queries: usize) -> Result<Vec<PackedKeysValues>> {
+        if queries >= inputs.q.count || queries < LEAST_PACKED {
             return Ok(Vec::new());
         }
-        let one = |at: usize| {
+        let pack_head = |at: usize| {
             let (batch, head) = (at / self.heads, at % self.heads);
-            let k = of.k.head_rows(batch, head, self.heads, 0..of.k.count)?;
-            Ok((pack_matrix(k.transposed()), pack_matrix(of.v.head_rows(batch, head, self.heads, 0..of.v.count)?)))
+            let k = inputs.k.head_rows(batch, head, self.heads, 0..inputs.k.count)?;
+            Ok((
+                pack_matrix(k.transposed()),
+                pack_matrix(inputs.v.head_rows(batch, head, self.heads, 0..inputs.v.count)?),
+            ))
         };
-        (0..of.q.batch * self.heads).into_par_iter().map(one).collect()
+        (0..inputs.q.batch * self.heads).into_par_iter().map(pack_head).collect()
     }
 }
 
@@ -211,10 +216,10 @@ impl AttentionInputs<'_> {
     /// The number of queries of a batch that a thread takes at a time: so few that their scores stay in the cache, and
     /// that every thread has work.
     fn at_a_time(&self) -> usize {
-        let least = rayon::current_num_threads().div_ceil(self.q.batch.max(1));
+        let min_pieces = rayon::current_num_threads().div_ceil(self.q.batch.max(1));
         (MAX_SCORES_AT_A_TIME / self.k.count.max(1))
             .clamp(LEAST_PACKED, MOST_QUERIES)
-            .min(self.q.count.div_ceil(least))
+            .min(self.q.count.div_ceil(min_pieces))
             .max(1)
     }
 }
@@ -233,25 +238,25 @@ impl CustomOp3 for CpuAttention<'_> {
         v: &CpuStorage,
         v_layout: &Layout,
     ) -> Result<(CpuStorage, Shape)> {
-        let of = AttentionInputs {
+        let inputs = AttentionInputs {
             q: StridedRows::new(q, q_layout)?,
             k: StridedRows::new(k, k_layout)?,
             v: StridedRows::new(v, v_layout)?,
         };
-        let AttentionInputs { q, k, v } = &of;
+        let AttentionInputs { q, k, v } = &inputs;
         let fit = k.batch == q.batch && v.batch == q.batch && v.count == k.count && k.width == q.width;
         if !fit || k.count == 0 || v.width < self.heads {
             bail!("queries {:?}, keys {:?} and values {:?} do not fit together", q_layout, k_layout, v_layout);
         }
         let mut mixed = vec![0.0; q.batch * q.count * v.width];
-        let queries = of.at_a_time();
-        let packed = self.pack_heads(&of, queries)?;
+        let queries = inputs.at_a_time();
+        let packed = self.pack_heads(&inputs, queries)?;
         let batches = mixed.par_chunks_mut((q.count * v.width).max(1)).enumerate();
         let pieces = batches.flat_map(|(batch, mixed)| {
             let pieces = mixed.par_chunks_mut(queries * v.width).with_max_len(1).enumerate();
             pieces.map(move |(at, mixed)| (batch, at * queries, mixed))
         });
-        pieces.try_for_each(|(batch, from, mixed)| self.attend_piece(&of, &packed, batch, from, mixed))?;
+        pieces.try_for_each(|(batch, from, mixed)| self.attend_piece(&inputs, &packed, batch, from, mixed))?;
         Ok((CpuStorage::F32(mixed), (q.batch, q.count, v.width).into()))
     }
 }

@@ -30,6 +30,7 @@ pub(crate) struct FeatureMap {
 
 /// A convolution of 3 x 3 with a padding of 1.
 pub(crate) struct Conv3Layer {
+    /// The kernel as a layer from the taps of a position, side by side, to its outputs.
     linear: LinearLayer,
     inputs: usize,
     outputs: usize,
@@ -57,7 +58,8 @@ impl FeatureMap {
 }
 
 impl TapOffsets {
-    /// Reads offsets and masks from a map of [`OFFSET_NUMBERS_PER_POSITION`] channels. A sigmoid brings the masks between 0 and 1.
+    /// Reads offsets and masks from a map of [`OFFSET_NUMBERS_PER_POSITION`] channels. A sigmoid brings the masks
+    /// between 0 and 1.
     pub(crate) fn new(map: &FeatureMap) -> Result<Self> {
         let mut numbers = map.x.to_dtype(candle_core::DType::F32)?.flatten_all()?.to_vec1::<f32>()?;
         for masks in numbers.chunks_exact_mut(OFFSET_NUMBERS_PER_POSITION).map(|row| &mut row[2 * KERNEL_TAPS..]) {
@@ -100,7 +102,7 @@ impl Conv3Layer {
         Ok(Self { linear: linear.map_err(|error| weights.tensor_error("weight", &error))?, inputs, outputs })
     }
 
-    /// The plain convolution.
+    /// The plain convolution. Each tap reads one position, so only the first of its four corners is used.
     pub(crate) fn convolve_plain(&self, map: &FeatureMap, stride: usize) -> Result<FeatureMap> {
         let (height, width) = map.size_after(stride);
         let corners = |position: usize, tap: usize| {
@@ -138,12 +140,12 @@ impl Conv3Layer {
             let x = self.linear.apply_to(&on_device(map, count, used, corners)?)?;
             return Ok(FeatureMap { x, height, width });
         }
-        let (inputs, row) = (self.inputs, KERNEL_TAPS * self.inputs);
+        let (inputs, taps_length) = (self.inputs, KERNEL_TAPS * self.inputs);
         let mut y = vec![0.0; count * self.outputs];
         with_numbers(&map.x, |x| {
             each_tile(&mut y, self.outputs, |from, y, memory| {
-                let [taps] = split_memory(memory, [y.len() / self.outputs * row]);
-                for (at, taps) in taps.chunks_exact_mut(row).enumerate() {
+                let [taps] = split_memory(memory, [y.len() / self.outputs * taps_length]);
+                for (at, taps) in taps.chunks_exact_mut(taps_length).enumerate() {
                     for (tap, into) in taps.chunks_exact_mut(inputs).enumerate() {
                         mix_rows(x, inputs, &corners(from + at, tap)[..used], into);
                     }
@@ -181,7 +183,7 @@ fn corners_around(y: f32, x: f32, mask: f32, map: &FeatureMap) -> TapCorners {
     ]
 }
 
-/// Writes the weighted sum of rows of x.
+/// Writes the weighted sum of rows of x, of `width` numbers each: of four rows, or of one with the weight 1 or 0.
 pub(crate) fn mix_rows(x: &[f32], width: usize, corners: &[(usize, f32)], into: &mut [f32]) {
     let row = |at: usize| &x[corners[at].0 * width..(corners[at].0 + 1) * width];
     match corners {

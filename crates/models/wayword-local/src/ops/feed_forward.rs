@@ -11,14 +11,19 @@ use candle_core::{CpuStorage, CustomOp1, Layout, Result, Shape, Tensor, bail};
 /// Computes `x + narrow(activation(wide(x)))`. With `before`, the input of the wide layer is normalised; with `after`,
 /// the sum is.
 pub(crate) struct FeedForward<'a> {
+    /// The norm of the input of the wide layer.
     pub(crate) before: Option<&'a LayerNorm>,
+    /// From the width of x to the inner width, which is larger.
     pub(crate) wide: &'a LinearLayer,
     pub(crate) activation: Activation,
+    /// From the inner width back to the width of x.
     pub(crate) narrow: &'a LinearLayer,
+    /// The norm of the sum.
     pub(crate) after: Option<&'a LayerNorm>,
 }
 
 impl FeedForward<'_> {
+    /// The output for x [.., size].
     pub(crate) fn apply_to(&self, x: &Tensor) -> Result<Tensor> {
         match (self.wide.packed_matrix(), self.narrow.packed_matrix()) {
             (Some(_), Some(_)) if is_ours(x) => x.contiguous()?.apply_op1_no_bwd(self),
@@ -38,17 +43,17 @@ impl FeedForward<'_> {
         x: &[f32],
         y: &mut [f32],
     ) -> Result<()> {
-        let inner = y.len() / self.narrow.output_count().max(1) * self.wide.output_count();
-        with_spare(inner, |thought| {
+        let inner_count = y.len() / self.narrow.output_count().max(1) * self.wide.output_count();
+        with_spare(inner_count, |inner_states| {
             match self.before {
-                None => wide.multiply_rows(x, biases[0], thought, false)?,
+                None => wide.multiply_rows(x, biases[0], inner_states, false)?,
                 Some(before) => with_spare(x.len(), |normed| {
                     before.write_rows(x, normed)?;
-                    wide.multiply_rows(normed, biases[0], thought, false)
+                    wide.multiply_rows(normed, biases[0], inner_states, false)
                 })?,
             }
-            self.activation.map_on_threads(thought);
-            narrow.multiply_rows(thought, biases[1], y, true)
+            self.activation.map_on_threads(inner_states);
+            narrow.multiply_rows(inner_states, biases[1], y, true)
         })?;
         self.after.map_or(Ok(()), |after| after.replace_rows(y))
     }

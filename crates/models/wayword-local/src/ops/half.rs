@@ -16,6 +16,7 @@ pub(super) struct HalfMatrix {
     numbers: HalfNumbers,
 }
 
+/// The numbers of a matrix, row by row.
 enum HalfNumbers {
     Bf16(Vec<bf16>),
     F16(Vec<f16>),
@@ -49,12 +50,12 @@ impl HalfMatrix {
             write_product(&mut y, GemmInputA::Unpacked(x), weights, options)?;
             Ok(y)
         };
-        let froms: Vec<usize> = (0..outputs).step_by(OUTPUTS_PER_PIECE).collect();
-        let pieces: Vec<Vec<f32>> = froms.into_par_iter().map(piece).collect::<Result<_>>()?;
+        let starts: Vec<usize> = (0..outputs).step_by(OUTPUTS_PER_PIECE).collect();
+        let pieces: Vec<Vec<f32>> = starts.into_par_iter().map(piece).collect::<Result<_>>()?;
         for (row, y) in y.chunks_mut(outputs.max(1)).enumerate() {
             for (piece, y) in pieces.iter().zip(y.chunks_mut(OUTPUTS_PER_PIECE)) {
-                let wide = y.len();
-                y.copy_from_slice(&piece[row * wide..(row + 1) * wide]);
+                let width = y.len();
+                y.copy_from_slice(&piece[row * width..(row + 1) * width]);
             }
         }
         Ok(())
@@ -67,6 +68,7 @@ impl HalfMatrix {
         }
     }
 
+    /// Writes the numbers from index `from` on as 32 bits.
     fn widen_into(&self, from: usize, into: &mut [f32]) {
         match &self.numbers {
             HalfNumbers::Bf16(numbers) => numbers[from..from + into.len()].convert_to_f32_slice(into),

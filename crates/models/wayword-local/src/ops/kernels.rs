@@ -9,7 +9,7 @@ thread_local! {
     static KERNELS: GemmExecutor = GemmExecutor::default();
 }
 
-/// Options of a product.
+/// Options of a product `alpha * a b + beta * y + bias`.
 pub(crate) type ProductOptions<'a> = GemmOptions<'a, f32, f32, f32>;
 
 /// Writes the matrix product of a and b into y, on all threads.
@@ -52,7 +52,8 @@ pub(super) fn row_shape(layout: &Layout) -> Result<(usize, usize)> {
     Ok((others.iter().product(), last))
 }
 
-/// Whether this crate's own operators take a tensor: 32 bits on the CPU. For all others candle's operators are used.
+/// Whether this crate's own operators can compute with a tensor: 32 bits on the CPU. For all others candle's operators
+/// are used.
 pub(crate) fn is_ours(tensor: &Tensor) -> bool {
     tensor.device().is_cpu() && tensor.dtype() == candle_core::DType::F32
 }

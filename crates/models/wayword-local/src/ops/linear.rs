@@ -40,8 +40,8 @@ impl LinearLayer {
         } else {
             LinearMatrix::Half(HalfMatrix::new(weight)?)
         };
-        let on_processor = !matches!(matrix, LinearMatrix::Plain(_));
-        let bias = bias.map(|bias| if on_processor { bias.to_dtype(DType::F32) } else { Ok(bias) }).transpose()?;
+        let on_cpu = !matches!(matrix, LinearMatrix::Plain(_));
+        let bias = bias.map(|bias| if on_cpu { bias.to_dtype(DType::F32) } else { Ok(bias) }).transpose()?;
         Ok(Self { matrix, bias, outputs })
     }
 
@@ -78,6 +78,7 @@ impl LinearLayer {
         after.apply_to(&self.apply_onto(x, y)?)
     }
 
+    /// The layer's output for x, with a norm before the layer and an activation after it.
     fn apply_with(&self, x: &Tensor, norm: Option<&LayerNorm>, activation: Option<Activation>) -> Result<Tensor> {
         match (&self.matrix, norm) {
             (LinearMatrix::Packed(_), _) | (LinearMatrix::Half(_), None) => {
@@ -102,15 +103,16 @@ impl LinearLayer {
         self.write_or_add(x, y, true)
     }
 
+    /// Writes the layer's output for the rows of x into y, or adds it to y if `adds`.
     fn write_or_add(&self, x: &[f32], y: &mut [f32], adds: bool) -> Result<()> {
         let inputs = x.len() / (y.len() / self.outputs.max(1)).max(1);
         self.with_bias(|bias| match &self.matrix {
             LinearMatrix::Packed(packed) => packed.multiply_rows(x, bias, y, adds),
             LinearMatrix::Half(half) if !adds => half.multiply_rows(x, inputs, bias, y),
             LinearMatrix::Half(half) => {
-                let mut more = vec![0.0; y.len()];
-                half.multiply_rows(x, inputs, bias, &mut more)?;
-                y.iter_mut().zip(more).for_each(|(y, more)| *y += more);
+                let mut product = vec![0.0; y.len()];
+                half.multiply_rows(x, inputs, bias, &mut product)?;
+                y.iter_mut().zip(product).for_each(|(y, product)| *y += product);
                 Ok(())
             }
             LinearMatrix::Plain(_) => bail!("candle computes this product"),

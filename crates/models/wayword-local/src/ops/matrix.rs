@@ -38,6 +38,7 @@ pub(crate) fn plus_times(x: &Tensor, a: &Tensor, b: &Tensor, bias: Option<&Tenso
     Tensor::from_vec(y, x.shape(), x.device())
 }
 
+/// Writes the product of a [rows, inner] and b [inner, columns] into y.
 fn multiply_into(y: &mut [f32], a: &Tensor, b: &Tensor, options: ProductOptions<'_>) -> Result<()> {
     let ((rows, inner), (b_inner, columns)) = (a.dims2()?, b.dims2()?);
     if inner != b_inner {
@@ -45,9 +46,9 @@ fn multiply_into(y: &mut [f32], a: &Tensor, b: &Tensor, options: ProductOptions<
     }
     // A transposed view is read in the order in which its memory lies, without a copy.
     let is_turned = b.t()?.is_contiguous() && !b.is_contiguous();
-    let lies = if is_turned { b.t()? } else { b.contiguous()? };
+    let stored = if is_turned { b.t()? } else { b.contiguous()? };
     with_numbers(a, |a| {
-        with_numbers(&lies, |b| {
+        with_numbers(&stored, |b| {
             let a = GemmInputA::Unpacked(NdTensorView::from_data([rows, inner], a));
             let b = match is_turned {
                 true => NdTensorView::from_data([columns, inner], b).transposed(),

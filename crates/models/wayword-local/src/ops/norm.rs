@@ -69,6 +69,7 @@ fn to_processor_precision(weight: Tensor) -> Tensor {
     if weight.device().is_cpu() { weight.to_dtype(candle_core::DType::F32).unwrap_or(weight) } else { weight }
 }
 
+/// [`LayerNorm`] on the CPU, as an operator of candle. It holds the epsilon, which is added to variances.
 struct RowStandardiser(f64);
 
 impl RowStandardiser {
@@ -108,6 +109,7 @@ impl CustomOp3 for RowStandardiser {
     }
 }
 
+/// [`RmsNorm`] on the CPU, as an operator of candle. It holds the epsilon, which is added to mean squares.
 struct RootMeanSquare(f64);
 
 impl CustomOp2 for RootMeanSquare {

@@ -72,7 +72,7 @@ impl PackedMatrix {
     }
 }
 
-/// The number of columns of a piece.
+/// The number of columns of a piece, so that all threads have work until the end.
 fn at_a_time(outputs: usize, threads: usize) -> usize {
     let pieces = outputs.div_ceil(threads * MAX_COLUMNS_PER_THREAD);
     if threads < 2 || pieces < 2 {

@@ -16,7 +16,7 @@ const MAX_ROWS_PER_THREAD: usize = 144;
 const KERNEL_TILE_ROWS: usize = 6;
 
 thread_local! {
-    /// Memory from earlier computations, to be used again.
+    /// Memory from earlier computations of this thread, to be used again.
     static SPARE: RefCell<Vec<Vec<f32>>> = const { RefCell::new(Vec::new()) };
 }
 

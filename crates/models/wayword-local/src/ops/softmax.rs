@@ -13,6 +13,7 @@ pub(super) fn replace_by_exponentials(scores: &mut [f32]) -> f32 {
     ExponentialsOp(scores).dispatch()
 }
 
+/// [`replace_by_exponentials`] in the vector instructions of any CPU.
 struct ExponentialsOp<'a>(&'a mut [f32]);
 
 impl SimdOp for ExponentialsOp<'_> {
@@ -27,14 +28,14 @@ impl SimdOp for ExponentialsOp<'_> {
         // The number of last scores, which do not fill a vector.
         let rest = self.0.len() % ops.len();
         let largest = self.0[self.0.len() - rest..].iter().copied().fold(largest, f32::max);
-        let (least, exp) = (ops.splat(largest), Exp {});
+        let (largest_in_lanes, exp) = (ops.splat(largest), Exp {});
         let (mut sum, mut before) = (ops.zero(), ops.zero());
         simd_map(
             ops,
             self.0,
             #[inline(always)]
             |score| {
-                let share = exp.eval(isa, ops.sub(score, least));
+                let share = exp.eval(isa, ops.sub(score, largest_in_lanes));
                 before = sum;
                 sum = ops.add(sum, share);
                 share

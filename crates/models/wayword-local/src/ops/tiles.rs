@@ -6,8 +6,8 @@ use rayon::prelude::*;
 /// The most rows of a tile: as many as the kernels take at a time.
 pub(crate) const TILE_ROWS: usize = 64;
 
-/// Calls `tile` for each tile of y, a tensor with rows of `width` numbers, on all threads. It gets the number of the
-/// tile's first row, the rows, and memory to work in, which contains leftovers of other tiles.
+/// Calls `tile` for each tile of y, a tensor with rows of `width` numbers, on all threads. `tile` gets the number of
+/// the first row, the rows, and memory to work in, which contains leftovers of other tiles.
 pub(crate) fn each_tile(
     y: &mut [f32],
     width: usize,
@@ -15,9 +15,9 @@ pub(crate) fn each_tile(
 ) -> Result<()> {
     // If there are few rows, smaller tiles give every thread some.
     let rows = y.len() / width.max(1);
-    let even = rows.div_ceil(rayon::current_num_threads()).next_multiple_of(8);
-    let tiles = y.par_chunks_mut(width.max(1) * even.min(TILE_ROWS)).enumerate();
-    tiles.try_for_each_init(Vec::new, |memory, (at, y)| tile(at * even.min(TILE_ROWS), y, memory))
+    let rows_per_thread = rows.div_ceil(rayon::current_num_threads()).next_multiple_of(8);
+    let tiles = y.par_chunks_mut(width.max(1) * rows_per_thread.min(TILE_ROWS)).enumerate();
+    tiles.try_for_each_init(Vec::new, |memory, (at, y)| tile(at * rows_per_thread.min(TILE_ROWS), y, memory))
 }
 
 /// Splits memory into parts of these lengths. The memory grows if necessary.

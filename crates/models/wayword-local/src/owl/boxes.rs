@@ -2,7 +2,8 @@
 
 use wayword_core::{DetectedBox, MOST_BOXES, without_overlaps};
 
-/// The lowest score of a box that is reported. The examples of transformers count a box as a find from 0.1.
+/// The lowest score of a box that is reported; others are dropped. The examples of transformers count a box as a find
+/// from 0.1.
 const LEAST_SCORE: f32 = 0.01;
 
 /// A box that overlaps with a better one by more than this share of their union counts as the same box. transformers
@@ -15,7 +16,7 @@ const SAME_BOX_OVERLAP: f64 = 0.7;
 pub(super) fn boxes_from_logits(logits: &[f32], boxes: &[[f32; 4]], (width, height): (u32, u32)) -> Vec<DetectedBox> {
     let (width, height) = (width as f32, height as f32);
     let edge = width.max(height);
-    let one = |(&logit, &[x, y, across, down]): (&f32, &[f32; 4])| {
+    let picture_box = |(&logit, &[x, y, across, down]): (&f32, &[f32; 4])| {
         let score = 1.0 / (1.0 + (-logit).exp());
         let (left, right) = ((x - across / 2.0) * edge, (x + across / 2.0) * edge);
         let (top, bottom) = ((y - down / 2.0) * edge, (y + down / 2.0) * edge);
@@ -24,7 +25,7 @@ pub(super) fn boxes_from_logits(logits: &[f32], boxes: &[[f32; 4]], (width, heig
         let is_there = box_px[2] > box_px[0] && box_px[3] > box_px[1];
         (score >= LEAST_SCORE && is_there).then_some(DetectedBox { box_px, score })
     };
-    let mut all: Vec<DetectedBox> = logits.iter().zip(boxes).filter_map(one).collect();
+    let mut all: Vec<DetectedBox> = logits.iter().zip(boxes).filter_map(picture_box).collect();
     all.sort_by(|a, b| b.score.total_cmp(&a.score));
     without_overlaps(all, SAME_BOX_OVERLAP).take(MOST_BOXES).collect()
 }

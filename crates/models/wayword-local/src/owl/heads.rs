@@ -8,13 +8,17 @@ use crate::{
 };
 use candle_core::{DType, Device, Result, Tensor};
 
-/// Keeps divisions by a length (the first), and logarithms of a share (the second) finite.
+/// Small numbers that are added to a length before a division by it (the first), and to a share before its logarithm
+/// (the second), so that the result is finite.
 const LENGTH_AND_LOGIT_EPSILONS: (f64, f64) = (1e-6, 1e-4);
 
 /// Gives each patch a class.
 pub(super) struct ClassHead {
+    /// Computes the class vector, before it is scaled to length 1.
     class: LinearLayer,
+    /// Computes the number that is added to a product with a text's vector.
     shift: LinearLayer,
+    /// Computes the factor for the sum.
     scale: LinearLayer,
 }
 
@@ -38,16 +42,16 @@ pub(super) struct PatchClasses {
 }
 
 impl ClassHead {
-    /// Reads the head. `seen` is the width of the vision tower, and `said` that of the text tower.
+    /// Reads the head. The widths are those of the states of the two towers.
     pub(super) fn from_weights(
         weights: &WeightScope<'_>,
-        seen: usize,
-        said: usize,
+        vision_width: usize,
+        text_width: usize,
     ) -> std::result::Result<Self, LocalError> {
         Ok(Self {
-            class: weights.read_linear("dense0", seen, said)?,
-            shift: weights.read_linear("logit_shift", seen, 1)?,
-            scale: weights.read_linear("logit_scale", seen, 1)?,
+            class: weights.read_linear("dense0", vision_width, text_width)?,
+            shift: weights.read_linear("logit_shift", vision_width, 1)?,
+            scale: weights.read_linear("logit_scale", vision_width, 1)?,
         })
     }
 
@@ -69,12 +73,12 @@ impl ClassHead {
 impl PatchClasses {
     /// The logit of each patch for each text's unit vector [texts, size]: one list per text.
     pub(super) fn text_logits(&self, texts: &Tensor) -> Result<Vec<Vec<f32>>> {
-        let alike = texts.matmul(&self.vectors.t()?)?.to_vec2::<f32>()?;
+        let similarity = texts.matmul(&self.vectors.t()?)?.to_vec2::<f32>()?;
         let logits = |row: Vec<f32>| {
             let patches = row.iter().zip(&self.shifts).zip(&self.scales);
-            patches.map(|((alike, shift), scale)| (alike + shift) * scale).collect()
+            patches.map(|((similarity, shift), scale)| (similarity + shift) * scale).collect()
         };
-        Ok(alike.into_iter().map(logits).collect())
+        Ok(similarity.into_iter().map(logits).collect())
     }
 }
 

@@ -10,5 +10,5 @@ mod picture;
 
 pub use model::{OwlDetector, OwlOutputs};
 
-/// The most memory for the features of recent pictures, bytes.
+/// The most memory for the features of recent pictures, bytes. The oldest are dropped beyond this.
 pub(crate) const KEPT_BYTES: usize = 256 << 20;

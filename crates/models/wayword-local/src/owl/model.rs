@@ -1,4 +1,4 @@
-//! A whole OWLv2 as a [`ObjectDetector`]: from a picture and phrases to boxes with scores.
+//! A whole OWLv2 as an [`ObjectDetector`]: from a picture and phrases to boxes with scores.
 
 use super::{
     KEPT_BYTES,
@@ -21,7 +21,7 @@ use wayword_core::{DetectedBox, DetectorScoring, Image, ModelError, ObjectDetect
 /// The number of texts that are computed together.
 const TEXTS_PER_BATCH: usize = 32;
 
-/// The number of texts for which vectors are kept, about 2 kB each.
+/// The most texts for which vectors are kept, about 2 kB each.
 const KEPT_TEXTS: usize = 4 << 10;
 
 /// OWLv2. The features of recent pictures are kept, in at most 256 MiB, and the vectors of recent texts.
@@ -35,11 +35,14 @@ pub struct OwlDetector {
     patch_norm: LayerNorm,
     classes: ClassHead,
     boxes: BoxHead,
+    /// The width and height to which pictures are resized, pixels.
     edge: usize,
     /// The most tokens of a text.
     longest: usize,
     device: ModelDevice,
+    /// The features of recent pictures, by the hash of the picture.
     seen: RecentCache<[u8; 32], OwlPictureFeatures>,
+    /// The unit vectors of recent texts.
     said: RecentCache<String, Tensor>,
 }
 
@@ -73,11 +76,14 @@ impl OwlDetector {
     ) -> Result<Self, LocalError> {
         let config = TowersConfig::from_folder(folder, TowerFamily::Owl)?;
         let (vision, text) = (&config.vision, &config.text);
-        let (seen, said) = (vision.layers.hidden_size, text.layers.hidden_size);
-        if config.projection_dim != said {
+        let (vision_width, text_width) = (vision.layers.hidden_size, text.layers.hidden_size);
+        if config.projection_dim != text_width {
             return Err(LocalError::File {
                 file: folder.join("config.json"),
-                problem: format!("projection_dim: {} is not text_config.hidden_size, {said}", config.projection_dim),
+                problem: format!(
+                    "projection_dim: {} is not text_config.hidden_size, {text_width}",
+                    config.projection_dim
+                ),
                 hint: "choose an OWLv2 model, such as hf/google/owlv2-base-patch16-ensemble",
             });
         }
@@ -86,17 +92,17 @@ impl OwlDetector {
         let weights = CheckpointWeights::open(folder, device, precision)?;
         let (all, side) = (weights.scope_under(""), vision.image_size / vision.patch_size);
         // Each patch has a class vector, a shift and a scale, and the four numbers of a box.
-        let picture_bytes = side * side * (said + 6) * size_of::<f32>();
+        let picture_bytes = side * side * (text_width + 6) * size_of::<f32>();
         Ok(Self {
             name: name.to_owned(),
             processor,
             tokenizer,
             vision: VisionTower::from_weights(&weights.scope_under("owlv2.vision_model"), vision, "pre_layernorm")?,
             text: TextTower::from_weights(&weights.scope_under("owlv2.text_model"), text)?,
-            text_projection: all.read_linear("owlv2.text_projection", said, said)?,
-            patch_norm: all.layer_norm("layer_norm", seen, vision.layers.layer_norm_eps)?,
-            classes: ClassHead::from_weights(&weights.scope_under("class_head"), seen, said)?,
-            boxes: BoxHead::from_weights(&weights.scope_under("box_head"), seen, side, &device.0)?,
+            text_projection: all.read_linear("owlv2.text_projection", text_width, text_width)?,
+            patch_norm: all.layer_norm("layer_norm", vision_width, vision.layers.layer_norm_eps)?,
+            classes: ClassHead::from_weights(&weights.scope_under("class_head"), vision_width, text_width)?,
+            boxes: BoxHead::from_weights(&weights.scope_under("box_head"), vision_width, side, &device.0)?,
             edge: vision.image_size,
             longest: text.max_position_embeddings,
             device: device.clone(),
@@ -116,8 +122,8 @@ impl OwlDetector {
     /// # Errors
     /// When the picture has no pixels, or the computation fails.
     pub fn raw_outputs(&self, image: &Image, texts: &[&str]) -> Result<OwlOutputs, LocalError> {
-        let seen = self.picture_features(image)?;
-        Ok(OwlOutputs { logits: self.text_logits(&seen, texts)?, boxes: seen.boxes.clone() })
+        let features = self.picture_features(image)?;
+        Ok(OwlOutputs { logits: self.text_logits(&features, texts)?, boxes: features.boxes.clone() })
     }
 
     /// Finds phrases in a picture: for each phrase its boxes, the best first.
@@ -125,20 +131,21 @@ impl OwlDetector {
     /// # Errors
     /// When the picture has no pixels, or the computation fails.
     pub fn find_phrases(&self, image: &Image, phrases: &[&str]) -> Result<Vec<Vec<DetectedBox>>, LocalError> {
-        let seen = self.picture_features(image)?;
+        let features = self.picture_features(image)?;
         let texts: Vec<String> = phrases.iter().map(|phrase| photo_prompt(phrase)).collect();
-        let logits = self.text_logits(&seen, &texts.iter().map(String::as_str).collect::<Vec<_>>())?;
+        let logits = self.text_logits(&features, &texts.iter().map(String::as_str).collect::<Vec<_>>())?;
         let size = (image.width_px(), image.height_px());
-        Ok(logits.iter().map(|logits| boxes_from_logits(logits, &seen.boxes, size)).collect())
+        Ok(logits.iter().map(|logits| boxes_from_logits(logits, &features.boxes, size)).collect())
     }
 
-    fn text_logits(&self, seen: &OwlPictureFeatures, texts: &[&str]) -> Result<Vec<Vec<f32>>, LocalError> {
+    /// For each text the logit of each patch.
+    fn text_logits(&self, features: &OwlPictureFeatures, texts: &[&str]) -> Result<Vec<Vec<f32>>, LocalError> {
         if texts.is_empty() {
             return Ok(Vec::new());
         }
-        let said = self.text_vectors(texts)?;
-        let vectors: Vec<&Tensor> = said.iter().map(|vector| &**vector).collect();
-        let logits = Tensor::stack(&vectors, 0).and_then(|texts| seen.classes.text_logits(&texts));
+        let cached = self.text_vectors(texts)?;
+        let vectors: Vec<&Tensor> = cached.iter().map(|vector| &**vector).collect();
+        let logits = Tensor::stack(&vectors, 0).and_then(|texts| features.classes.text_logits(&texts));
         logits.map_err(|error| LocalError::compute_failed(&self.name, &error))
     }
 
@@ -210,12 +217,12 @@ impl ObjectDetector for OwlDetector {
     }
 
     fn detect_phrases(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<Vec<DetectedBox>>, ModelError>> {
-        let one = |view: &&View| {
+        let detect_one = |view: &&View| {
             let image = picture_of_view(view, &self.name)?;
             let failed = |error: LocalError| ModelError::Failed { model: self.name.clone(), reason: error.to_string() };
             self.find_phrases(image, phrases).map_err(failed)
         };
-        views.iter().map(one).collect()
+        views.iter().map(detect_one).collect()
     }
 }
 

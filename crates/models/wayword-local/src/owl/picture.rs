@@ -3,8 +3,8 @@
 //! The steps of the original: black is added at the right or at the bottom, so that the picture becomes a square. (Up
 //! to version 4 transformers added grey.) A square that is larger than the model's is blurred first. The blur is a
 //! Gaussian with a deviation of `(scale - 1) / 2` pixels, and mirrors the picture at its edges. Then each new pixel is
-//! interpolated between the two nearest ones on each axis. All these steps are linear. So here each new pixel of an axis
-//! has one list of weights, a window, and the black is never stored.
+//! interpolated between the two nearest ones on each axis. All these steps are linear. So here each new pixel of an
+//! axis has one list of weights, a window, and the black is never stored.
 
 use crate::{LocalError, ModelDevice, json};
 use candle_core::Tensor;
@@ -43,6 +43,7 @@ struct OwlPictureConfig {
     image_std: Option<[f64; 3]>,
 }
 
+/// The size to which pictures are resized, pixels.
 #[derive(Deserialize)]
 struct OwlPictureSize {
     height: usize,
@@ -51,6 +52,7 @@ struct OwlPictureSize {
 
 /// The old pixels and their weights for one new pixel.
 struct OwlPixelWindow {
+    /// The first old pixel.
     start: usize,
     weights: Vec<f32>,
 }
@@ -99,11 +101,11 @@ impl OwlPictureProcessor {
 
     /// Resizes a row of pixels. The result has all of its red, then green, then blue.
     fn resize_row(&self, row: &[u8], windows: &[OwlPixelWindow]) -> Vec<f32> {
-        let one = |colour: usize, window: &OwlPixelWindow| {
+        let mix_window = |colour: usize, window: &OwlPixelWindow| {
             let old = row[window.start * 3..].chunks_exact(3).zip(&window.weights);
             old.fold(0.0, |sum, (pixel, weight)| sum + self.scaled[usize::from(pixel[colour])] * weight)
         };
-        (0..3).flat_map(|colour| windows.iter().map(move |window| one(colour, window))).collect()
+        (0..3).flat_map(|colour| windows.iter().map(move |window| mix_window(colour, window))).collect()
     }
 }
 
@@ -143,12 +145,12 @@ impl OwlPictureConfig {
     }
 }
 
-/// One window for each of `to` new pixels of an axis of `from` old ones. Only the first `seen` old pixels are the
+/// One window for each of `to` new pixels of an axis of `from` old ones. Only the first `visible` old pixels are the
 /// picture's, the others are black.
-fn pixel_windows(from: usize, to: usize, seen: usize) -> Vec<OwlPixelWindow> {
+fn pixel_windows(from: usize, to: usize, visible: usize) -> Vec<OwlPixelWindow> {
     let scale = from as f64 / to as f64;
     let blur = gaussian_half((scale - 1.0) / 2.0);
-    (0..to).map(|at| pixel_window(at, from, scale, &blur, seen)).collect()
+    (0..to).map(|at| pixel_window(at, from, scale, &blur, visible)).collect()
 }
 
 /// The weights of a Gaussian from its middle outwards. A single 1 if `sigma` is 0, and there is no blur.
@@ -160,7 +162,8 @@ fn gaussian_half(sigma: f64) -> Vec<f64> {
     half.iter().map(|weight| weight / sum).collect()
 }
 
-fn pixel_window(at: usize, from: usize, scale: f64, blur: &[f64], seen: usize) -> OwlPixelWindow {
+/// The window of new pixel `at` on an axis of `from` old pixels. `scale` is the number of old pixels for a new one.
+fn pixel_window(at: usize, from: usize, scale: f64, blur: &[f64], visible: usize) -> OwlPixelWindow {
     // Computed in 32 bits, as in PyTorch. Far from the corner the rounding is visible.
     let centre = ((at as f32 + 0.5) * scale as f32 - 0.5).max(0.0);
     let first = (centre as usize).min(from - 1);
@@ -177,8 +180,8 @@ fn pixel_window(at: usize, from: usize, scale: f64, blur: &[f64], seen: usize) -
             }
         }
     }
-    weights.truncate(seen.saturating_sub(start));
-    OwlPixelWindow { start: start.min(seen), weights: weights.into_iter().map(|weight| weight as f32).collect() }
+    weights.truncate(visible.saturating_sub(start));
+    OwlPixelWindow { start: start.min(visible), weights: weights.into_iter().map(|weight| weight as f32).collect() }
 }
 
 /// The pixel that a position beyond an edge mirrors. The pixel at the edge is not repeated.

@@ -7,7 +7,7 @@ use std::path::Path;
 
 const PREPROCESSOR_FILE: &str = "preprocessor_config.json";
 
-/// Longest edge of a picture for a model, pixels.
+/// The longest edge of a picture that a configuration may ask for, pixels. A longer one is refused.
 const LONGEST_EDGE: usize = 2048;
 
 /// OpenAI's means and standard deviations of red, green and blue, which CLIP and BLIP share.
@@ -35,8 +35,11 @@ pub(super) struct PictureConfig {
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(untagged)]
 enum ResizeEdges {
+    /// Both edges, pixels.
     Both { height: usize, width: usize },
+    /// The shorter edge, pixels.
     Shortest { shortest_edge: usize },
+    /// A single number of pixels: CLIP's shorter edge, or both edges of BLIP.
     One(usize),
 }
 
@@ -62,11 +65,11 @@ impl PictureConfig {
     }
 
     fn build_processor(&self) -> Result<PictureProcessor, String> {
-        let maker = self.processor_family()?;
+        let family = self.processor_family()?;
         if self.do_resize == Some(false) {
             return Err("do_resize: pictures that are not resized are not supported".to_owned());
         }
-        let (size, (height_px, width_px)) = self.resize_rule(maker)?;
+        let (size, (height_px, width_px)) = self.resize_rule(family)?;
         let filter = match self.resample.unwrap_or(3) {
             2 => ResampleFilter::Bilinear,
             3 => ResampleFilter::Bicubic,
@@ -86,17 +89,17 @@ impl PictureConfig {
     }
 
     /// The rule for resizing, and the height and width of the output.
-    fn resize_rule(&self, maker: ProcessorFamily) -> Result<(ResizeRule, (usize, usize)), String> {
-        let size = self.size.unwrap_or(match maker {
+    fn resize_rule(&self, family: ProcessorFamily) -> Result<(ResizeRule, (usize, usize)), String> {
+        let size = self.size.unwrap_or(match family {
             ProcessorFamily::Clip => ResizeEdges::Shortest { shortest_edge: 224 },
             ProcessorFamily::Blip => ResizeEdges::Both { height: 384, width: 384 },
         });
-        let size = match (size, maker) {
+        let size = match (size, family) {
             (ResizeEdges::One(edge), ProcessorFamily::Clip) => ResizeEdges::Shortest { shortest_edge: edge },
             (ResizeEdges::One(edge), ProcessorFamily::Blip) => ResizeEdges::Both { height: edge, width: edge },
             (size, _) => size,
         };
-        let crops = self.do_center_crop.unwrap_or(maker == ProcessorFamily::Clip);
+        let crops = self.do_center_crop.unwrap_or(family == ProcessorFamily::Clip);
         let crop = match self.crop_size.unwrap_or(ResizeEdges::One(224)) {
             _ if !crops => None,
             ResizeEdges::One(edge) | ResizeEdges::Shortest { shortest_edge: edge } => Some((edge, edge)),

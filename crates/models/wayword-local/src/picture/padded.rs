@@ -6,13 +6,16 @@ use crate::{LocalError, ModelDevice};
 use candle_core::Tensor;
 use wayword_core::Image;
 
-/// The largest edges that are accepted, pixels.
+/// The longest edge that may be asked for, pixels. A longer one is refused.
 const MAX_EDGE_PX: usize = 4096;
 
 /// Prepares pictures of any proportions, without cropping.
 pub(crate) struct PaddedPictureProcessor {
+    /// The length of the shorter edge, pixels.
     short: usize,
+    /// The most for the longer edge, pixels.
     long: usize,
+    /// Both edges are padded to multiples of this, pixels.
     multiple: usize,
     /// The colour (0 is red) of each channel, and the model's input for each value of its byte.
     channels: [(usize, [f32; 256]); 3],

@@ -35,7 +35,9 @@ pub(crate) struct ResampleAxis {
 
 /// The old pixels and their weights for one new pixel.
 struct ResampleWindow {
+    /// The first old pixel.
     start: usize,
+    /// The weights of the old pixels, in units of 2 to the power of -[`WEIGHT_FRACTION_BITS`].
     weights: Vec<i32>,
 }
 
@@ -48,6 +50,7 @@ impl ResampleFilter {
         }
     }
 
+    /// The weight of an old pixel at a distance from the new one.
     fn weight_at(self, at: f64) -> f64 {
         const BICUBIC_A: f64 = -0.5;
         let at = at.abs();
@@ -73,11 +76,11 @@ impl ResampleFilter {
         let shares: Vec<f64> =
             (start..end).map(|pixel| self.weight_at((pixel as f64 - centre + 0.5) * (1.0 / stretch))).collect();
         let sum: f64 = shares.iter().sum();
-        let whole = |share: &f64| {
+        let to_fixed_point = |share: &f64| {
             let share = if sum == 0.0 { *share } else { share / sum } * f64::from(1 << WEIGHT_FRACTION_BITS);
             (if share < 0.0 { share - 0.5 } else { share + 0.5 }) as i32
         };
-        ResampleWindow { start, weights: shares.iter().map(whole).collect() }
+        ResampleWindow { start, weights: shares.iter().map(to_fixed_point).collect() }
     }
 }
 
@@ -104,21 +107,22 @@ impl ResampleAxis {
 
 /// Resizes a picture of 3 bytes per pixel, rows from the top.
 pub(crate) fn resample_picture(rgb: &[u8], down: &ResampleAxis, across: &ResampleAxis) -> Vec<u8> {
-    let seen = down.source_range();
+    let source_rows = down.source_range();
     let row = across.windows.len() * 3;
-    let mut narrow = vec![0; seen.len() * row];
-    let rows = rgb.chunks(across.from * 3).skip(seen.start).take(seen.len()).collect::<Vec<_>>();
+    let mut narrow = vec![0; source_rows.len() * row];
+    let rows = rgb.chunks(across.from * 3).skip(source_rows.start).take(source_rows.len()).collect::<Vec<_>>();
     narrow.par_chunks_mut(row.max(1)).zip(rows).for_each(|(to, from)| across_row(from, to, across));
-    let mut made = vec![0; down.to * across.to * 3];
-    let rows = made.par_chunks_mut(across.to * 3).skip(down.first).zip(&down.windows);
+    let mut resized = vec![0; down.to * across.to * 3];
+    let rows = resized.par_chunks_mut(across.to * 3).skip(down.first).zip(&down.windows);
     rows.for_each(|(to, window)| {
-        let from = (window.start - seen.start) * row;
+        let from = (window.start - source_rows.start) * row;
         let to = &mut to[across.first * 3..][..row];
         down_row(&narrow[from..from + window.weights.len() * row], to, window);
     });
-    made
+    resized
 }
 
+/// Resizes one row of pixels.
 fn across_row(from: &[u8], to: &mut [u8], across: &ResampleAxis) {
     for (pixel, window) in to.chunks_exact_mut(3).zip(&across.windows) {
         let mut sums = [1 << (WEIGHT_FRACTION_BITS - 1); 3];
@@ -133,6 +137,7 @@ fn across_row(from: &[u8], to: &mut [u8], across: &ResampleAxis) {
     }
 }
 
+/// Mixes the rows of a window to one new row.
 fn down_row(from: &[u8], to: &mut [u8], window: &ResampleWindow) {
     let mut sums = vec![1 << (WEIGHT_FRACTION_BITS - 1); to.len()];
     for (row, &weight) in from.chunks_exact(to.len().max(1)).zip(&window.weights) {
@@ -145,6 +150,7 @@ fn down_row(from: &[u8], to: &mut [u8], window: &ResampleWindow) {
     }
 }
 
+/// The byte for a sum of bytes times weights. The sums begin with half a unit, so that this rounds.
 fn clip_to_byte(sum: i32) -> u8 {
     (sum >> WEIGHT_FRACTION_BITS).clamp(0, 255) as u8
 }

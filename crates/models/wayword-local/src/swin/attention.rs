@@ -22,11 +22,12 @@ const HIDDEN_SCORE: f32 = -100.0;
 /// Attention within windows, with a learned bias for the distance between two places.
 pub(super) struct WindowAttention {
     heads: usize,
-    /// [heads, places, places].
+    /// The bias of each pair of places, [heads, places, places].
     bias: Tensor,
 }
 
 impl WindowAttention {
+    /// Reads the biases from the tensor `table`. `edge` is that of a window.
     pub(super) fn from_weights(
         weights: &WeightScope<'_>,
         table: &str,
@@ -60,7 +61,7 @@ impl WindowAttention {
         Tensor::from_vec(mixed, (windows.positions.len(), width), qkv.device())
     }
 
-    /// The same with candle's operators.
+    /// Like [`WindowAttention::on_processor`], with candle's operators.
     pub(super) fn on_device(&self, qkv: &Tensor, of_padding: &Tensor, windows: &MapWindows) -> Result<Tensor> {
         let width = qkv.dim(1)? / 3;
         let (count, size, device) = (windows.window_count(), windows.size, qkv.device());
@@ -70,15 +71,16 @@ impl WindowAttention {
         let all = Tensor::cat(&[qkv, &of_padding.unsqueeze(0)?.to_dtype(qkv.dtype())?], 0)?;
         let all = all.index_select(&rows, 0)?.reshape((count, size, 3 * width))?;
         let part = |at: usize| all.narrow(2, at * width, width);
-        let mut hides = vec![0.0_f32; count * size * size];
-        for (window, hides) in hides.chunks_mut(size * size).enumerate() {
+        let mut hidden_scores = vec![0.0_f32; count * size * size];
+        for (window, hidden_scores) in hidden_scores.chunks_mut(size * size).enumerate() {
             let Some(regions) = windows.regions_of(window) else { continue };
-            for (pair, hides) in hides.iter_mut().enumerate() {
-                *hides = if regions[pair / size] == regions[pair % size] { 0.0 } else { HIDDEN_SCORE };
+            for (pair, hidden_scores) in hidden_scores.iter_mut().enumerate() {
+                *hidden_scores = if regions[pair / size] == regions[pair % size] { 0.0 } else { HIDDEN_SCORE };
             }
         }
-        let hides = Tensor::from_vec(hides, (count, 1, size, size), device)?.to_dtype(self.bias.dtype())?;
-        let bias = hides.broadcast_add(&self.bias.unsqueeze(0)?)?;
+        let hidden_scores =
+            Tensor::from_vec(hidden_scores, (count, 1, size, size), device)?.to_dtype(self.bias.dtype())?;
+        let bias = hidden_scores.broadcast_add(&self.bias.unsqueeze(0)?)?;
         let scale = 1.0 / ((width / self.heads) as f32).sqrt();
         let attention = MultiHeadAttention { heads: self.heads, scale, bias: Some(&bias) };
         attention.attend_to(&part(0)?, &part(1)?, &part(2)?)?.reshape((count * size, width))
@@ -87,6 +89,7 @@ impl WindowAttention {
 
 /// The inputs of one pass over all windows.
 struct WindowPass<'a> {
+    /// Queries, keys and values of the positions, and those of padding.
     qkv: &'a [f32],
     of_padding: &'a [f32],
     bias: &'a [f32],
@@ -101,12 +104,12 @@ impl WindowPass<'_> {
         let (size, width, row) = (self.windows.size, self.width, 3 * self.width);
         let head_width = width / self.heads;
         room.resize(size * row + size * size + size * head_width, 0.0);
-        let (seen, rest) = room.split_at_mut(size * row);
-        let (scores, of_head) = rest.split_at_mut(size * size);
+        let (window_qkv, rest) = room.split_at_mut(size * row);
+        let (scores, head_states) = rest.split_at_mut(size * size);
         let positions = &self.windows.positions[window * size..(window + 1) * size];
-        for (seen, &position) in seen.chunks_exact_mut(row).zip(positions) {
+        for (window_qkv, &position) in window_qkv.chunks_exact_mut(row).zip(positions) {
             let from = position as usize * row;
-            seen.copy_from_slice(if position == MapWindows::PADDING_POSITION {
+            window_qkv.copy_from_slice(if position == MapWindows::PADDING_POSITION {
                 self.of_padding
             } else {
                 &self.qkv[from..from + row]
@@ -118,7 +121,7 @@ impl WindowPass<'_> {
             let part = |at: usize| {
                 let from = at * width + head * head_width;
                 let to = from + (size - 1) * row + head_width;
-                NdTensorView::from_data_with_strides([size, head_width], &seen[from..to], [row, 1])
+                NdTensorView::from_data_with_strides([size, head_width], &window_qkv[from..to], [row, 1])
                     .map_err(candle_core::Error::wrap)
             };
             let options = ProductOptions { alpha: scale, ..ProductOptions::default() };
@@ -126,9 +129,9 @@ impl WindowPass<'_> {
             write_product(scores, GemmInputA::Unpacked(part(0)?), keys, options)?;
             self.normalise_scores(scores, head, regions);
             let weights = GemmInputA::Unpacked(NdTensorView::from_data([size, size], &*scores));
-            write_product(of_head, weights, GemmInputB::Unpacked(part(2)?), ProductOptions::default())?;
-            for (mixed, of_head) in mixed.chunks_exact_mut(width).zip(of_head.chunks_exact(head_width)) {
-                mixed[head * head_width..(head + 1) * head_width].copy_from_slice(of_head);
+            write_product(head_states, weights, GemmInputB::Unpacked(part(2)?), ProductOptions::default())?;
+            for (mixed, head_states) in mixed.chunks_exact_mut(width).zip(head_states.chunks_exact(head_width)) {
+                mixed[head * head_width..(head + 1) * head_width].copy_from_slice(head_states);
             }
         }
         Ok(())

@@ -17,6 +17,7 @@ use crate::{
 };
 use candle_core::{Result, Tensor};
 
+/// A block: a norm and attention within windows, then a norm and two linear layers.
 pub(super) struct SwinBlock {
     mix_norm: LayerNorm,
     qkv: LinearLayer,
@@ -39,13 +40,13 @@ impl SwinBlock {
         stage: usize,
     ) -> std::result::Result<Self, LocalError> {
         let (width, epsilon) = (config.width_of(stage), config.epsilon);
-        let (inner, each) = (width * config.widening, 3 * width / names.qkv.len());
-        let biases = names.qkv.iter().map(|layer| weights.sub_scope(layer).read_state("bias", &[each]));
+        let (inner, layer_width) = (width * config.widening, 3 * width / names.qkv.len());
+        let biases = names.qkv.iter().map(|layer| weights.sub_scope(layer).read_state("bias", &[layer_width]));
         let biases: Vec<Tensor> = biases.collect::<std::result::Result<_, _>>()?;
         let of_padding = Tensor::cat(&biases, 0).map_err(|error| weights.tensor_error(names.qkv[0], &error))?;
         Ok(Self {
             mix_norm: weights.layer_norm(names.mix_norm, width, epsilon)?,
-            qkv: weights.read_joined_linears(names.qkv, width, each)?,
+            qkv: weights.read_joined_linears(names.qkv, width, layer_width)?,
             of_padding,
             attention: WindowAttention::from_weights(weights, names.positions, config.heads[stage], config.window)?,
             mixed: weights.read_linear(names.mixed, width, width)?,
@@ -59,11 +60,11 @@ impl SwinBlock {
     /// The block's output for x [batch, height, width, channels]. The shape stays the same.
     pub(super) fn apply_to(&self, x: &Tensor, windows: &MapWindows) -> Result<Tensor> {
         let (batch, height, width, channels) = x.dims4()?;
-        let one = |at: usize| {
+        let apply_one = |at: usize| {
             let x = x.get(at)?.reshape((height * width, channels))?;
             if is_ours(&x) { self.on_processor(&x, windows) } else { self.on_device(&x, windows) }
         };
-        let all = (0..batch).map(one).collect::<Result<Vec<_>>>()?;
+        let all = (0..batch).map(apply_one).collect::<Result<Vec<_>>>()?;
         Tensor::stack(&all, 0)?.reshape((batch, height, width, channels))
     }
 

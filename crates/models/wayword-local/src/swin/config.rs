@@ -17,15 +17,16 @@ pub(crate) struct SwinConfig {
     pub(crate) widening: usize,
     /// The stages, counted from 0, that give an output of the backbone. Each of these outputs has its own norm.
     pub(crate) outputs: Vec<usize>,
-    /// Added to variances.
+    /// Added to variances, so that no division is by 0.
     pub(crate) epsilon: f64,
 }
 
-/// The most stages, and the most blocks of a stage. Published models have 4 and 18.
+/// The most stages, and the most blocks of a stage; more are refused. Published models have 4 and 18.
 const MOST_STAGES: usize = 8;
 const MOST_BLOCKS: usize = 64;
 
-/// The largest window. Published models have 7 and 12.
+/// The largest edge of a window, positions, and the largest widening; larger ones are refused. Published models have
+/// windows of 7 and 12.
 const LARGEST_WINDOW: usize = 32;
 
 impl SwinConfig {
@@ -86,11 +87,15 @@ pub(crate) struct SwinTensorNames {
     pub(crate) stages: &'static str,
     /// The norm of a stage's output, by the stage from 0.
     pub(crate) out_norm: fn(usize) -> String,
+    /// The norm before attention.
     pub(super) mix_norm: &'static str,
     /// Queries, keys and values: one layer or three.
     pub(super) qkv: &'static [&'static str],
+    /// The layer behind the attention.
     pub(super) mixed: &'static str,
+    /// The table of biases for the distance between two places.
     pub(super) positions: &'static str,
+    /// The norm before the two linear layers.
     pub(super) think_norm: &'static str,
     pub(super) wide: &'static str,
     pub(super) narrow: &'static str,

@@ -7,6 +7,7 @@ use crate::{
 };
 use candle_core::{Result, Tensor};
 
+/// Merges squares of four positions: a norm of their joined channels, and a layer that halves these.
 pub(super) struct PatchMerging {
     norm: LayerNorm,
     reduction: LinearLayer,

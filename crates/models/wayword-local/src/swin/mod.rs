@@ -30,13 +30,16 @@ pub(crate) struct SwinBackbone {
     patch: LinearLayer,
     patch_norm: LayerNorm,
     stages: Vec<SwinStage>,
+    /// The edge of a window, positions.
     window: usize,
 }
 
+/// Blocks at one resolution.
 struct SwinStage {
     blocks: Vec<SwinBlock>,
     /// The norm of the stage's output, if it is an output of the backbone.
     out: Option<LayerNorm>,
+    /// Halves the resolution for the next stage. The last stage has none.
     merging: Option<PatchMerging>,
 }
 
@@ -108,9 +111,9 @@ impl SwinStage {
         let (_, height, width, _) = x.dims4()?;
         // The windows of every second block are shifted by half a window.
         let plain = MapWindows::new(height, width, window, 0);
-        let moved = (self.blocks.len() > 1).then(|| MapWindows::new(height, width, window, window / 2));
-        self.blocks.iter().enumerate().try_fold(x, |x, (at, block)| match &moved {
-            Some(moved) if at % 2 == 1 => block.apply_to(&x, moved),
+        let shifted = (self.blocks.len() > 1).then(|| MapWindows::new(height, width, window, window / 2));
+        self.blocks.iter().enumerate().try_fold(x, |x, (at, block)| match &shifted {
+            Some(shifted) if at % 2 == 1 => block.apply_to(&x, shifted),
             _ => block.apply_to(&x, &plain),
         })
     }

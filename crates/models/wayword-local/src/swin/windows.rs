@@ -2,7 +2,8 @@
 
 /// The windows of a map, and where each position lies in them.
 pub(super) struct MapWindows {
-    /// For each place of each window, the position on the map, rows from the top; [`MapWindows::PADDING_POSITION`] for padding.
+    /// For each place of each window, the position on the map, rows from the top; [`MapWindows::PADDING_POSITION`] for
+    /// padding.
     pub(super) positions: Vec<u32>,
     /// For each position on the map, its place in the windows.
     pub(super) places: Vec<u32>,
@@ -18,11 +19,11 @@ impl MapWindows {
     pub(super) const PADDING_POSITION: u32 = u32::MAX;
 
     /// Windows of `edge` x `edge` positions. The map is padded at the right and at the bottom to whole windows, and
-    /// then moved up and left by `by` positions. Cells that leave the map come in on the other side.
-    pub(super) fn new(height: usize, width: usize, edge: usize, by: usize) -> Self {
+    /// then moved up and left by `shift` positions. Cells that leave the map come in on the other side.
+    pub(super) fn new(height: usize, width: usize, edge: usize, shift: usize) -> Self {
         let (down, across) = (height.div_ceil(edge), width.div_ceil(edge));
         let (padded_height, padded_width) = (down * edge, across * edge);
-        let region = |at: usize, padded: usize| u8::from(at >= padded - edge) + u8::from(at >= padded - by);
+        let region = |at: usize, padded: usize| u8::from(at >= padded - edge) + u8::from(at >= padded - shift);
         let count = padded_height * padded_width;
         let (mut positions, mut regions) = (Vec::with_capacity(count), Vec::new());
         let mut places = vec![0; height * width];
@@ -30,8 +31,8 @@ impl MapWindows {
             for place in 0..edge * edge {
                 let row = window / across * edge + place / edge;
                 let column = window % across * edge + place % edge;
-                let (y, x) = ((row + by) % padded_height, (column + by) % padded_width);
-                if by > 0 {
+                let (y, x) = ((row + shift) % padded_height, (column + shift) % padded_width);
+                if shift > 0 {
                     regions.push(region(row, padded_height) * 3 + region(column, padded_width));
                 }
                 if y < height && x < width {

@@ -22,7 +22,7 @@ use std::{
 };
 use training_checkpoint::TrainingCheckpoint;
 
-/// The longest index of a checkpoint in several files that is read, bytes.
+/// The longest index of a checkpoint in several files that is read, bytes. A longer one is refused.
 const LONGEST_INDEX: u64 = 64 << 20;
 
 /// A checkpoint's tensors by their names.
@@ -38,13 +38,18 @@ pub(crate) struct CheckpointWeights {
 
 /// A file of tensors.
 enum WeightFile {
+    /// `.safetensors`.
     Safe(SafeFile),
+    /// `pytorch_model.bin`.
     Pickled(PickledFile),
+    /// `.pth`.
     Trained(TrainingCheckpoint),
 }
 
+/// `model.safetensors.index.json`.
 #[derive(Deserialize)]
 struct WeightsIndex {
+    /// The file of each tensor, by its name.
     weight_map: BTreeMap<String, String>,
 }
 

@@ -15,6 +15,7 @@ use std::{collections::BTreeMap, rc::Rc};
 pub(super) enum PickleValue {
     /// A value that no tensor depends on, such as a float or a boolean.
     Other,
+    /// A whole number.
     Whole(i64),
     Text(Rc<str>),
     Tuple(Rc<PickleTuple>),
@@ -22,8 +23,11 @@ pub(super) enum PickleValue {
     List,
     /// A table, by its number.
     Table(usize),
+    /// A function or type by its name.
     Known(PickleCallable),
+    /// The numbers of one or more tensors.
     Storage(Rc<TensorStorage>),
+    /// A tensor: a part of a storage.
     Tensor(Rc<TensorLocation>),
 }
 
@@ -38,9 +42,13 @@ pub(super) struct PickleTuple {
 /// The functions and types that a checkpoint may name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum PickleCallable {
+    /// Makes a table.
     OrderedDict,
+    /// The type of a storage of floats of 32 bits.
     Floats,
+    /// The type of a storage of whole numbers of 64 bits.
     Longs,
+    /// Makes a tensor of a part of a storage.
     Rebuild,
 }
 
@@ -51,6 +59,7 @@ pub(super) struct TensorStorage {
     pub(super) key: Rc<str>,
     /// Whether the numbers are floats of 32 bits. Otherwise they are whole numbers of 64 bits.
     pub(super) floats: bool,
+    /// How many numbers there are.
     pub(super) count: u64,
 }
 

@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 pub(super) struct PickledFile {
     path: PathBuf,
     tensors: PthTensors,
+    /// The length of the file, bytes.
     length: u64,
 }
 
@@ -38,6 +39,7 @@ impl PickledFile {
         Some(self.tensors.tensor_infos().get(name)?.layout.shape().dims().to_vec())
     }
 
+    /// Reads a tensor, and checks its shape.
     pub(super) fn read_tensor(&self, name: &str, shape: &[usize]) -> Result<Tensor, LocalError> {
         let wrong = |problem: String| LocalError::bad_tensor(&self.path, name, problem);
         let found = self.tensor_shape(name).ok_or_else(|| wrong("it is missing".to_owned()))?;

@@ -21,7 +21,7 @@ pub(super) struct SafeFile {
     path: PathBuf,
     file: Mutex<File>,
     header: Metadata,
-    /// Where the header ends and the tensors begin.
+    /// The position in the file at which the header ends and the tensors begin, bytes.
     begin: u64,
 }
 
@@ -46,9 +46,9 @@ impl SafeFile {
         file.by_ref().take(size).read_to_end(&mut header).map_err(io)?;
         let header: Metadata =
             serde_json::from_slice(&header).map_err(|error| damaged(format!("its header: {error}")))?;
-        let (begin, needs) = (8 + size, header.data_len() as u64);
-        if begin.checked_add(needs) != Some(length) {
-            return Err(damaged(format!("its tensors need {needs} bytes, but the file has {}", length - begin)));
+        let (begin, needed) = (8 + size, header.data_len() as u64);
+        if begin.checked_add(needed) != Some(length) {
+            return Err(damaged(format!("its tensors need {needed} bytes, but the file has {}", length - begin)));
         }
         Ok(Self { path: path.to_owned(), file: Mutex::new(file), header, begin })
     }

@@ -20,7 +20,7 @@ const WEIGHTS_TABLE: &str = "model";
 /// The prefix of the names of weights that were trained on several devices.
 const PARALLEL_NAME_PREFIX: &str = "module.";
 
-/// The longest pickle that is read, bytes. The numbers of tensors are not in it.
+/// The longest pickle that is read, bytes; a longer one is refused. The numbers of tensors are not in it.
 const LONGEST_PICKLE: u64 = 32 << 20;
 
 /// An open archive, and the locations of its weights.
@@ -30,6 +30,7 @@ pub(super) struct TrainingCheckpoint {
     /// The name of the folder within the archive.
     root: String,
     tensors: BTreeMap<String, ArchivedTensor>,
+    /// The length of the file, bytes.
     length: u64,
 }
 
@@ -70,7 +71,7 @@ impl TrainingCheckpoint {
         });
         let pickle = CheckpointPickle::from_bytes(&bytes.map_err(damaged)?).map_err(damaged)?;
         let tensors = pickle.tensors_under(WEIGHTS_TABLE).map_err(damaged)?.map(|(name, place)| {
-            let lies = ArchivedTensor {
+            let location = ArchivedTensor {
                 entry: place.storage.key.to_string(),
                 dtype: if place.storage.floats { DType::F32 } else { DType::I64 },
                 count: place.storage.count,
@@ -78,7 +79,7 @@ impl TrainingCheckpoint {
                 shape: place.shape.clone(),
                 strides: place.strides.clone(),
             };
-            (name.strip_prefix(PARALLEL_NAME_PREFIX).unwrap_or(&name).to_owned(), lies)
+            (name.strip_prefix(PARALLEL_NAME_PREFIX).unwrap_or(&name).to_owned(), location)
         });
         let tensors = tensors.collect();
         Ok(Self { path: path.to_owned(), archive: Mutex::new(archive), root, tensors, length })
@@ -99,30 +100,33 @@ impl TrainingCheckpoint {
     /// Reads a tensor, and checks its shape.
     pub(super) fn read_tensor(&self, name: &str, shape: &[usize]) -> Result<Tensor, LocalError> {
         let wrong = |problem: String| LocalError::bad_tensor(&self.path, name, problem);
-        let lies = self.tensors.get(name).ok_or_else(|| wrong("it is missing".to_owned()))?;
-        if lies.shape != shape {
-            return Err(wrong(format!("its shape is {:?}, not {shape:?}", lies.shape)));
+        let location = self.tensors.get(name).ok_or_else(|| wrong("it is missing".to_owned()))?;
+        if location.shape != shape {
+            return Err(wrong(format!("its shape is {:?}, not {shape:?}", location.shape)));
         }
-        let bytes = lies.byte_range(self.length).and_then(|range| self.tensor_bytes(lies, range)).map_err(wrong)?;
-        Tensor::from_raw_buffer(&bytes, lies.dtype, shape, &Device::Cpu).map_err(|error| wrong(error.to_string()))
+        let bytes =
+            location.byte_range(self.length).and_then(|range| self.tensor_bytes(location, range)).map_err(wrong)?;
+        Tensor::from_raw_buffer(&bytes, location.dtype, shape, &Device::Cpu).map_err(|error| wrong(error.to_string()))
     }
 
-    fn tensor_bytes(&self, lies: &ArchivedTensor, (from, length): (u64, u64)) -> Result<Vec<u8>, String> {
+    /// The bytes of a tensor: `length` bytes of its entry from position `from` on.
+    fn tensor_bytes(&self, location: &ArchivedTensor, (from, length): (u64, u64)) -> Result<Vec<u8>, String> {
         let mut archive = self.archive.lock().unwrap_or_else(PoisonError::into_inner);
-        with_entry(&mut archive, &format!("{}/data/{}", self.root, lies.entry), |entry| {
-            let whole = lies.count * lies.dtype.size_in_bytes() as u64;
+        with_entry(&mut archive, &format!("{}/data/{}", self.root, location.entry), |entry| {
+            let whole = location.count * location.dtype.size_in_bytes() as u64;
             if entry.size != whole {
                 return Err(format!("its entry of the archive has {} bytes, not {whole}", entry.size));
             }
             let mut read = entry.read;
-            let told = |error: io::Error| error.to_string();
-            io::copy(&mut Read::take(&mut read, from), &mut io::sink()).map_err(told)?;
+            let to_text = |error: io::Error| error.to_string();
+            io::copy(&mut Read::take(&mut read, from), &mut io::sink()).map_err(to_text)?;
             // The length was checked against that of the file.
             let mut bytes = Vec::with_capacity(usize::try_from(length).unwrap_or(0));
-            Read::take(&mut read, length).read_to_end(&mut bytes).map_err(told)?;
+            Read::take(&mut read, length).read_to_end(&mut bytes).map_err(to_text)?;
             // Reading to the end of the entry makes the archive reader compare the checksum.
-            let more = if from + length == whole { io::copy(&mut read, &mut io::sink()).map_err(told)? } else { 0 };
-            if bytes.len() as u64 == length && more == 0 { Ok(bytes) } else { Err("it is cut off".to_owned()) }
+            let surplus =
+                if from + length == whole { io::copy(&mut read, &mut io::sink()).map_err(to_text)? } else { 0 };
+            if bytes.len() as u64 == length && surplus == 0 { Ok(bytes) } else { Err("it is cut off".to_owned()) }
         })
     }
 }

@@ -1,7 +1,13 @@
 //! Fetches all objects below a prefix into a folder, and continues an interrupted fetch. Names come from the store and are
 //! checked before any file is written.
 
-use super::{CloudBucket, CloudError, StoredObject, bucket, index::FetchIndex, lock, lock::FetchLock, names};
+use super::{
+    CloudBucket, CloudError, StoredObject, bucket,
+    index::{FETCH_INDEX_FILE, FetchIndex},
+    lock,
+    lock::FetchLock,
+    names,
+};
 use futures_util::{StreamExt, stream};
 use object_store::{GetOptions, GetRange, ObjectStore};
 use std::{
@@ -11,9 +17,6 @@ use std::{
     path::{Path, PathBuf},
     time::{Duration, Instant},
 };
-
-/// The file in which a folder's fetched files are listed.
-pub const FETCH_INDEX_FILE: &str = ".wayword-fetched.json";
 
 /// How many files are fetched at the same time.
 const CONCURRENT_FILES: usize = 6;

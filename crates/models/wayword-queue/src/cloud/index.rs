@@ -1,7 +1,7 @@
 //! The index of a fetched folder: the version of each file when it was fetched, so that unchanged files are not fetched
 //! again.
 
-use super::{CloudError, FETCH_INDEX_FILE, StoredObject};
+use super::{CloudError, StoredObject};
 use serde::{Deserialize, Serialize};
 use std::{
     collections::BTreeMap,
@@ -9,6 +9,9 @@ use std::{
     io::{ErrorKind, Read, Write},
     path::Path,
 };
+
+/// The file in which a folder's fetched files are listed.
+pub const FETCH_INDEX_FILE: &str = ".wayword-fetched.json";
 
 /// The most bytes of an index that are read: about a million names.
 const MAX_INDEX_BYTES: u64 = 512 << 20;

@@ -39,6 +39,7 @@ mod stored_run;
 
 pub use bucket::{CloudBucket, MOST_OBJECTS, StoredObject};
 pub use error::CloudError;
-pub use fetch::{FETCH_INDEX_FILE, FetchSummary};
+pub use fetch::FetchSummary;
+pub use index::FETCH_INDEX_FILE;
 pub use send::SendSummary;
 pub use stored_run::{CloudRun, SendingBoard};

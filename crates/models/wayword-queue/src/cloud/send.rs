@@ -76,7 +76,7 @@ impl CloudBucket {
         let upload = self.store.put_multipart(place).await.map_err(wrong)?;
         let mut writer = WriteMultipart::new_with_chunk_size(upload, usize::try_from(part).unwrap_or(usize::MAX));
         if let Err(error) = self.write_parts(&mut writer, item, &file, part).await {
-            // The first failure is the one to report. Parts that stay are not seen, and the store's rules remove them.
+            // The first failure is the one to report. Parts that stay belong to no object, and the store's rules remove them.
             let _ = writer.abort().await;
             return Err(error);
         }
@@ -104,7 +104,7 @@ impl CloudBucket {
     }
 }
 
-/// Parts of equal size, as some stores want them.
+/// The size of the parts of a file. All but the last have the same size, as some stores demand.
 fn part_size(bytes: u64) -> u64 {
     PART_BYTES.max(bytes.div_ceil(MOST_PARTS))
 }
@@ -115,6 +115,7 @@ fn read_piece(mut file: &File, item: &OutgoingFile, length: u64) -> Result<Vec<u
     Ok(bytes)
 }
 
+/// Checks that a file was read to its end: it is longer than its listed size if it grew meanwhile.
 fn is_at_end(mut file: &File, item: &OutgoingFile) -> Result<(), CloudError> {
     match file.read(&mut [0]).map_err(CloudError::for_local_file(&item.path, "read"))? {
         0 => Ok(()),

@@ -20,4 +20,7 @@ pub mod slurm;
 mod worker;
 
 pub use error::LaunchError;
-pub use worker::{LaunchWorker, MAX_WORKERS};
+pub use worker::LaunchWorker;
+
+/// Most workers of one launch. Kubernetes has other rules above it, and Slurm's arrays end long before.
+pub const MAX_WORKERS: u32 = 100_000;

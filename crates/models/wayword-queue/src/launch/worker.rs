@@ -1,9 +1,6 @@
 //! The command that each worker runs, and the check that it contains no password.
 
-use super::{LaunchError, check::has_control};
-
-/// Most workers of one launch. Kubernetes has other rules above it, and Slurm's arrays end long before.
-pub const MAX_WORKERS: u32 = 100_000;
+use super::{LaunchError, MAX_WORKERS, check::has_control};
 
 /// The command that each worker runs.
 #[derive(Debug, Clone, PartialEq, Eq)]

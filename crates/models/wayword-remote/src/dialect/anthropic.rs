@@ -12,23 +12,23 @@ use wayword_core::{MessageRole, ModelTool};
 pub(super) const API_VERSION: &str = "2023-06-01";
 
 /// Turns a request into a body for this API.
-pub(super) fn to_wire(asked: DialectRequest<'_>) -> WireRequest {
+pub(super) fn to_wire(request: DialectRequest<'_>) -> WireRequest {
     let system: Vec<&str> =
-        asked.lines.iter().filter(|line| line.role == MessageRole::System).map(|line| line.text.as_str()).collect();
+        request.lines.iter().filter(|line| line.role == MessageRole::System).map(|line| line.text.as_str()).collect();
     let mut body = Map::new();
-    body.insert("model".to_owned(), asked.model.into());
+    body.insert("model".to_owned(), request.model.into());
     // `omit` does not apply: the service refuses a request without this field.
-    body.insert("max_tokens".to_owned(), asked.sampling.max_tokens.into());
+    body.insert("max_tokens".to_owned(), request.sampling.max_tokens.into());
     if !system.is_empty() {
         body.insert("system".to_owned(), system.join("\n\n").into());
     }
-    let spoken = asked.lines.iter().filter(|line| line.role != MessageRole::System);
-    body.insert("messages".to_owned(), spoken.map(message_json).collect());
-    if asked.provider.sends_field("temperature") {
-        body.insert("temperature".to_owned(), asked.sampling.temperature.clamp(0.0, 1.0).into());
+    let conversation = request.lines.iter().filter(|line| line.role != MessageRole::System);
+    body.insert("messages".to_owned(), conversation.map(message_json).collect());
+    if request.provider.sends_field("temperature") {
+        body.insert("temperature".to_owned(), request.sampling.temperature.clamp(0.0, 1.0).into());
     }
     let tool = |(tool, arguments): (&'static ModelTool, Value)| json!({ "name": tool.name, "description": tool.does, "input_schema": arguments });
-    let tools: Vec<Value> = asked.callable_tools().into_iter().map(tool).collect();
+    let tools: Vec<Value> = request.callable_tools().into_iter().map(tool).collect();
     if !tools.is_empty() {
         body.insert("tools".to_owned(), tools.into());
         body.insert("tool_choice".to_owned(), json!({ "type": "any" }));
@@ -43,6 +43,7 @@ pub(super) fn tool_calls(body: &Value) -> Vec<String> {
     calls.filter_map(|part| tool_call_line(part.get("name"), part.get("input"))).collect()
 }
 
+/// A message in the form of this API.
 fn message_json(line: &RemoteMessage) -> Value {
     let role = if line.role == MessageRole::Assistant { "assistant" } else { "user" };
     if line.pictures.is_empty() {

@@ -9,12 +9,12 @@ use serde_json::{Map, Value, json};
 use wayword_core::{MessageRole, ModelTool};
 
 /// Turns a request into a body for this API.
-pub(super) fn to_wire(asked: DialectRequest<'_>) -> WireRequest {
+pub(super) fn to_wire(request: DialectRequest<'_>) -> WireRequest {
     let mut body = Map::new();
-    body.insert("model".to_owned(), asked.model.into());
-    body.insert("messages".to_owned(), asked.lines.iter().map(message_json).collect());
-    insert_sampling(asked, &mut body);
-    if let Some((way, name, schema)) = asked.json_form() {
+    body.insert("model".to_owned(), request.model.into());
+    body.insert("messages".to_owned(), request.lines.iter().map(message_json).collect());
+    insert_sampling(request, &mut body);
+    if let Some((way, name, schema)) = request.json_form() {
         let format = match way {
             JsonMode::Schema => {
                 json!({ "type": "json_schema", "json_schema": { "name": name, "strict": true, "schema": schema } })
@@ -23,7 +23,7 @@ pub(super) fn to_wire(asked: DialectRequest<'_>) -> WireRequest {
         };
         body.insert("response_format".to_owned(), format);
     }
-    let tools = tools_json(asked);
+    let tools = tools_json(request);
     if !tools.is_empty() {
         body.insert("tools".to_owned(), tools.into());
         body.insert("tool_choice".to_owned(), "required".into());
@@ -32,12 +32,12 @@ pub(super) fn to_wire(asked: DialectRequest<'_>) -> WireRequest {
 }
 
 /// The tools, in the form that this dialect and Ollama's share.
-pub(super) fn tools_json(asked: DialectRequest<'_>) -> Vec<Value> {
+pub(super) fn tools_json(request: DialectRequest<'_>) -> Vec<Value> {
     let tool = |(tool, arguments): (&'static ModelTool, Value)| {
         let function = json!({ "name": tool.name, "description": tool.does, "parameters": arguments });
         json!({ "type": "function", "function": function })
     };
-    asked.callable_tools().into_iter().map(tool).collect()
+    request.callable_tools().into_iter().map(tool).collect()
 }
 
 /// The tools that a reply calls, each as a line.
@@ -57,8 +57,8 @@ pub(super) fn calls_of(message: &Value) -> Vec<String> {
 }
 
 /// The sampling fields that this dialect and the completions share.
-pub(super) fn insert_sampling(asked: DialectRequest<'_>, body: &mut Map<String, Value>) {
-    let (provider, sampling) = (asked.provider, asked.sampling);
+pub(super) fn insert_sampling(request: DialectRequest<'_>, body: &mut Map<String, Value>) {
+    let (provider, sampling) = (request.provider, request.sampling);
     if provider.sends_field("temperature") {
         body.insert("temperature".to_owned(), sampling.temperature.into());
     }
@@ -70,6 +70,7 @@ pub(super) fn insert_sampling(asked: DialectRequest<'_>, body: &mut Map<String, 
     }
 }
 
+/// A message in the form of this API.
 fn message_json(line: &RemoteMessage) -> Value {
     let role = match line.role {
         MessageRole::System => "system",
@@ -116,6 +117,6 @@ pub(super) fn reply_end(choice: &Value) -> Result<ReplyEnd, MissingField> {
 pub(super) fn with_usage(body: &Value, text: String, end: ReplyEnd) -> DialectReply {
     let tokens = |field: &str| body.get("usage")?.get(field)?.as_u64();
     let tokens_in = tokens("prompt_tokens");
-    let beside_the_prompt = tokens("total_tokens").zip(tokens_in).map(|(total, prompt)| total.saturating_sub(prompt));
-    DialectReply { text, end, tokens_in, tokens_out: tokens("completion_tokens").max(beside_the_prompt) }
+    let tokens_after_prompt = tokens("total_tokens").zip(tokens_in).map(|(total, prompt)| total.saturating_sub(prompt));
+    DialectReply { text, end, tokens_in, tokens_out: tokens("completion_tokens").max(tokens_after_prompt) }
 }

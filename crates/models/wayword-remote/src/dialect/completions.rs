@@ -8,21 +8,21 @@ use wayword_core::MessageRole;
 ///
 /// # Errors
 /// When there is a picture.
-pub(super) fn to_wire(asked: DialectRequest<'_>) -> Result<WireRequest, &'static str> {
-    if asked.lines.iter().any(|line| !line.pictures.is_empty()) {
+pub(super) fn to_wire(request: DialectRequest<'_>) -> Result<WireRequest, &'static str> {
+    if request.lines.iter().any(|line| !line.pictures.is_empty()) {
         return Err("the completions endpoint takes no pictures: for --see, choose a model behind a chat endpoint");
     }
     let mut body = Map::new();
-    body.insert("model".to_owned(), asked.model.into());
-    if let [only @ RemoteMessage { role: MessageRole::User, .. }] = asked.lines {
+    body.insert("model".to_owned(), request.model.into());
+    if let [only @ RemoteMessage { role: MessageRole::User, .. }] = request.lines {
         // Instruction models take a single request as it is.
         body.insert("prompt".to_owned(), only.text.clone().into());
     } else {
-        body.insert("prompt".to_owned(), conversation_script(asked.lines).into());
+        body.insert("prompt".to_owned(), conversation_script(request.lines).into());
         // Otherwise a model writes the user's next lines too.
         body.insert("stop".to_owned(), json!(["\nUser:"]));
     }
-    chat::insert_sampling(asked, &mut body);
+    chat::insert_sampling(request, &mut body);
     Ok(WireRequest { path: "/completions".to_owned(), body: body.into() })
 }
 

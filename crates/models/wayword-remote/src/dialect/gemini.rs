@@ -8,10 +8,10 @@ use serde_json::{Map, Value, json};
 use wayword_core::{MessageRole, ModelTool};
 
 /// Turns a request into a body for this API.
-pub(super) fn to_wire(asked: DialectRequest<'_>) -> WireRequest {
-    let (provider, sampling) = (asked.provider, asked.sampling);
+pub(super) fn to_wire(request: DialectRequest<'_>) -> WireRequest {
+    let (provider, sampling) = (request.provider, request.sampling);
     let mut body = Map::new();
-    let system: Vec<Value> = asked
+    let system: Vec<Value> = request
         .lines
         .iter()
         .filter(|line| line.role == MessageRole::System)
@@ -20,8 +20,8 @@ pub(super) fn to_wire(asked: DialectRequest<'_>) -> WireRequest {
     if !system.is_empty() {
         body.insert("systemInstruction".to_owned(), json!({ "parts": system }));
     }
-    let spoken = asked.lines.iter().filter(|line| line.role != MessageRole::System);
-    body.insert("contents".to_owned(), spoken.map(message_json).collect());
+    let conversation = request.lines.iter().filter(|line| line.role != MessageRole::System);
+    body.insert("contents".to_owned(), conversation.map(message_json).collect());
     let mut generation = Map::new();
     if provider.sends_field("temperature") {
         generation.insert("temperature".to_owned(), sampling.temperature.into());
@@ -32,7 +32,7 @@ pub(super) fn to_wire(asked: DialectRequest<'_>) -> WireRequest {
     if provider.sends_field("seed") {
         generation.insert("seed".to_owned(), seed_of_31_bits(sampling).into());
     }
-    if let Some((way, _, mut schema)) = asked.json_form() {
+    if let Some((way, _, mut schema)) = request.json_form() {
         generation.insert("responseMimeType".to_owned(), "application/json".into());
         if way == JsonMode::Schema {
             to_open_api(&mut schema);
@@ -44,12 +44,12 @@ pub(super) fn to_wire(asked: DialectRequest<'_>) -> WireRequest {
         to_open_api(&mut arguments);
         json!({ "name": tool.name, "description": tool.does, "parameters": arguments })
     };
-    let tools: Vec<Value> = asked.callable_tools().into_iter().map(tool).collect();
+    let tools: Vec<Value> = request.callable_tools().into_iter().map(tool).collect();
     if !tools.is_empty() {
         body.insert("tools".to_owned(), json!([{ "functionDeclarations": tools }]));
         body.insert("toolConfig".to_owned(), json!({ "functionCallingConfig": { "mode": "ANY" } }));
     }
-    WireRequest { path: format!("/models/{}:generateContent", in_path(asked.model)), body: body.into() }
+    WireRequest { path: format!("/models/{}:generateContent", in_path(request.model)), body: body.into() }
 }
 
 /// Rewrites a JSON schema into the subset of OpenAPI that the service reads: types in capitals, and no
@@ -68,6 +68,7 @@ fn to_open_api(schema: &mut Value) {
     }
 }
 
+/// A message in the form of this API.
 fn message_json(line: &RemoteMessage) -> Value {
     let role = if line.role == MessageRole::Assistant { "model" } else { "user" };
     let mut parts = vec![json!({ "text": line.text })];
@@ -94,17 +95,19 @@ pub(super) fn tool_calls(body: &Value) -> Vec<String> {
 /// Reads a reply's body.
 pub(super) fn from_wire(body: &Value) -> Result<DialectReply, MissingField> {
     let tokens = |field: &str| body.get("usageMetadata")?.get(field)?.as_u64();
-    let spoken = tokens("candidatesTokenCount");
-    let thought = tokens("thoughtsTokenCount");
-    let tokens_out = spoken.or(thought).map(|_| spoken.unwrap_or(0).saturating_add(thought.unwrap_or(0)));
-    let heard = |text, end| DialectReply { text, end, tokens_in: tokens("promptTokenCount"), tokens_out };
+    let answer_tokens = tokens("candidatesTokenCount");
+    let thinking_tokens = tokens("thoughtsTokenCount");
+    let tokens_out = answer_tokens
+        .or(thinking_tokens)
+        .map(|_| answer_tokens.unwrap_or(0).saturating_add(thinking_tokens.unwrap_or(0)));
+    let reply = |text, end| DialectReply { text, end, tokens_in: tokens("promptTokenCount"), tokens_out };
     if let Some(why) = body.get("promptFeedback").and_then(|feedback| feedback.get("blockReason")?.as_str()) {
-        return Ok(heard(String::new(), ReplyEnd::Filtered(why.to_owned())));
+        return Ok(reply(String::new(), ReplyEnd::Filtered(why.to_owned())));
     }
     let candidate = body.get("candidates").and_then(|all| all.get(0)).ok_or(MissingField("candidates"))?;
     let parts = candidate.get("content").and_then(|content| content.get("parts")?.as_array());
-    let said = |part: &&Value| part.get("thought").and_then(Value::as_bool) != Some(true);
-    let text = parts.into_iter().flatten().filter(said).filter_map(|part| part.get("text")?.as_str()).collect();
+    let is_answer = |part: &&Value| part.get("thought").and_then(Value::as_bool) != Some(true);
+    let text = parts.into_iter().flatten().filter(is_answer).filter_map(|part| part.get("text")?.as_str()).collect();
     let end = match candidate.get("finishReason").and_then(Value::as_str) {
         Some("MAX_TOKENS") => ReplyEnd::Length,
         Some(
@@ -112,5 +115,5 @@ pub(super) fn from_wire(body: &Value) -> Result<DialectReply, MissingField> {
         ) => ReplyEnd::Filtered(why.to_owned()),
         _ => ReplyEnd::Stop,
     };
-    Ok(heard(text, end))
+    Ok(reply(text, end))
 }

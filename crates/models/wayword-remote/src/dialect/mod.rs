@@ -1,5 +1,5 @@
-//! The APIs of services. Each dialect is one file with two pure functions: `to_wire` makes a request's body, `from_wire`
-//! reads a reply's body.
+//! The APIs of services. Each dialect is one file with two pure functions: `to_wire` makes a request's body,
+//! `from_wire` reads a reply's body.
 
 mod anthropic;
 mod chat;
@@ -7,28 +7,10 @@ mod completions;
 mod gemini;
 mod ollama;
 
-use crate::{JsonMode, picture::EncodedPicture, provider::RemoteProvider};
-use serde::Deserialize;
+use crate::{JsonMode, ServiceDialect, picture::EncodedPicture, provider::RemoteProvider};
 use serde_json::{Map, Value};
 use std::sync::Arc;
 use wayword_core::{MessageRole, ModelTool, ReplySchema, SamplingOptions, tool_line};
-
-/// A service's API.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum ServiceDialect {
-    /// OpenAI's chat completions, which most other servers offer too.
-    #[serde(rename = "openai")]
-    OpenAi,
-    /// OpenAI's legacy completions: one prompt, no pictures.
-    Completions,
-    /// Anthropic's messages.
-    Anthropic,
-    /// Gemini's `generateContent`.
-    Gemini,
-    /// Ollama's own `/api/chat`.
-    Ollama,
-}
 
 /// A message that is ready to be sent.
 #[derive(Debug, Clone)]
@@ -42,7 +24,9 @@ pub(crate) struct RemoteMessage {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct DialectRequest<'a> {
     pub(crate) provider: &'a RemoteProvider,
+    /// The name of the model at the provider.
     pub(crate) model: &'a str,
+    /// The messages so far, the last of which is to be answered.
     pub(crate) lines: &'a [RemoteMessage],
     pub(crate) sampling: &'a SamplingOptions,
     /// The form of the reply, where it is to be JSON.
@@ -65,6 +49,7 @@ pub(crate) struct DialectReply {
     /// The text, without the model's thinking. Each call of a tool is a line at its end.
     pub(crate) text: String,
     pub(crate) end: ReplyEnd,
+    /// The tokens of the request and of the reply, if the service reports them.
     pub(crate) tokens_in: Option<u64>,
     pub(crate) tokens_out: Option<u64>,
 }
@@ -72,9 +57,11 @@ pub(crate) struct DialectReply {
 /// Why a reply ended.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum ReplyEnd {
+    /// The model was finished.
     Stop,
+    /// The reply reached the most tokens.
     Length,
-    /// The service's filter cut it off or blocked it, with the reason.
+    /// The service's filter cut the reply off or blocked it, with the reason.
     Filtered(String),
     /// The model refused, with its words.
     Refused(String),
@@ -85,15 +72,6 @@ pub(crate) enum ReplyEnd {
 pub(crate) struct MissingField(pub(crate) &'static str);
 
 impl ServiceDialect {
-    /// The path that is added to a base URL without one.
-    pub(crate) fn default_version_path(self) -> &'static str {
-        match self {
-            Self::Anthropic => "/v1",
-            Self::Gemini => "/v1beta",
-            Self::OpenAi | Self::Completions | Self::Ollama => "",
-        }
-    }
-
     /// The name of the header with the key, and the text before the key in it.
     pub(crate) fn key_header(self) -> (&'static str, &'static str) {
         match self {
@@ -111,30 +89,19 @@ impl ServiceDialect {
         }
     }
 
-    /// Its name in settings, errors and the ledger.
-    pub(crate) fn name(self) -> &'static str {
-        match self {
-            Self::OpenAi => "openai",
-            Self::Completions => "completions",
-            Self::Anthropic => "anthropic",
-            Self::Gemini => "gemini",
-            Self::Ollama => "ollama",
-        }
-    }
-
     /// A request in this dialect.
     ///
     /// # Errors
     /// When the dialect cannot express it: completions take no pictures.
-    pub(crate) fn to_wire(self, asked: DialectRequest<'_>) -> Result<WireRequest, &'static str> {
+    pub(crate) fn to_wire(self, request: DialectRequest<'_>) -> Result<WireRequest, &'static str> {
         let mut wire = match self {
-            Self::OpenAi => chat::to_wire(asked),
-            Self::Completions => completions::to_wire(asked)?,
-            Self::Anthropic => anthropic::to_wire(asked),
-            Self::Gemini => gemini::to_wire(asked),
-            Self::Ollama => ollama::to_wire(asked),
+            Self::OpenAi => chat::to_wire(request),
+            Self::Completions => completions::to_wire(request)?,
+            Self::Anthropic => anthropic::to_wire(request),
+            Self::Gemini => gemini::to_wire(request),
+            Self::Ollama => ollama::to_wire(request),
         };
-        merge_fields(&mut wire.body, &asked.provider.extra);
+        merge_fields(&mut wire.body, &request.provider.extra);
         Ok(wire)
     }
 
@@ -143,7 +110,7 @@ impl ServiceDialect {
     /// # Errors
     /// When it has no answer.
     pub(crate) fn read_reply(self, body: &Value) -> Result<DialectReply, MissingField> {
-        let mut heard = match self {
+        let mut reply = match self {
             Self::OpenAi => chat::from_wire(body),
             Self::Completions => completions::from_wire(body),
             Self::Anthropic => anthropic::from_wire(body),
@@ -157,15 +124,10 @@ impl ServiceDialect {
             Self::Ollama => ollama::tool_calls(body),
             Self::Completions => Vec::new(),
         };
-        let words = after_thinking(&heard.text).trim();
+        let words = after_thinking(&reply.text).trim();
         let lines: Vec<&str> = [words].into_iter().chain(calls.iter().map(String::as_str)).collect();
-        heard.text = lines.join("\n").trim().to_owned();
-        Ok(heard)
-    }
-
-    /// Whether a message of this dialect can hold pictures.
-    pub(crate) fn takes_pictures(self) -> bool {
-        self != Self::Completions
+        reply.text = lines.join("\n").trim().to_owned();
+        Ok(reply)
     }
 
     /// The path of the service's list of models.
@@ -216,7 +178,7 @@ impl ServiceDialect {
     }
 }
 
-/// A text without the thinking at its beginning.
+/// A text without the thinking that a model writes before its answer, as in `<think>...</think>A door.`
 ///
 /// Some servers put the opening tag into their prompt template, so that the text has only the closing tag.
 fn after_thinking(text: &str) -> &str {
@@ -252,11 +214,12 @@ fn tool_call_line(name: Option<&Value>, arguments: Option<&Value>) -> Option<Str
 impl DialectRequest<'_> {
     /// Each tool of the request with the schema of its arguments; none where the service has no tool calls.
     fn callable_tools(&self) -> Vec<(&'static ModelTool, Value)> {
-        let told = self.tools.iter().filter(|_| self.provider.tools);
-        told.filter_map(|tool| Some((tool, serde_json::from_str(tool.arguments).ok()?))).collect()
+        let tools = self.tools.iter().filter(|_| self.provider.tools);
+        tools.filter_map(|tool| Some((tool, serde_json::from_str(tool.arguments).ok()?))).collect()
     }
 
-    /// How the request asks for JSON: the mode, the schema's name, and the schema. `None` if only the prompt asks for it.
+    /// How the request asks for JSON: the mode, the schema's name, and the schema. `None` if only the prompt asks for
+    /// it.
     fn json_form(&self) -> Option<(JsonMode, &'static str, Value)> {
         let schema = self.schema.filter(|_| self.provider.json != JsonMode::Prompt)?;
         Some((self.provider.json, schema.name, serde_json::from_str(schema.json).ok()?))

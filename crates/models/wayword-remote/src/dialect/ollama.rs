@@ -6,8 +6,8 @@ use serde_json::{Map, Value, json};
 use wayword_core::MessageRole;
 
 /// Turns a request into a body for this API.
-pub(super) fn to_wire(asked: DialectRequest<'_>) -> WireRequest {
-    let (provider, sampling) = (asked.provider, asked.sampling);
+pub(super) fn to_wire(request: DialectRequest<'_>) -> WireRequest {
+    let (provider, sampling) = (request.provider, request.sampling);
     let mut options = Map::new();
     if provider.sends_field("temperature") {
         options.insert("temperature".to_owned(), sampling.temperature.into());
@@ -18,12 +18,12 @@ pub(super) fn to_wire(asked: DialectRequest<'_>) -> WireRequest {
     if provider.sends_field("seed") {
         options.insert("seed".to_owned(), seed_of_31_bits(sampling).into());
     }
-    let messages: Vec<Value> = asked.lines.iter().map(message_json).collect();
-    let mut body = json!({ "model": asked.model, "messages": messages, "stream": false, "options": options });
-    if let Some((way, _, schema)) = asked.json_form() {
+    let messages: Vec<Value> = request.lines.iter().map(message_json).collect();
+    let mut body = json!({ "model": request.model, "messages": messages, "stream": false, "options": options });
+    if let Some((way, _, schema)) = request.json_form() {
         body["format"] = if way == JsonMode::Schema { schema } else { "json".into() };
     }
-    let tools = chat::tools_json(asked);
+    let tools = chat::tools_json(request);
     if !tools.is_empty() {
         body["tools"] = tools.into();
     }
@@ -35,6 +35,7 @@ pub(super) fn tool_calls(body: &Value) -> Vec<String> {
     body.get("message").map(chat::calls_of).unwrap_or_default()
 }
 
+/// A message in the form of this API.
 fn message_json(line: &RemoteMessage) -> Value {
     let role = match line.role {
         MessageRole::System => "system",

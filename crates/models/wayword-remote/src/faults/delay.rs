@@ -17,15 +17,16 @@ const LIMIT_HEADERS: [(&str, &str); 8] = [
     ("ratelimit-remaining", "ratelimit-reset"),
 ];
 
-/// The wait that a response asks for: `retry-after-ms`, then `retry-after`, then the body's own, then the reset of a
-/// limit.
-pub(super) fn requested_wait(headers: &HeaderMap, said: &ServiceErrorBody, now: SystemTime) -> Option<Duration> {
+/// The wait that a response asks for: `retry-after-ms`, then `retry-after`, then the delay in the body, then the
+/// reset of a limit.
+pub(super) fn requested_wait(headers: &HeaderMap, body: &ServiceErrorBody, now: SystemTime) -> Option<Duration> {
     let header = |name: &str| headers.get(name).and_then(|value| value.to_str().ok());
     let ms = || header("retry-after-ms").and_then(times::bare_seconds).map(|ms| ms / 1000);
     let plain = || header("retry-after").and_then(|text| retry_after(text, now));
-    ms().or_else(plain).or(said.retry_delay).or_else(|| limit_reset_wait(header, now))
+    ms().or_else(plain).or(body.retry_delay).or_else(|| limit_reset_wait(header, now))
 }
 
+/// The wait in any of the forms that services use: a moment or a length of time.
 fn retry_after(text: &str, now: SystemTime) -> Option<Duration> {
     times::until_unix(text, now)
         .or_else(|| times::bare_seconds(text))
@@ -34,15 +35,19 @@ fn retry_after(text: &str, now: SystemTime) -> Option<Duration> {
         .or_else(|| times::until_rfc_3339(text, now))
 }
 
-/// The latest reset of the limits that are used up. If none is, the request was too large for the rest of a limit, so
-/// the earliest reset counts.
+/// The wait until the latest reset of the limits that are used up. If no limit is used up, the request was too large
+/// for the rest of a limit, so the earliest reset counts.
 fn limit_reset_wait<'a>(header: impl Fn(&str) -> Option<&'a str>, now: SystemTime) -> Option<Duration> {
     let resets = LIMIT_HEADERS.iter().filter_map(|(remaining, reset)| {
-        let left = header(remaining).and_then(|text| text.trim().parse::<f64>().ok());
-        Some((left, retry_after(header(reset)?, now)?))
+        let amount_left = header(remaining).and_then(|text| text.trim().parse::<f64>().ok());
+        Some((amount_left, retry_after(header(reset)?, now)?))
     });
     let resets: Vec<(Option<f64>, Duration)> = resets.collect();
-    let used_up = resets.iter().filter(|(left, _)| left.is_none_or(|left| left < 1.0)).map(|(_, reset)| *reset).max();
+    let used_up = resets
+        .iter()
+        .filter(|(amount_left, _)| amount_left.is_none_or(|amount_left| amount_left < 1.0))
+        .map(|(_, reset)| *reset)
+        .max();
     used_up.or_else(|| resets.iter().map(|(_, reset)| *reset).min())
 }
 

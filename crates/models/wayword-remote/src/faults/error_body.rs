@@ -1,12 +1,12 @@
 //! Reads the error that a service reports in the body of a response.
 //!
-//! Every service has its own JSON: `{"error": {"message": ..., "code": ...}}`, `{"error": "..."}`, `{"detail": ...}` and
-//! others. This file reads all of them into one struct with the message and the codes.
+//! Every service has its own JSON: `{"error": {"message": ..., "code": ...}}`, `{"error": "..."}`, `{"detail": ...}`
+//! and others. This file reads all of them into one struct with the message and the codes.
 
 use serde_json::Value;
 use std::time::Duration;
 
-/// Most characters of a service's message that an error of ours repeats.
+/// Most characters of a service's message that an error of this program repeats. The rest is cut off.
 const LONGEST_MESSAGE: usize = 300;
 
 /// The content of an error's body.
@@ -18,7 +18,7 @@ pub(super) struct ServiceErrorBody {
     marks: Vec<String>,
     /// A status inside the body.
     pub(super) status: Option<u16>,
-    /// Gemini's `RetryInfo`.
+    /// How long Gemini asks the program to wait (`RetryInfo`).
     pub(super) retry_delay: Option<Duration>,
 }
 
@@ -41,17 +41,19 @@ impl ServiceErrorBody {
         let text = |value: &Value, field: &str| value.get(field).and_then(Value::as_str).map(str::to_owned);
         let message = error.as_str().map(str::to_owned).or_else(|| text(error, "message"));
         let message = message.or_else(|| text(value, "message")).or_else(|| value.get("detail").map(plain_text));
-        let mut said = Self { message: message.unwrap_or_default(), ..Self::default() };
+        let mut parsed = Self { message: message.unwrap_or_default(), ..Self::default() };
         for field in ["code", "type", "status"] {
-            said.marks.extend(text(error, field).map(|mark| mark.to_ascii_lowercase()));
+            parsed.marks.extend(text(error, field).map(|mark| mark.to_ascii_lowercase()));
         }
         let code = error.get("code").and_then(|code| code.as_u64().or_else(|| code.as_str()?.parse().ok()));
-        said.status = code.and_then(|code| u16::try_from(code).ok()).filter(|code| (300..600).contains(code));
+        parsed.status = code.and_then(|code| u16::try_from(code).ok()).filter(|code| (300..600).contains(code));
         let details = error.get("details").and_then(Value::as_array);
-        details.into_iter().flatten().take(16).for_each(|detail| said.add_detail(detail));
-        said
+        // More than 16 details or violations are ignored, because the body comes from outside.
+        details.into_iter().flatten().take(16).for_each(|detail| parsed.add_detail(detail));
+        parsed
     }
 
+    /// Reads one of the details that Gemini adds to an error.
     fn add_detail(&mut self, detail: &Value) {
         self.marks.extend(detail.get("reason").and_then(Value::as_str).map(str::to_ascii_lowercase));
         let delay = detail.get("retryDelay").and_then(Value::as_str);
@@ -101,10 +103,12 @@ impl ServiceErrorBody {
         ])
     }
 
+    /// Whether the body has one of these codes.
     fn has_mark(&self, marks: &[&str]) -> bool {
         self.marks.iter().any(|mark| marks.contains(&mark.as_str()))
     }
 
+    /// Whether the message contains one of these phrases, in any case.
     fn mentions_any(&self, phrases: &[&str]) -> bool {
         let message = self.message.to_ascii_lowercase();
         phrases.iter().any(|phrase| message.contains(phrase))

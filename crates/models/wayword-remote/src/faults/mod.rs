@@ -1,7 +1,8 @@
 //! Classifies a fault of a service into one of three reactions: try again, give up this call, or stop the run.
 //!
-//! The status alone is not enough. A 429, for example, may mean "slow down" (try again) or "your account is empty" (stop),
-//! and a 200 may carry an error in its body. So the body's codes and words are read first ([`ServiceErrorBody`]).
+//! The status alone is not enough. A 429, for example, may mean "slow down" (try again) or "your account is empty"
+//! (stop), and a 200 may carry an error in its body. So the body's codes and words are read first
+//! ([`ServiceErrorBody`]).
 
 mod delay;
 mod error_body;
@@ -16,7 +17,7 @@ use std::{
 };
 use ureq::{Timeout, http::HeaderMap};
 
-/// Longest wait. If a service asks for a longer one, the run stops.
+/// Longest wait that a service may ask for. If a service asks for a longer one, the run stops.
 const LONGEST_WAIT: Duration = Duration::from_secs(600);
 
 /// The reaction to a request without an answer.
@@ -64,11 +65,14 @@ pub(crate) enum ServiceLoad {
     Over,
 }
 
-/// The provider, as reasons and hints need it.
+/// The details of a provider that reasons and hints need.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct FaultContext<'a> {
+    /// The name of the provider.
     pub(crate) provider: &'a str,
+    /// The environment variable with the key.
     pub(crate) key_env: Option<&'a str>,
+    /// The key, which is removed from every text of the service.
     pub(crate) secret: Option<&'a ServiceSecret>,
 }
 
@@ -97,38 +101,39 @@ pub(crate) fn of_response(
     headers: &HeaderMap,
     body: &[u8],
     now: SystemTime,
-    who: FaultContext<'_>,
+    context: FaultContext<'_>,
 ) -> RemoteFault {
-    let said = ServiceErrorBody::from_body(body);
+    let service_error = ServiceErrorBody::from_body(body);
     // Some services send an error with status 200, and the real status in the body.
-    let status = if (200..300).contains(&status) { said.status.unwrap_or(status) } else { status };
-    let message = who.safe_text(&said.message);
+    let status = if (200..300).contains(&status) { service_error.status.unwrap_or(status) } else { status };
+    let message = context.safe_text(&service_error.message);
     let reason = match message.as_str() {
         "" => format!("status {status}"),
         message => format!("status {status}: {message}"),
     };
-    if let Some(hint) = stop_hint(status, &said, who) {
-        return RemoteFault::Stop { reason: format!("{} says {reason}", who.provider), hint };
+    if let Some(hint) = stop_hint(status, &service_error, context) {
+        return RemoteFault::Stop { reason: format!("{} says {reason}", context.provider), hint };
     }
     match status {
-        429 | 529 => overload_fault(reason, delay::requested_wait(headers, &said, now), who),
-        503 => match delay::requested_wait(headers, &said, now) {
-            Some(after) => overload_fault(reason, Some(after), who),
+        429 | 529 => overload_fault(reason, delay::requested_wait(headers, &service_error, now), context),
+        503 => match delay::requested_wait(headers, &service_error, now) {
+            Some(after) => overload_fault(reason, Some(after), context),
             None => RemoteFault::retry_without_wait(reason, false),
         },
         408 | 409 | 425 | 500..=599 => RemoteFault::retry_without_wait(reason, false),
         // An error with a success status, and no status in the body: the service may have worked on the request.
-        200..=299 if said.is_overloaded() => overload_fault(reason, None, who),
+        200..=299 if service_error.is_overloaded() => overload_fault(reason, None, context),
         200..=299 => RemoteFault::retry_without_wait(reason, true),
         400 | 422 => RemoteFault::Final { reason: reason + unsupported_field_hint(&message), maybe_paid: false },
         _ => RemoteFault::Final { reason, maybe_paid: false },
     }
 }
 
-fn overload_fault(reason: String, after: Option<Duration>, who: FaultContext<'_>) -> RemoteFault {
+/// The fault of an overloaded service, which may ask for a wait.
+fn overload_fault(reason: String, after: Option<Duration>, context: FaultContext<'_>) -> RemoteFault {
     match after {
         Some(after) if after > LONGEST_WAIT => RemoteFault::Stop {
-            reason: format!("{} asks to wait {} minutes: {reason}", who.provider, after.as_secs() / 60),
+            reason: format!("{} asks to wait {} minutes: {reason}", context.provider, after.as_secs() / 60),
             hint: "all answers are kept: to continue, run the same command later".to_owned(),
         },
         after => RemoteFault::Retry(RetryFault { reason, after, load: ServiceLoad::Over, maybe_paid: false }),
@@ -136,26 +141,26 @@ fn overload_fault(reason: String, after: Option<Duration>, who: FaultContext<'_>
 }
 
 /// A hint for the user, if the service will answer no further request.
-fn stop_hint(status: u16, said: &ServiceErrorBody, who: FaultContext<'_>) -> Option<String> {
-    if said.out_of_money() || status == 402 {
+fn stop_hint(status: u16, service_error: &ServiceErrorBody, context: FaultContext<'_>) -> Option<String> {
+    if service_error.out_of_money() || status == 402 {
         return Some(format!(
             "pay for more at {}, or wait until its quota is renewed; then run the same command to continue",
-            who.provider
+            context.provider
         ));
     }
-    if said.day_is_over() {
+    if service_error.day_is_over() {
         return Some(
             "today's quota is used up: run the same command tomorrow to continue, or choose another model".to_owned(),
         );
     }
     match status {
         // The moderation of one request has the same status as a key without permission.
-        403 if said.is_moderated() => None,
-        401 | 403 => Some(who.key_hint()),
-        400 if said.bad_key() => Some(who.key_hint()),
+        403 if service_error.is_moderated() => None,
+        401 | 403 => Some(context.key_hint()),
+        400 if service_error.bad_key() => Some(context.key_hint()),
         300..=399 => Some(format!(
             "redirects are not followed, because the key would be sent along: set base_url under [providers.{}] to the address that the redirect leads to",
-            who.provider
+            context.provider
         )),
         _ => None,
     }
@@ -189,7 +194,7 @@ pub(crate) fn of_transport(
     error: &ureq::Error,
     answered: Option<u16>,
     url: &str,
-    who: FaultContext<'_>,
+    context: FaultContext<'_>,
 ) -> RemoteFault {
     use ureq::Error as E;
     let refused = |error: &std::io::Error| error.kind() == ErrorKind::ConnectionRefused;
@@ -211,7 +216,7 @@ pub(crate) fn of_transport(
         E::Io(_) | E::Protocol(_) | E::ConnectionFailed | E::BodyStalled => {
             let where_ = if answered.is_some() { "in mid-answer" } else { "before an answer" };
             retry(
-                format!("the connection broke {where_}: {}", who.safe_text(&error.to_string())),
+                format!("the connection broke {where_}: {}", context.safe_text(&error.to_string())),
                 ServiceLoad::Unknown,
                 true,
             )
@@ -220,7 +225,7 @@ pub(crate) fn of_transport(
             retry("the answer's headers are too large".to_owned(), ServiceLoad::Unknown, true)
         }
         E::Rustls(_) | E::Tls(_) | E::Pem(_) | E::TlsRequired | E::ConnectProxyFailed(_) | E::InvalidProxyUrl => retry(
-            format!("no secure connection to {url}: {}", who.safe_text(&error.to_string())),
+            format!("no secure connection to {url}: {}", context.safe_text(&error.to_string())),
             ServiceLoad::Unknown,
             false,
         ),
@@ -240,6 +245,7 @@ impl FaultContext<'_> {
         }
     }
 
+    /// The hint for a key that the service refuses or lacks.
     fn key_hint(&self) -> String {
         match self.key_env {
             Some(variable) => {

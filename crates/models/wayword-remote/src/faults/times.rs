@@ -6,7 +6,7 @@ use jiff::{
 };
 use std::time::{Duration, SystemTime};
 
-/// Longest text that is read as a time, bytes.
+/// Longest text that is read as a time, bytes. A longer one is no time.
 const MAX_TIME_TEXT_BYTES: usize = 64;
 
 /// Longest time, a year. Longer ones count as this.
@@ -46,6 +46,7 @@ pub(super) fn until_rfc_3339(text: &str, now: SystemTime) -> Option<Duration> {
 /// The time until a number of seconds, or milliseconds, since 1970.
 pub(super) fn until_unix(text: &str, now: SystemTime) -> Option<Duration> {
     let number: f64 = text.trim().parse().ok()?;
+    // Seconds since 1970 exceed 1e12 only in the year 33658, so a larger number is in milliseconds.
     let s = if number > 1e12 { number / 1000.0 } else { number };
     if !(1e9..1e11).contains(&s) {
         return None;
@@ -58,6 +59,7 @@ fn time_until(at: SystemTime, now: SystemTime) -> Duration {
     at.duration_since(now).unwrap_or_default()
 }
 
+/// A text without white space around it; `None` if it is too long for a time.
 fn trimmed_text(text: &str) -> Option<&str> {
     Some(text.trim()).filter(|text| text.len() <= MAX_TIME_TEXT_BYTES)
 }

@@ -2,7 +2,7 @@
 
 use ureq::http::HeaderMap;
 
-/// Limits per minute.
+/// Limits per minute; `None` where the service advertises none.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(crate) struct AdvertisedLimits {
     pub(crate) requests_per_minute: Option<f64>,
@@ -18,7 +18,7 @@ impl AdvertisedLimits {
         };
         let requests = if requests_per_day { None } else { number("x-ratelimit-limit-requests") };
         // Anthropic has separate limits for tokens in and out. The limit for both together is their sum.
-        let apart = || {
+        let sum_of_both = || {
             let (tokens_in, tokens_out) =
                 (number("anthropic-ratelimit-input-tokens-limit")?, number("anthropic-ratelimit-output-tokens-limit")?);
             Some(tokens_in + tokens_out)
@@ -27,7 +27,7 @@ impl AdvertisedLimits {
             requests_per_minute: requests.or_else(|| number("anthropic-ratelimit-requests-limit")),
             tokens_per_minute: number("x-ratelimit-limit-tokens")
                 .or_else(|| number("anthropic-ratelimit-tokens-limit"))
-                .or_else(apart),
+                .or_else(sum_of_both),
         }
     }
 }

@@ -1,4 +1,5 @@
-//! A token bucket: it fills at a steady rate, and each request takes its amount out. Limits requests or tokens per minute.
+//! A token bucket: it fills at a steady rate, and each request takes its amount out. Limits requests or tokens per
+//! minute.
 
 use std::time::{Duration, Instant};
 
@@ -9,8 +10,11 @@ const HOLDS_S: f64 = 2.0;
 /// bucket can be sent too. Later requests then wait until the bucket has filled again.
 #[derive(Debug, Clone)]
 pub(super) struct RateBucket {
+    /// The rate at which the bucket fills, requests or tokens per second.
     per_s: f64,
+    /// How much may be sent now, requests or tokens.
     level: f64,
+    /// When the level was last brought up to date.
     filled_at: Instant,
 }
 
@@ -28,11 +32,11 @@ impl RateBucket {
         self.level = self.level.min(bucket_capacity(self.per_s));
     }
 
-    /// How long until something of `amount` may be sent.
+    /// How long until something of `amount` may be sent, at most an hour.
     pub(super) fn wait_for(&mut self, amount: f64, now: Instant) -> Duration {
         self.fill_until(now);
-        let lacks = amount.min(bucket_capacity(self.per_s)) - self.level;
-        if lacks <= 1e-9 { Duration::ZERO } else { Duration::from_secs_f64((lacks / self.per_s).min(3600.0)) }
+        let missing = amount.min(bucket_capacity(self.per_s)) - self.level;
+        if missing <= 1e-9 { Duration::ZERO } else { Duration::from_secs_f64((missing / self.per_s).min(3600.0)) }
     }
 
     /// Takes an amount out, or puts one back.
@@ -40,6 +44,7 @@ impl RateBucket {
         self.level = (self.level - amount).min(bucket_capacity(self.per_s));
     }
 
+    /// Brings the level up to date.
     fn fill_until(&mut self, now: Instant) {
         let passed_s = now.saturating_duration_since(self.filled_at).as_secs_f64();
         self.level = (self.level + passed_s * self.per_s).min(bucket_capacity(self.per_s));
@@ -47,7 +52,7 @@ impl RateBucket {
     }
 }
 
-/// The capacity: at least one request.
+/// The capacity of a bucket with this rate: at least one request.
 fn bucket_capacity(per_s: f64) -> f64 {
     (per_s * HOLDS_S).max(1.0)
 }

@@ -1,14 +1,15 @@
 //! Decides when a request may be sent. It has no clock: every function takes the time as an argument.
 //!
-//! The number of requests in flight follows the rule of TCP (additive increase, multiplicative decrease): it grows slowly
-//! while requests are answered, and shrinks by a factor when the service refuses or is slow. On top of it there are the
-//! rates that the user or the service sets ([`RateBucket`]), and a rate learned from refusals ([`SendingPace`]).
+//! The number of requests in flight follows the rule of TCP (additive increase, multiplicative decrease): it grows
+//! slowly while requests are answered, and shrinks by a factor when the service refuses or is slow. On top of it there
+//! are the rates that the user or the service sets ([`RateBucket`]), and a rate learned from refusals
+//! ([`SendingPace`]).
 
 use super::{advertised::AdvertisedLimits, bucket::RateBucket, pace::SendingPace};
 use crate::{RequestConcurrency, faults::ServiceLoad};
 use std::time::{Duration, Instant};
 
-/// The initial value of an adaptive limit.
+/// The initial value of an adaptive limit, requests in flight.
 const INITIAL_ADAPTIVE_LIMIT: f64 = 8.0;
 
 /// The factor that an adaptive limit is multiplied by when the service is overloaded.
@@ -66,6 +67,7 @@ pub(crate) enum RequestOutcome {
 /// A request in flight.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct GateTicket {
+    /// When the request was sent.
     pub(super) left_at: Instant,
     /// The same moment by the pace's clock, seconds.
     left_s: f64,
@@ -80,9 +82,13 @@ pub(super) struct RequestGate {
     /// How many requests in flight the service can take; a fraction, because it grows by less than one at a time. If
     /// the user fixed the number, this value only spaces requests out after a refusal.
     limit: f64,
+    /// How many requests are in flight.
     out: usize,
+    /// The end of the pause that the service asked for.
     paused_until: Option<Instant>,
+    /// The usual time until an answer: a mean in which older answers count less and less.
     latency: Duration,
+    /// When the limit last shrank.
     shrunk_at: Option<Instant>,
     /// Whether the service ever refused a request as too much.
     refused: bool,
@@ -91,6 +97,7 @@ pub(super) struct RequestGate {
     slow: RecentShare,
     /// When a request last had to wait for another one to end.
     crowded_at: Option<Instant>,
+    /// The rates of requests and tokens that the user or the service sets.
     requests: Option<RateBucket>,
     tokens: Option<RateBucket>,
     pace: SendingPace,
@@ -127,11 +134,11 @@ impl RequestGate {
         if !pause.is_zero() {
             return GateTurn::In(pause);
         }
-        let most = match self.rules.concurrency {
-            RequestConcurrency::Fixed(most) => most as f64,
+        let max_in_flight = match self.rules.concurrency {
+            RequestConcurrency::Fixed(max_in_flight) => max_in_flight as f64,
             RequestConcurrency::Adaptive { .. } => self.limit,
         };
-        if self.out as f64 + 1.0 > most + 1e-9 {
+        if self.out as f64 + 1.0 > max_in_flight + 1e-9 {
             self.crowded_at = Some(now);
             return GateTurn::WhenOneIsBack;
         }
@@ -180,33 +187,36 @@ impl RequestGate {
         }
     }
 
+    /// Learns from an answer: updates the latency, and raises the limit if it was reached.
     fn note_answer(&mut self, left_at: Instant, now: Instant) {
         let latency = now.saturating_duration_since(left_at);
         self.latency = if self.latency.is_zero() { latency } else { (7 * self.latency + latency) / 8 };
         // If the limit was not reached, it is not known whether the service can take more.
         if self.crowded_at.is_some_and(|crowded_at| crowded_at >= left_at) {
+            // Until the first refusal the limit grows quickly, then by about one for each round of requests.
             let step = if self.shrunk_at.is_none() { 0.25 } else { 1.0 / self.limit };
             self.limit = (self.limit + step).min(self.rules.concurrency.max_in_flight() as f64);
         }
     }
 
+    /// Learns from a refusal or an answer that came too late: lowers the limit, and pauses if the service asks for it.
     fn note_burden(&mut self, left_at: Instant, now: Instant, load: ServiceLoad, after: Option<Duration>) {
         // Refusals of requests that were in flight together count as one.
         let window = self.latency.max(SHORTEST_WINDOW);
-        let first = self.shrunk_at.is_none_or(|shrunk_at| left_at >= shrunk_at && now >= shrunk_at + window);
-        // Each refusal changes the limits only once.
+        let is_first = self.shrunk_at.is_none_or(|shrunk_at| left_at >= shrunk_at && now >= shrunk_at + window);
+        // The cases so far are forgotten, so that each refusal changes the limits only once.
         if load == ServiceLoad::Slow {
             self.slow.forget_cases();
         }
         if load == ServiceLoad::Over {
             self.over.forget_cases();
             self.refused = true;
-            self.pace.note_refusal(first);
+            self.pace.note_refusal(is_first);
             if let Some(until) = after.and_then(|after| now.checked_add(after)) {
                 self.paused_until = Some(self.paused_until.map_or(until, |paused| paused.max(until)));
             }
         }
-        if first {
+        if is_first {
             self.limit = (self.limit * SHRINK_FACTOR).max(1.0);
             self.shrunk_at = Some(now);
         }
@@ -214,19 +224,20 @@ impl RequestGate {
 
     /// Takes the service's limits, where they are lower than the user's.
     pub(super) fn adopt_limits(&mut self, advertised: AdvertisedLimits, now: Instant) {
-        let smaller = |own: Option<f64>, told: f64| own.map_or(told, |own| own.min(told));
-        if let Some(told) = advertised.requests_per_minute {
-            set_bucket_rate(&mut self.requests, smaller(self.rules.requests_per_minute, told), now);
+        let smaller = |user: Option<f64>, service: f64| user.map_or(service, |user| user.min(service));
+        if let Some(rate) = advertised.requests_per_minute {
+            set_bucket_rate(&mut self.requests, smaller(self.rules.requests_per_minute, rate), now);
         }
-        if let Some(told) = advertised.tokens_per_minute {
-            set_bucket_rate(&mut self.tokens, smaller(self.rules.tokens_per_minute, told), now);
+        if let Some(rate) = advertised.tokens_per_minute {
+            set_bucket_rate(&mut self.tokens, smaller(self.rules.tokens_per_minute, rate), now);
         }
     }
 }
 
-/// A share among the latest requests, in which older ones count less and less.
+/// The share of some case, such as a refusal, among the latest requests. Older requests count less and less.
 #[derive(Debug, Default)]
 pub(super) struct RecentShare {
+    /// The weights of the requests that are such a case, and of all requests.
     met: f64,
     all: f64,
 }
@@ -253,6 +264,7 @@ impl RequestGate {
     }
 }
 
+/// Changes the rate of a bucket, which is made if there is none.
 fn set_bucket_rate(bucket: &mut Option<RateBucket>, per_minute: f64, now: Instant) {
     match bucket {
         Some(bucket) => bucket.set_per_minute(per_minute, now),

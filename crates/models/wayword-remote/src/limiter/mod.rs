@@ -1,7 +1,7 @@
 //! Limits how many requests are sent to an endpoint, and when.
 //!
-//! [`RequestGate`] makes all decisions and takes the time as an argument, so that tests need no clock. This module makes threads
-//! wait for its decisions.
+//! [`RequestGate`] makes all decisions and takes the time as an argument, so that tests need no clock. This module
+//! makes threads wait for the decisions.
 
 mod advertised;
 mod bucket;
@@ -33,6 +33,7 @@ pub(crate) struct EndpointLimiter {
 pub(crate) struct RequestPermit<'a> {
     limiter: &'a EndpointLimiter,
     ticket: GateTicket,
+    /// How the request ended. A permit that is dropped without it counts as failed.
     outcome: Option<RequestOutcome>,
 }
 

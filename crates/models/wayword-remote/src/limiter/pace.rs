@@ -1,7 +1,7 @@
 //! Learns the rate limit of a service that refuses requests above it and does not advertise it.
 //!
-//! At a refusal, the rate of the requests that were accepted lately is close to the limit. The pace is set a little below
-//! it, grows again carefully, and stays near the limit once two refusals came at about the same rate.
+//! At a refusal, the rate of the requests that were accepted lately is close to the limit. The pace is set a little
+//! below it, grows again carefully, and stays near the limit once two refusals came at about the same rate.
 
 use std::{
     collections::VecDeque,
@@ -14,7 +14,7 @@ const LOOK_BACK_S: f64 = 3.0;
 /// Fewest accepted requests from which a rate is measured.
 const MIN_MEASURED_REQUESTS: usize = 16;
 
-/// Most accepted requests that are remembered.
+/// Most accepted requests that are remembered. The oldest is forgotten.
 const MAX_REMEMBERED_REQUESTS: usize = 4096;
 
 /// Shortest time over which a rate is measured, seconds. A shorter time may show only a burst that the service accepts.
@@ -26,21 +26,21 @@ const CAUTION_SHARE: f64 = 0.98;
 /// If a refusal follows another one within this time, the pace is still far too high, seconds.
 const SOON_S: f64 = 3.0;
 
-/// A pace that was refused only once grows by this share of itself per second, and by as much more with each second
-/// since, until it is refused at about the same rate again.
+/// A pace that was refused only once grows by this share of itself per second, by twice the share one second after the
+/// refusal, by three times the share after two seconds, and so on, until it is refused at about the same rate again.
 const SEARCH_PER_S: f64 = 0.03;
 
-/// After that, the pace quickly approaches this share of the refused pace.
+/// A pace that was refused twice at about the same rate quickly approaches this share of the refused pace.
 const NEAR_SHARE: f64 = 0.98;
 
-/// Above that, it grows by this share per second at first, and twice as fast after each [`CALM_S`] without a refusal,
-/// so that it notices when the service allows more again.
+/// Above [`NEAR_SHARE`] of the refused pace, the pace grows by this share per second at first, and twice as fast after
+/// each [`CALM_S`] without a refusal, so that it notices when the service allows more again.
 const PROBE_PER_S: f64 = 0.001;
 
-/// See [`PROBE_PER_S`], seconds.
+/// The time without a refusal after which the growth by [`PROBE_PER_S`] doubles, seconds.
 const CALM_S: f64 = 10.0;
 
-/// A pace above this many times the accepted rate did not limit the requests.
+/// A pace above this many times the accepted rate did not limit the requests, so it was never tried.
 const TRIED_RATE_FACTOR: f64 = 2.0;
 
 /// The highest pace, requests per second.
@@ -51,15 +51,19 @@ const FASTEST_PER_S: f64 = 1e5;
 pub(super) struct SendingPace {
     /// When the accepted requests were sent, by a clock that stops in pauses, seconds.
     let_in: VecDeque<f64>,
+    /// The time by the clock that stops in pauses, seconds.
     active_s: f64,
+    /// When that clock was last advanced.
     seen_at: Instant,
     learned: Option<LearnedRate>,
     /// When the next request may be sent, if they are spaced out.
     next: Option<Instant>,
 }
 
+/// The pace that follows from the refusals so far.
 #[derive(Debug)]
 struct LearnedRate {
+    /// The pace, requests per second.
     per_s: f64,
     /// The pace that was refused.
     refused_per_s: f64,
@@ -127,15 +131,17 @@ impl SendingPace {
         let (per_s, refused_per_s, confirmed) = match old {
             None => (careful, let_in_per_s, false),
             Some(old) => {
-                let soon = self.active_s - old.refused_s < SOON_S;
-                let close = (0.87..1.15).contains(&(old.per_s / old.refused_per_s));
+                // The last refusal was a moment ago, so the pace is still far too high.
+                let is_soon = self.active_s - old.refused_s < SOON_S;
+                // The pace is near the one that was refused last.
+                let is_close = (0.87..1.15).contains(&(old.per_s / old.refused_per_s));
                 // A single refusal among many accepted requests is not a new limit, so the step down is bounded.
-                let least = old.per_s * if soon || !old.confirmed { 0.6 } else { 0.8 };
+                let lowest = old.per_s * if is_soon || !old.confirmed { 0.6 } else { 0.8 };
                 // The limit lies between the accepted and the refused rate. Right after a refusal, the accepted rate is
                 // lower than it could be.
                 let refused_per_s =
-                    if close && !soon { let_in_per_s.clamp(old.per_s * 0.85, old.per_s) } else { old.per_s };
-                (careful.clamp(least, old.per_s * 0.98), refused_per_s, close)
+                    if is_close && !is_soon { let_in_per_s.clamp(old.per_s * 0.85, old.per_s) } else { old.per_s };
+                (careful.clamp(lowest, old.per_s * 0.98), refused_per_s, is_close)
             }
         };
         let refused_s = self.active_s;
@@ -145,18 +151,19 @@ impl SendingPace {
 
     /// The rate of the requests that were accepted lately, if there were enough.
     fn let_in_per_s(&self) -> Option<f64> {
-        let mut left: Vec<f64> = self.let_in.iter().copied().collect();
-        left.sort_by(f64::total_cmp);
-        let newest = *left.last()?;
-        let recent = left.iter().rev().take_while(|&&at| at >= newest - LOOK_BACK_S).count();
+        let mut sent: Vec<f64> = self.let_in.iter().copied().collect();
+        sent.sort_by(f64::total_cmp);
+        let newest = *sent.last()?;
+        let recent = sent.iter().rev().take_while(|&&at| at >= newest - LOOK_BACK_S).count();
         // For a slow service, a longer time is used, so that there are enough requests.
-        let count = recent.max(left.len().min(MIN_MEASURED_REQUESTS));
-        let span_s = newest - left[left.len() - count];
+        let count = recent.max(sent.len().min(MIN_MEASURED_REQUESTS));
+        let span_s = newest - sent[sent.len() - count];
         (count >= MIN_MEASURED_REQUESTS && span_s >= LONG_ENOUGH_S).then(|| (count - 1) as f64 / span_s)
     }
 }
 
 impl LearnedRate {
+    /// Lets the pace grow during `passed_s` seconds, up to the time `active_s`.
     fn grow_rate(&mut self, passed_s: f64, active_s: f64) {
         if !self.confirmed {
             let since_s = active_s - self.refused_s;
@@ -168,8 +175,8 @@ impl LearnedRate {
             self.per_s += (near - self.per_s) * (passed_s * 0.5).min(1.0);
         }
         if self.per_s >= near * 0.99 {
-            let calm = ((active_s - self.refused_s) / CALM_S).clamp(0.0, 6.0);
-            self.per_s *= 1.0 + PROBE_PER_S * calm.floor().exp2() * passed_s;
+            let doublings = ((active_s - self.refused_s) / CALM_S).clamp(0.0, 6.0);
+            self.per_s *= 1.0 + PROBE_PER_S * doublings.floor().exp2() * passed_s;
         }
     }
 }

@@ -1,13 +1,11 @@
 //! The command line of `wayword compare`.
 
+use super::tool_agent_eyes::ToolAgentEyes;
 use clap::{Args, ValueEnum, builder::PossibleValuesParser};
 use std::{fmt, path::PathBuf, str::FromStr};
 use wayword_metrics::TrajectorySuccessRule;
 use wayword_navigation::{agents::WalkPrior, swap::InstructionSwap};
-use wayword_run::settings::{
-    AskedPlatform, AskedRoles, AskedSettings, Draw, LABELS_ROLE, RULES_ROLE, Service, Walks, can_play, is_in_process,
-    is_model,
-};
+use wayword_run::settings::{AskedPlatform, AskedRoles, AskedSettings, Draw, RolePlayer, Service, Walks};
 
 /// `wayword compare`.
 #[derive(Debug, Args)]
@@ -72,14 +70,14 @@ pub struct CompareArgs {
     pub prior: Option<AskedPrior>,
     /// What splits an instruction into phrases for the agents that walk by phrases: rules, or a language model as provider/model.
     #[arg(long, value_name = "MODEL", default_value = "rules", value_parser = parse_splitter)]
-    pub split: String,
+    pub split: RolePlayer,
     /// Language model of the agent `tools`, over HTTP, as provider/model. It calls tools where its provider has them.
     #[arg(long, value_name = "MODEL", value_parser = parse_walker_model)]
     pub llm: Option<String>,
     /// How the agent `tools` sees: labels (the platform's ground-truth labels, and the room), pictures (the model of --llm is shown
     /// them), or a model as provider/model that describes the pictures. [default: labels]
-    #[arg(long, value_name = "HOW", value_parser = parse_seeing)]
-    pub see: Option<String>,
+    #[arg(long, value_name = "HOW")]
+    pub see: Option<ToolAgentEyes>,
     /// Longer side of the pictures that models get; larger pictures are shrunk. [default: 512]
     #[arg(long, value_name = "PX")]
     pub picture_px: Option<u32>,
@@ -164,32 +162,17 @@ impl FromStr for AskedPrior {
 }
 
 /// Checks the value of `--split`.
-fn parse_splitter(name: &str) -> Result<String, String> {
-    if can_play(name, RULES_ROLE) {
-        return Ok(name.to_owned());
-    }
-    Err(format!("name {RULES_ROLE}, or a language model as provider/model, as in --split ollama/qwen3"))
+fn parse_splitter(name: &str) -> Result<RolePlayer, String> {
+    let problem = "name rules, or a language model as provider/model, as in --split ollama/qwen3";
+    RolePlayer::Rules.or_model(name).ok_or_else(|| problem.to_owned())
 }
 
 /// Checks the value of `--llm`.
 fn parse_walker_model(name: &str) -> Result<String, String> {
-    if is_model(name) && can_play(name, RULES_ROLE) && !is_in_process(name) {
-        return Ok(name.to_owned());
+    match name.parse::<RolePlayer>() {
+        Ok(player) if player.remote_model().is_some() => Ok(name.to_owned()),
+        _ => Err("name a language model behind HTTP as provider/model, as in --llm openai/gpt-4.1-mini".to_owned()),
     }
-    Err("name a language model behind HTTP as provider/model, as in --llm openai/gpt-4.1-mini".to_owned())
-}
-
-/// The value of `--see` with which the language model of the agent `tools` gets the pictures itself.
-pub const SEE_BY_PICTURES: &str = "pictures";
-
-/// Checks the value of `--see`.
-fn parse_seeing(name: &str) -> Result<String, String> {
-    if name == SEE_BY_PICTURES || can_play(name, LABELS_ROLE) {
-        return Ok(name.to_owned());
-    }
-    Err(format!(
-        "name {LABELS_ROLE}, {SEE_BY_PICTURES}, or a model that sees as provider/model, as in --see ollama/llava"
-    ))
 }
 
 impl CompareArgs {
@@ -209,10 +192,10 @@ impl CompareArgs {
             walks: Walks { episodes: Some(self.episodes.clone()), ..Walks::default() },
             draw: Draw { seed: Some(self.seed), limit: self.limit.map(|limit| limit as usize) },
             roles: AskedRoles {
-                ask: Some(self.split.clone()),
-                see: self.see.clone().filter(|see| see != SEE_BY_PICTURES),
+                ask: Some(self.split.to_string()),
+                see: self.see.as_ref().filter(|see| **see != ToolAgentEyes::Pictures).map(ToString::to_string),
                 write: self.llm.clone(),
-                write_sees: (self.see.as_deref() == Some(SEE_BY_PICTURES)).then_some(true),
+                write_sees: (self.see == Some(ToolAgentEyes::Pictures)).then_some(true),
                 picture_px: self.picture_px,
                 base_url: self.base_url.clone(),
                 detector: self.detector_name().map(str::to_owned),

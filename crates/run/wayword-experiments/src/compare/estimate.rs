@@ -1,12 +1,13 @@
 //! Estimates what a comparison would ask of models, and the cost, for `wayword compare --dry-run`.
 
 use super::{
-    agents::{TOOLS_AGENT_NAME, WalkingAgent},
+    agents::WalkingAgent,
     instruction_sets::ComparisonItem,
     settings::{ComparisonSettings, ToolAgentSettings},
+    thresholds::TOOLS_AGENT_NAME,
     tools::describing_settings,
 };
-use crate::compare::args::SEE_BY_PICTURES;
+use crate::compare::tool_agent_eyes::ToolAgentEyes;
 use serde::Serialize;
 use std::{collections::BTreeSet, fmt};
 use wayword_core::{ModelError, ModelRequest, Platform, View};
@@ -20,7 +21,7 @@ use wayword_run::{
     count::count_phrase,
     error::CommandError,
     plan::{CallLoad, JobModels, ModelBill, picture_tokens, seeing_load},
-    settings::{LABELS_ROLE, RunSettings, is_model},
+    settings::RunSettings,
 };
 
 /// Number of items for which walks are rehearsed. The estimate assumes that the other items are like them.
@@ -57,20 +58,20 @@ impl ComparisonEstimate {
         (platform, models): (&dyn Platform, &JobModels<'_>),
     ) -> Result<Self, CommandError> {
         let mut estimate = Self { items: items.len(), walks: 0, most_tokens_in: 0, models: ModelBill::default() };
-        if is_model(&kept.split) {
-            estimate.models.add_load(&kept.split, "splits", estimate_splitting(items, agents));
+        if let Some(model) = kept.split.model_name() {
+            estimate.models.add_load(model, "splits", estimate_splitting(items, agents));
         }
         if let Some(tools) = &kept.tools {
             estimate.walks = items.iter().map(|item| WalkingAgent::Tools.texts_of_item(item).count()).sum();
             let load = estimate.estimate_walks(tools, items, platform)?;
             estimate.models.add_load(&tools.llm, "walks", load);
-            if is_model(&tools.see) {
+            if let Some(model) = tools.see.describing_model() {
                 let places: BTreeSet<_> = items
                     .iter()
                     .flat_map(|item| item.episode.viewpoints.iter().map(|viewpoint| (&item.episode.scene, viewpoint)))
                     .collect();
                 let load = seeing_load(&describing_settings(settings))?.times(VIEWS_PER_PLACE * places.len() as u64);
-                estimate.models.add_load(&tools.see, "sees", load);
+                estimate.models.add_load(model, "sees", load);
             }
         }
         estimate.models.fill_prices(models);
@@ -85,9 +86,11 @@ impl ComparisonEstimate {
         platform: &dyn Platform,
     ) -> Result<CallLoad, CommandError> {
         let grounder = LexicalGrounder::new(GrounderScope::Views);
-        let looks_at_pictures = tools.see == SEE_BY_PICTURES;
-        let looks =
-            if tools.see == LABELS_ROLE { ToolAgentSight::Labels } else { ToolAgentSight::Captions(&TypicalCaption) };
+        let looks_at_pictures = tools.see == ToolAgentEyes::Pictures;
+        let looks = match tools.see.are_labels() {
+            true => ToolAgentSight::Labels,
+            false => ToolAgentSight::Captions(&TypicalCaption),
+        };
         let (mut load, mut rehearsed) = (CallLoad::default(), 0);
         for item in items.iter().take(REHEARSED_ITEM_COUNT) {
             let agent_view = AgentView::new(platform, &grounder, false, &item.start.scene)?;

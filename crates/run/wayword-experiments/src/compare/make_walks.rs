@@ -76,7 +76,7 @@ impl ItemWalkMaker<'_> {
         let mut walks = Vec::new();
         for agent in self.agents {
             let mut add = |text: &ComparisonText, directions, walked| {
-                walks.push(walk_record(agent, item, text, directions, walked))
+                walks.push(walk_record(agent, item, text, directions, walked));
             };
             match agent {
                 WalkingAgent::Phrases { parameters, by_detector, .. } => {
@@ -115,7 +115,7 @@ impl ItemWalkMaker<'_> {
                     }
                 }
                 WalkingAgent::Random(_) | WalkingAgent::Straight(_) | WalkingAgent::Oracle => {
-                    walks.extend(self.walk_unread(agent, item)?)
+                    walks.extend(self.walk_unread(agent, item)?);
                 }
             }
         }

@@ -10,6 +10,8 @@ mod outputs;
 mod page;
 mod score;
 mod settings;
+mod thresholds;
+pub mod tool_agent_eyes;
 mod tools;
 
 use crate::{compare::args::CompareArgs, demands::PlatformDemands};
@@ -39,7 +41,7 @@ use wayword_run::{
     platforms::SCENES_KEPT,
     run_folder as run,
     run_folder::Journal,
-    settings::RULES_ROLE,
+    settings::RolePlayer,
     settings_file as config,
 };
 
@@ -165,9 +167,12 @@ fn begin_folder(folder: &Path, kept: &ComparisonSettings) -> Result<run::FolderL
 }
 
 /// Opens the splitter that takes instructions apart into phrases.
-fn open_splitter(name: &str, calls: Option<&ModelCalls>) -> Result<Box<dyn InstructionSplitter>, CommandError> {
-    match calls.filter(|_| name != RULES_ROLE) {
-        Some(calls) => Ok(Box::new(ByModel::new(calls.open_model(name)?))),
+fn open_splitter(
+    player: &RolePlayer,
+    calls: Option<&ModelCalls>,
+) -> Result<Box<dyn InstructionSplitter>, CommandError> {
+    match calls.zip(player.model_name()) {
+        Some((calls, name)) => Ok(Box::new(ByModel::new(calls.open_model(name)?))),
         None => Ok(Box::new(ByRules)),
     }
 }

@@ -1,11 +1,12 @@
 //! Scores the walks of a comparison, and makes the comparison of their figures.
 
 use super::{
-    agents::{READER_AGENT_NAME, TOOLS_AGENT_NAME, WalkingAgent},
+    agents::WalkingAgent,
     file,
     instruction_sets::ComparisonItem,
     make_walks::ItemWalkMaker,
     settings::{ComparisonSettings, last_part},
+    thresholds::{READER_AGENT_NAME, TOOLS_AGENT_NAME},
 };
 use crate::{demands::PlatformDemands, episodes};
 use std::{collections::BTreeMap, path::Path, sync::Arc};
@@ -19,7 +20,7 @@ use wayword_navigation::{
     walk::AgentWalkRecord,
 };
 use wayword_robustness::sets::FollowResult;
-use wayword_run::{error::CommandError, run_folder::lines, settings::LABELS_ROLE};
+use wayword_run::{error::CommandError, run_folder::lines};
 
 /// Level of the intervals.
 const CONFIDENCE_LEVEL: f64 = 0.95;
@@ -73,7 +74,7 @@ impl<'a> WalkJudge<'a> {
             items.iter().map(|item| (item.episode.id.as_str(), episodes::episode_path_name(&item.episode))).collect();
         // Labels name objects, and boxes point to them; a grounder that compares whole pictures does neither.
         let grounder_names = kept.grounder.starts_with("labels") || kept.detects_views();
-        let is_shown_names = kept.tools.as_ref().is_some_and(|tools| tools.see == LABELS_ROLE);
+        let is_shown_names = kept.tools.as_ref().is_some_and(|tools| tools.see.are_labels());
         let name_objects = [grounder_names, grounder_names || is_shown_names];
         let without_object = blind.map(|item| item.episode.id.as_str());
         Ok(Self { demands, clusters, rule, name_objects, without_object })
@@ -145,7 +146,7 @@ pub(super) fn build_comparison(
         detector_score: crew.grounders.score.clone(),
         encoder: kept.encoder.clone(),
         splitter: crew.splitter.name().to_owned(),
-        tools: kept.tools.as_ref().map(|tools| (tools.llm.clone(), tools.see.clone())),
+        tools: kept.tools.as_ref().map(|tools| (tools.llm.clone(), tools.see.to_string())),
         rule: judge.rule,
         level: CONFIDENCE_LEVEL,
         resamples,

@@ -1,7 +1,10 @@
 //! The settings of a comparison. `config.toml` in its folder stores them, so that a later command continues with the same.
 
-use super::agents::{READER_MAP, TOOLS_AGENT_NAME};
-use crate::compare::args::{CompareArgs, SwapName};
+use super::thresholds::{BY_NAME, READER_MAP, TOOLS_AGENT_NAME, read_thresholds};
+use crate::compare::{
+    args::{CompareArgs, SwapName},
+    tool_agent_eyes::ToolAgentEyes,
+};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::{
@@ -19,7 +22,7 @@ use wayword_run::{
     own_format::OwnFormat,
     platforms::{self, PlatformPlace},
     run_folder::{hash_of_file, short_hex},
-    settings::{LABELS_ROLE, RunSettings, refuse_unnameable},
+    settings::{RolePlayer, RunSettings, refuse_unnameable},
 };
 
 /// The settings of a comparison, as `config.toml` stores them.
@@ -55,7 +58,7 @@ pub(crate) struct ComparisonSettings {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) detector: Option<String>,
     /// What splits instructions into phrases.
-    pub(crate) split: String,
+    pub(crate) split: RolePlayer,
     /// Base URL of that model, if it is not its provider's default.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) base_url: Option<String>,
@@ -88,7 +91,7 @@ pub(crate) struct ToolAgentSettings {
     /// Its model.
     pub(crate) llm: String,
     /// How it sees: labels, pictures, or the model that describes them.
-    pub(crate) see: String,
+    pub(crate) see: ToolAgentEyes,
     /// Longer side of the pictures that models are sent.
     pub(crate) picture_px: u32,
     /// The limits of a walk: hops, calls and money.
@@ -100,9 +103,6 @@ impl OwnFormat for ComparisonSettings {
     const NAME: &str = "wayword-comparison/1";
     const NUMBER: Option<i64> = Some(1);
 }
-
-/// The value of `--grounder` that means the detector of `--detector`.
-pub(super) const BY_NAME: &str = "detector";
 
 /// The name of the set of the episodes' own instructions.
 pub(super) const ORIGINAL_SET_NAME: &str = "original";
@@ -137,8 +137,7 @@ impl ComparisonSettings {
             inputs.insert("prompts of tools".to_owned(), short_hex(Sha256::new_with_prefix(prompt_wording())));
         }
         let detector = settings.roles.detector.as_deref();
-        let thresholds =
-            super::agents::read_thresholds(&args.agents, (&args.grounder, detector), args.parameters.as_deref())?;
+        let thresholds = read_thresholds(&args.agents, (&args.grounder, detector), args.parameters.as_deref())?;
         Ok(Self {
             platform: settings.platform.clone(),
             data: settings.data.as_deref().map(absolute_path).transpose()?,
@@ -233,7 +232,7 @@ fn tool_agent_settings(
 ) -> Option<ToolAgentSettings> {
     Some(ToolAgentSettings {
         llm: args.llm.clone()?,
-        see: args.see.clone().unwrap_or_else(|| LABELS_ROLE.to_owned()),
+        see: args.see.clone().unwrap_or(ToolAgentEyes::Player(RolePlayer::Labels)),
         picture_px: settings.roles.picture_px,
         limits,
     })

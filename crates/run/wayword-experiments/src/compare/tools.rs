@@ -4,7 +4,7 @@ use super::{
     instruction_sets::ComparisonItem,
     settings::{ComparisonSettings, ToolAgentSettings},
 };
-use crate::compare::args::SEE_BY_PICTURES;
+use crate::compare::tool_agent_eyes::ToolAgentEyes;
 use std::sync::Arc;
 use wayword_core::{LanguageModel, ModelError, Platform, View};
 use wayword_navigation::{
@@ -17,7 +17,7 @@ use wayword_run::{
     error::CommandError,
     output::CommandOutput,
     plan::JobModels,
-    settings::{LABELS_ROLE, RULES_ROLE, RunRoles, RunSettings},
+    settings::{RolePlayer, RunRoles, RunSettings},
     team::RoleTeam,
 };
 use wayword_synthesis::observe::talk_about;
@@ -87,10 +87,10 @@ impl ToolboxSight {
         calls: &ModelCalls,
         platform: &dyn Platform,
     ) -> Result<Self, CommandError> {
-        match tools.see.as_str() {
-            LABELS_ROLE => Ok(Self::Labels),
-            SEE_BY_PICTURES => Ok(Self::Pictures),
-            _ => Ok(Self::Captions(TeamCaptions(Box::new(RoleTeam::new(
+        match &tools.see {
+            ToolAgentEyes::Player(RolePlayer::Labels) => Ok(Self::Labels),
+            ToolAgentEyes::Pictures => Ok(Self::Pictures),
+            ToolAgentEyes::Player(_) => Ok(Self::Captions(TeamCaptions(Box::new(RoleTeam::new(
                 &describing_settings(settings),
                 Some(calls),
                 platform,
@@ -115,8 +115,13 @@ impl ViewDescriber for TeamCaptions {
 
 /// The settings for describing views: those of the comparison, but only the role that sees is a model's.
 pub(super) fn describing_settings(settings: &RunSettings) -> RunSettings {
-    let [ask, summarise, write] = [RULES_ROLE; 3].map(str::to_owned);
-    let roles = RunRoles { ask, summarise, write, write_sees: false, ..settings.roles.clone() };
+    let roles = RunRoles {
+        ask: RolePlayer::Rules,
+        summarise: RolePlayer::Rules,
+        write: RolePlayer::Rules,
+        write_sees: false,
+        ..settings.roles.clone()
+    };
     RunSettings { roles, ..settings.clone() }
 }
 

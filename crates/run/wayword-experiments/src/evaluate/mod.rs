@@ -35,6 +35,10 @@ struct SubmissionCoverage {
     left_out: usize,
 }
 
+/// Runs `wayword evaluate`: scores the trajectories of a submission, and prints the report.
+///
+/// # Errors
+/// When an input cannot be read, the submission has problems or no trajectory, a rule cannot be applied, or `--per-item` names an input.
 pub fn run_evaluate(args: &Args, output: &CommandOutput) -> Result<Exit, CommandError> {
     refuse_to_overwrite(args)?;
     let platform = platforms::open_at(args.platform.name(), (&args.platform).into())?;

@@ -26,7 +26,7 @@ use wayword_run::{
     platforms,
     run_folder::fresh_id,
     scene_selection,
-    settings::{Perception, RunJob, RunSettings, is_in_process},
+    settings::{Perception, RolePlayer, RunJob, RunSettings},
     settings_file as config,
     team::RoleTeam,
 };
@@ -48,6 +48,9 @@ pub struct PerceptionMeasurement {
     pub views: usize,
     /// Who asked, answered and summarised.
     pub roles: String,
+    /// Whether labels answered, and no model.
+    #[serde(skip)]
+    labels_answered: bool,
     /// One per way of asking.
     pub rows: Vec<PerceptionRow>,
     /// The figures of the detector, if one was named.
@@ -78,6 +81,10 @@ struct ScoredCaption {
     score: CaptionScore,
 }
 
+/// Runs `wayword perceive`: has a model caption views, and prints the scores against labels.
+///
+/// # Errors
+/// When the settings are wrong, the platform cannot be opened, a file cannot be written, and as [`measure_perception`].
 pub fn run_perceive(args: &PerceiveArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
     let mut asked = args.asked_settings().or_file(config::read_settings(args.config.as_deref())?);
     // As many random paths as views are enough, because each new path gives at least one view.
@@ -130,6 +137,7 @@ pub fn measure_perception(
         platform: job.settings.platform.clone(),
         views: views.len(),
         roles: describe_roles(&job.settings),
+        labels_answered: job.settings.roles.see == RolePlayer::Labels,
         rows: Vec::new(),
         detector: None,
         shown: Vec::new(),
@@ -170,7 +178,7 @@ pub fn measure_perception(
 
 /// The ways of asking that work with the model that sees: one in process cannot be asked for JSON.
 fn askable_perceptions(settings: &RunSettings) -> Vec<Perception> {
-    let in_process = is_in_process(&settings.roles.see);
+    let in_process = settings.roles.see.is_in_process();
     ALL_PERCEPTIONS.into_iter().filter(|way| !(in_process && way.is_structured())).collect()
 }
 

@@ -3,10 +3,7 @@
 use super::{PerceptionMeasurement, ScoredCaption};
 use serde::Serialize;
 use std::fmt;
-use wayword_run::{
-    count::count_phrase,
-    settings::{LABELS_ROLE, Perception},
-};
+use wayword_run::{count::count_phrase, settings::Perception};
 use wayword_synthesis::perception::CaptionScore;
 
 /// The figures of one way of asking.
@@ -104,9 +101,9 @@ pub(super) struct PerceptionTable<'a>(pub(super) &'a PerceptionMeasurement);
 
 impl fmt::Display for PerceptionTable<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let PerceptionMeasurement { platform, views, roles, rows, shown, .. } = self.0;
+        let PerceptionMeasurement { platform, views, roles, labels_answered, rows, shown, .. } = self.0;
         writeln!(f, "{} of {platform}; {roles}", count_phrase(*views, "view"))?;
-        if roles.contains(&format!("answered by {LABELS_ROLE}")) {
+        if *labels_answered {
             writeln!(
                 f,
                 "The ground-truth labels answered here, and no model: the figures show what the dialogue loses, not \

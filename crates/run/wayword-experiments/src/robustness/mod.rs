@@ -20,7 +20,7 @@ use arm::RobustnessArm;
 use base::BaseRun;
 use figures::RecordsByArm;
 use other_platform::OtherPlatformScenes;
-use record::{ArmPathRecord, record_key};
+use record::{ArmPathRecord, UnchangedRecords, record_key};
 use serde::{Deserialize, Serialize};
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -44,11 +44,11 @@ use wayword_run::{
     platforms::{self, RememberingPlatform},
     run_folder as run,
     run_folder::{Journal, hash_of_file, lines},
-    settings::{AskedSettings, LABELS_ROLE, RunJob, RunSettings},
+    settings::{AskedSettings, RolePlayer, RunJob, RunSettings},
     settings_file as config,
     team::RoleTeam,
 };
-use write_texts::{ArmContext, ArmTextWriter, UnchangedRecords};
+use write_texts::{ArmContext, ArmTextWriter};
 
 /// Names of the files in the folder, except `config.toml`.
 mod file {
@@ -86,6 +86,11 @@ impl OwnFormat for RobustnessSettings {
     const NAME: &str = "wayword-robustness/1";
 }
 
+/// Runs `wayword robustness`: writes the texts of a run again in changed worlds, and stores and prints how far they change.
+///
+/// # Errors
+/// When the flags do not fit together, the run or its platform cannot be read, no change can be made, a model fails, or a file
+/// cannot be written.
 pub fn run_robustness(args: &RobustnessArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
     let changes = parse_changes(&args.change)?;
     if args.list {
@@ -103,7 +108,7 @@ pub fn run_robustness(args: &RobustnessArgs, output: &CommandOutput) -> Result<E
     };
     let base = BaseRun::read_run(folder, args.limit)?;
     let eye = args.eye.as_deref().map(eye::parse_eye).transpose()?;
-    if eye.is_some() && base.settings.roles.see != LABELS_ROLE {
+    if eye.is_some() && base.settings.roles.see != RolePlayer::Labels {
         let problem = format!(
             "--eye: in {} {} sees, and the eye would take its place",
             folder.display(),
@@ -178,9 +183,9 @@ fn change_setting<'a>(
         name == "matterport" || name == "process" && !platform.graph_for_scene(&base.paths[0].scene)?.is_empty();
     Ok(ChangeSetting {
         platform: name,
-        sees: match base.settings.roles.see.as_str() {
+        sees: match &base.settings.roles.see {
             _ if has_eye => SightSource::Eye,
-            LABELS_ROLE => SightSource::Labels,
+            RolePlayer::Labels => SightSource::Labels,
             _ => SightSource::Pictures,
         },
         has_poses: base.paths.iter().all(|path| path.motion.is_known()),

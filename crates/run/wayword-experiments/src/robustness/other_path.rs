@@ -1,6 +1,6 @@
 //! Finds another path of the same building with as many hops. A text about it shows how much two unrelated texts agree by chance.
 
-use super::{record::ArmPathRecord, write_texts::UnchangedRecords};
+use super::record::{ArmPathRecord, UnchangedRecords};
 use crate::demands::SAME_GOAL_M;
 use wayword_core::{Path, PathRequest, Platform, PlatformError, seed::derive_seed};
 use wayword_run::error::CommandError;

@@ -23,6 +23,9 @@ pub(super) struct ArmPathRecord {
     pub(super) left_out: Option<String>,
 }
 
+/// The lines of the unchanged arm, by path.
+pub(super) type UnchangedRecords = BTreeMap<String, ArmPathRecord>;
+
 /// A text of one style.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct ArmText {

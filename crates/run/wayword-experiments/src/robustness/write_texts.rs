@@ -6,7 +6,7 @@ use super::{
     other_path::{self, OtherPathChoice},
     other_platform::OtherPlatformScenes,
     reader,
-    record::{ArmPathRecord, ArmText, ThingEdit},
+    record::{ArmPathRecord, ArmText, ThingEdit, UnchangedRecords},
     world::{self, ChangedWorld},
 };
 use crate::demands::PlatformDemands;
@@ -44,9 +44,6 @@ pub(super) struct ArmTextWriter<'a> {
     /// How many views of one path are described at a time.
     pub(super) threads: usize,
 }
-
-/// The lines of the unchanged arm, by path.
-pub(super) type UnchangedRecords = BTreeMap<String, ArmPathRecord>;
 
 /// An arm with its caches of scenes, and the platforms that it needs.
 pub(super) struct ArmContext<'a> {

@@ -4,7 +4,7 @@
 //! by: the score of another person's text, and that of a text about another path.
 
 use super::{
-    CONFIDENCE_LEVEL, SimilaritySide,
+    CONFIDENCE_LEVEL, SimilaritySide, format_percent,
     java::{self, JavaScores},
     pictures::{self, PictureAgreementReport},
     write_sides,
@@ -16,7 +16,7 @@ use crate::{
 use serde::Serialize;
 use std::fmt;
 use wayword_metrics::{
-    MeanEstimate, ResamplingOptions,
+    ResamplingOptions,
     captions::{
         AnchoredCaptionFigures, CaptionFigures, CaptionItem, CaptionRowSets, CaptionVocabulary, NumberedText,
         TextDiversity, anchored_caption_figures, collapse_white_space, measure_diversity, ptb_tokens, split_tokens,
@@ -206,11 +206,6 @@ fn of_diversity(of: &TextDiversity) -> [(&'static str, Option<f64>); 6] {
 
 fn format_share(value: Option<f64>) -> String {
     value.map_or_else(|| "-".to_owned(), |value| format!("{value:.3}"))
-}
-
-pub(super) fn format_percent(MeanEstimate { mean, low, high, .. }: &MeanEstimate) -> String {
-    let [mean, low, high] = [mean, low, high].map(|value| format!("{:.1}", value * 100.0));
-    format!("{mean} ({low} to {high})")
 }
 
 fn write_metric_row(f: &mut fmt::Formatter<'_>, name: &str, figures: Option<&CaptionFigures>) -> fmt::Result {

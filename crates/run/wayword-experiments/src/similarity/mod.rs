@@ -22,6 +22,10 @@ use wayword_run::{
 /// Confidence level of the intervals.
 const CONFIDENCE_LEVEL: f64 = 0.95;
 
+/// Runs `wayword similarity`: compares two sets of texts item by item, and prints the report.
+///
+/// # Errors
+/// When a set cannot be read, the sets have no item in common, the flags do not fit together, or the encoder fails.
 pub fn run_similarity(args: &Args, output: &CommandOutput) -> Result<Exit, CommandError> {
     let sides = [&args.a, &args.b].map(|name| text_sets::read_text_set(name, args.style.as_deref(), args.by));
     let [a, b] = sides;
@@ -99,6 +103,12 @@ fn write_sides(f: &mut fmt::Formatter<'_>, [a, b]: [&SimilaritySide; 2]) -> fmt:
         )?;
     }
     Ok(())
+}
+
+/// A share and its interval in percent.
+fn format_percent(MeanEstimate { mean, low, high, .. }: &MeanEstimate) -> String {
+    let [mean, low, high] = [mean, low, high].map(|value| format!("{:.1}", value * 100.0));
+    format!("{mean} ({low} to {high})")
 }
 
 impl fmt::Display for SimilarityReport {

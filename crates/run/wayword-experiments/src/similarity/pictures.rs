@@ -1,6 +1,6 @@
 //! How well texts agree with pictures, with the same two anchors as the other metrics: another person's text, and another path's.
 
-use super::metrics::format_percent;
+use super::format_percent;
 use crate::{
     by_pictures::PictureCritic,
     similarity::args::SimilarityArgs as Args,

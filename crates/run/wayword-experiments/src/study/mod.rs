@@ -18,6 +18,10 @@ use wayword_run::{
 };
 use wayword_study::{Study, now_ms, results::StudyOutlook};
 
+/// Runs `wayword study`: makes, serves and evaluates a study with people.
+///
+/// # Errors
+/// When the study or another input cannot be read, the flags do not fit together, or a file cannot be written.
 pub fn run_study(args: &Args, output: &CommandOutput) -> Result<Exit, CommandError> {
     match &args.command {
         StudyCommand::New(args) => new_study::make_study(args, output)?,

@@ -7,7 +7,7 @@ use std::{
     collections::{BTreeMap, BTreeSet},
     path::Path as FilePath,
 };
-use wayword_core::{Frame, Heading, Platform, Pose, SceneId, ViewGaze, ViewpointGraph, ViewpointId};
+use wayword_core::{Frame, Heading, Platform, Pose, SceneId, ViewGaze, ViewpointGraph, ViewpointId, hex_text};
 use wayword_report::view::{
     panorama::draw_panorama,
     path::film_steps::{FilmStep, film_steps},
@@ -163,7 +163,5 @@ fn file_name(parts: &[&str]) -> String {
         hash.update((part.len() as u64).to_le_bytes());
         hash.update(part.as_bytes());
     }
-    let bytes = hash.finalize();
-    let name: String = bytes.iter().take(12).map(|byte| format!("{byte:02x}")).collect();
-    format!("{name}.jpg")
+    format!("{}.jpg", hex_text(&hash.finalize()[..12]))
 }

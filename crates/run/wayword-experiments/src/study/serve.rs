@@ -21,7 +21,7 @@ struct ServedSite {
     links: Vec<String>,
 }
 
-pub fn run_serve(args: &StudyServe, output: &CommandOutput) -> Result<Exit, CommandError> {
+pub(super) fn run_serve(args: &StudyServe, output: &CommandOutput) -> Result<Exit, CommandError> {
     let _graceful = interrupt::finish_first(None);
     let study = Study::open(&args.study)?;
     let security = match &args.tls {

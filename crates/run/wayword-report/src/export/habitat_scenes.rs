@@ -90,7 +90,7 @@ fn tell_of_scene(
     walk: &Walk,
     episode: &mut Episode,
 ) -> Result<(), PlatformError> {
-    let file = platform.scene_file(&walk.scene)?;
+    let file = platform.files().scene_file(&walk.scene)?;
     let path = around_corners(platform, walk, episode)?;
     episode.in_habitat.geodesic_m = geodesic_m(platform, walk)?;
     episode.floor_positions = path;
@@ -143,7 +143,7 @@ fn around_corners(platform: &dyn Platform, walk: &Walk, episode: &Episode) -> Re
     let floors = &episode.floor_positions;
     let mut path: Vec<DVec3> = floors.first().copied().into_iter().collect();
     for (frames, floor) in walk.frames.windows(2).zip(floors.iter().skip(1)) {
-        let way = platform.ground_route(&walk.scene, &frames[0], &frames[1])?;
+        let way = platform.ground().ground_route(&walk.scene, &frames[0], &frames[1])?;
         let corners = way.as_ref().map_or(&[][..], |way| &way.corners);
         for corner in corners.iter().skip(1).rev().skip(1).rev() {
             let is_new = path.last().is_none_or(|last| last.distance(*corner) > SAME_M);
@@ -159,7 +159,7 @@ fn around_corners(platform: &dyn Platform, walk: &Walk, episode: &Episode) -> Re
 /// The distance from start to goal over the navmesh, metres; `None` if the platform knows no ways.
 fn geodesic_m(platform: &dyn Platform, walk: &Walk) -> Result<Option<f64>, PlatformError> {
     let (Some(first), Some(last)) = (walk.frames.first(), walk.frames.last()) else { return Ok(None) };
-    Ok(platform.ground_route(&walk.scene, first, last)?.map(|way| way.length_m))
+    Ok(platform.ground().ground_route(&walk.scene, first, last)?.map(|way| way.length_m))
 }
 
 #[cfg(test)]

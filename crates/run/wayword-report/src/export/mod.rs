@@ -66,6 +66,10 @@ struct WrittenSplits {
     files: Vec<PathBuf>,
 }
 
+/// Runs `wayword export`: writes the instructions of runs as a dataset, or those of one item as a page.
+///
+/// # Errors
+/// When the flags do not fit together, a run cannot be read or has no instruction, or a file cannot be written.
 pub fn run_export(args: &ExportArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
     if let Some(name) = &args.highlight {
         return highlight::write_highlights(args, name, output);

@@ -1,12 +1,21 @@
 //! Decides which items of a run the report shows, and in which order: items with rejected texts first, then those with unverified
 //! ones, then the others.
 
-use super::{
-    records::{PathLine, take_bytes},
-    texts::TextState,
-};
+use super::item_record::TextState;
+use serde::Deserialize;
 use std::{collections::BTreeMap, path::Path};
 use wayword_run::{error::CommandError, run_folder::lines};
+
+/// The field of a line that names its path.
+#[derive(Deserialize)]
+pub(super) struct PathLine {
+    pub(super) path: PathIdField,
+}
+
+#[derive(Deserialize)]
+pub(super) struct PathIdField {
+    pub(super) id: String,
+}
 
 /// The worst state of each item's texts; items that are missing here passed.
 #[derive(Default)]
@@ -50,7 +59,7 @@ impl ItemOrder {
             let named: PathLine = line.parse()?;
             let same = found.entry(worst.state_of_item(&named.path.id)).or_default();
             if same.len() < most {
-                same.push((number, line.len()));
+                same.push((number, line.byte_count()));
             }
             number += 1;
             Ok(())
@@ -72,6 +81,13 @@ impl ItemOrder {
     pub(super) fn left_bytes(&self) -> usize {
         self.left_bytes
     }
+}
+
+/// Subtracts `bytes` from `left_bytes` if so many are left. Returns whether it did.
+pub(super) fn take_bytes(left_bytes: &mut usize, bytes: usize) -> bool {
+    let left = left_bytes.checked_sub(bytes);
+    *left_bytes = left.unwrap_or(*left_bytes);
+    left.is_some()
 }
 
 #[cfg(test)]

@@ -2,10 +2,10 @@
 
 use super::{
     frames::{FrameView, frame_views},
+    item_record::ItemRecord,
     link_targets::{LinkTargets, item_anchor},
     map::{BADGE_RADIUS, MapView},
     pictures::PagePictures,
-    records::ItemRecord,
     texts::{TextView, text_views},
 };
 use serde::Serialize;

@@ -9,6 +9,7 @@ pub(crate) mod data_uri;
 pub mod doubts;
 mod frames;
 mod item_order;
+mod item_record;
 mod item_view;
 mod link_targets;
 pub(crate) mod map;

@@ -5,7 +5,7 @@ use serde::Serialize;
 use std::path::Path;
 use wayword_run::{
     platforms::has_hops,
-    settings::{EvidenceSources, Perception, RunSettings, TargetMode},
+    settings::{EvidenceSources, Perception, RolePlayer, RunSettings, TargetMode},
 };
 use wayword_synthesis::walk::FrameSelection;
 
@@ -61,19 +61,19 @@ impl ReportPageView {
 
 /// Each role's part in the work, in words that distinguish ground truth from perception.
 fn role_lines(roles: &RolesPlayed) -> RolesView {
-    let answered = match roles.answerer.as_str() {
-        "labels" => "answered: ground truth of the platform, not perception",
-        _ => "answered: perception by a model",
+    let answered = match RolePlayer::Labels.is_named(&roles.answerer) {
+        true => "answered: ground truth of the platform, not perception",
+        false => "answered: perception by a model",
     };
     let checked = match roles.checked_against.as_str() {
         "labels" => "were the evidence for the checks: ground truth of the platform",
         "captions" => "were the evidence for the checks: they share the answerer's mistakes",
         _ => "was the evidence for the checks",
     };
-    let wrote = match (roles.writer.as_str(), &roles.finished_for) {
-        ("rules", None) => "wrote: no language model".to_owned(),
-        (_, Some(first)) => format!("wrote, after every text of {first} had failed its checks"),
-        (_, None) => "wrote".to_owned(),
+    let wrote = match &roles.finished_for {
+        None if RolePlayer::Rules.is_named(&roles.writer) => "wrote: no language model".to_owned(),
+        None => "wrote".to_owned(),
+        Some(first) => format!("wrote, after every text of {first} had failed its checks"),
     };
     let line = |who: &str, did: &str| (who.to_owned(), did.to_owned());
     RolesView {

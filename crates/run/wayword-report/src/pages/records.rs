@@ -4,15 +4,15 @@
 //! and unverified texts come first, because readers open a report to see those.
 
 use super::{
-    item_order::{ItemOrder, WorstStates},
-    texts::{TextState, state_from_verdict},
+    item_order::{ItemOrder, PathIdField, PathLine, WorstStates, take_bytes},
+    item_record::{ItemRecord, TextState, state_from_verdict},
 };
 use serde::Deserialize;
 use std::{
     collections::{BTreeMap, BTreeSet},
     path::Path,
 };
-use wayword_core::{FailureKind, Instruction, TextAmbiguity, TextProvenance, Verdict};
+use wayword_core::{FailureKind, TextAmbiguity, TextProvenance, Verdict};
 use wayword_run::{
     error::CommandError,
     run_folder::{
@@ -48,13 +48,6 @@ pub(super) struct ReportRecords {
     pub(super) roles: BTreeSet<RolesPlayed>,
 }
 
-/// One item.
-pub(super) struct ItemRecord {
-    pub(super) walk: WalkRecord,
-    pub(super) accepted: Vec<Instruction>,
-    pub(super) rejected: Vec<RejectedText>,
-}
-
 /// Number of a style's instructions by verdict.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct StyleCounts {
@@ -86,11 +79,6 @@ struct InstructionHeader {
     provenance: TextProvenance,
     #[serde(default)]
     ambiguity: Option<TextAmbiguity>,
-}
-
-#[derive(Deserialize)]
-pub(super) struct PathIdField {
-    pub(super) id: String,
 }
 
 impl ReportRecords {
@@ -194,7 +182,7 @@ impl ReportRecords {
         lines::each_line(&run.join(file::INSTRUCTIONS), |line| {
             let named: PathLine = line.parse()?;
             if let Some(item) =
-                self.item_by_id(&places, &named.path.id).filter(|_| take_bytes(&mut left_bytes, line.len()))
+                self.item_by_id(&places, &named.path.id).filter(|_| take_bytes(&mut left_bytes, line.byte_count()))
             {
                 item.accepted.push(line.parse()?);
             }
@@ -203,8 +191,9 @@ impl ReportRecords {
         lines::each_line(&run.join(file::REJECTED), |line| {
             let rejected: RejectedText = line.parse()?;
             let is_text = !rejected.style.is_empty();
-            let item =
-                self.item_by_id(&places, &rejected.item).filter(|_| is_text && take_bytes(&mut left_bytes, line.len()));
+            let item = self
+                .item_by_id(&places, &rejected.item)
+                .filter(|_| is_text && take_bytes(&mut left_bytes, line.byte_count()));
             if let Some(item) = item {
                 item.rejected.push(rejected);
             }
@@ -215,19 +204,6 @@ impl ReportRecords {
     fn item_by_id(&mut self, places: &BTreeMap<String, usize>, id: &str) -> Option<&mut ItemRecord> {
         self.items.get_mut(*places.get(id)?)
     }
-}
-
-/// The field of a line that names its path.
-#[derive(Deserialize)]
-pub(super) struct PathLine {
-    pub(super) path: PathIdField,
-}
-
-/// Subtracts `bytes` from `left_bytes` if so many are left. Returns whether it did.
-pub(super) fn take_bytes(left_bytes: &mut usize, bytes: usize) -> bool {
-    let left = left_bytes.checked_sub(bytes);
-    *left_bytes = left.unwrap_or(*left_bytes);
-    left.is_some()
 }
 
 impl From<TextProvenance> for RolesPlayed {

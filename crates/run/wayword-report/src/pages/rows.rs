@@ -1,8 +1,8 @@
 //! The list of all texts at the top of a report: item, scene, style, text and state, with choices to filter it.
 
 use super::{
-    records::{ItemRecord, ReportRecords},
-    texts::{TextState, state_from_verdict},
+    item_record::{ItemRecord, TextState, state_from_verdict},
+    records::ReportRecords,
 };
 use serde::Serialize;
 use std::collections::BTreeSet;

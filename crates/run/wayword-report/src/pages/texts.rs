@@ -1,9 +1,9 @@
 //! The instructions of an item as the page shows them: text with its mentions, verdict, checks and provenance.
 
 use super::{
+    item_record::{ItemRecord, TextState, state_from_verdict},
     link_targets::{LinkTargets, frame_anchor},
     palette::{FrameColour, frame_colour},
-    records::ItemRecord,
     spans::cut_segments,
 };
 use serde::Serialize;
@@ -27,18 +27,6 @@ pub(super) struct TextView {
     /// The possible meanings of the text, if there are several.
     ambiguity: Option<String>,
     provenance: Option<String>,
-}
-
-/// The state of an instruction, the worst first.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub(super) enum TextState {
-    /// It failed a check, and is not part of the dataset.
-    Rejected,
-    /// Something could not be checked.
-    Unverified,
-    /// It passed every check.
-    Passed,
 }
 
 /// A segment of an instruction's text.
@@ -74,15 +62,6 @@ struct FindingView {
     verdict: Verdict,
     reason: String,
     words: Option<String>,
-}
-
-/// The state of an accepted instruction.
-pub(super) fn state_from_verdict(verdict: Verdict) -> TextState {
-    match verdict {
-        Verdict::Pass => TextState::Passed,
-        Verdict::Unverified => TextState::Unverified,
-        Verdict::Fail => TextState::Rejected,
-    }
 }
 
 /// An item's instructions, accepted and rejected.

@@ -52,6 +52,10 @@ impl fmt::Display for WrittenView {
     }
 }
 
+/// Runs `wayword view`: draws a panorama, a path or a map, and prints the written files.
+///
+/// # Errors
+/// When the platform cannot be opened or lacks the scene or the path, or a file cannot be written.
 pub fn run_view(args: &ViewArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
     let written = match &args.command {
         ViewCommand::Panorama(args) => panorama::write_panorama(args, output)?,
@@ -62,6 +66,10 @@ pub fn run_view(args: &ViewArgs, output: &CommandOutput) -> Result<Exit, Command
     Ok(Exit::Done)
 }
 
+/// Opens the platform that the flags ask for.
+///
+/// # Errors
+/// When flags do not fit the platform, or its data cannot be read.
 pub fn open_platform(asked: &AskedPlatform) -> Result<Box<dyn Platform>, CommandError> {
     platforms::open_at(asked.name(), asked.into())
 }

@@ -1,21 +1,21 @@
-//! Turns flags and the settings file into the configuration for calls to models: providers, prices, rates, and the file of the
-//! ledger.
+//! Turns flags and the settings file into the configuration for calls to models: providers, prices, rates, and the ledger that
+//! keeps the calls.
 
 use crate::{
     error::CommandError,
-    settings::{RunJob, Service},
+    settings::{CallKeeping, RunJob, Service},
     text_file,
 };
 use etcetera::BaseStrategy;
 use std::path::PathBuf;
+use wayword_ledger::Ledger;
 use wayword_remote::{PriceTable, ProviderConfig, RemoteConfig, RequestConcurrency};
 
-/// Most requests at a time for each provider, unless the user gives a number: the limit of the search for the right
-/// one.
+/// Most requests at a time for each provider. Unless the user gives a number, the program finds one up to this limit.
 const MOST_AT_A_TIME: usize = 64;
 
-/// The ledger that flags or file name, else the one in the user's data folder. There is one for all runs, so that a run does not
-/// pay again for a call of an earlier run.
+/// The path of the ledger: the one that a flag or the settings file gives, or else a file in the user's data folder. All runs share
+/// that file, so that a run does not pay again for a call of an earlier run.
 ///
 /// # Errors
 /// When the user has no home folder.
@@ -27,6 +27,32 @@ pub fn ledger_path(service: &Service) -> Result<PathBuf, CommandError> {
         CommandError::usage("there is no home folder to keep the ledger in", "name a file, as in --ledger calls.db")
     })?;
     Ok(strategy.data_dir().join("wayword").join("ledger.db"))
+}
+
+/// Refuses a place where calls cannot be kept. Does not open or make a file.
+///
+/// # Errors
+/// When the ledger would be on a network file system, or the user has no home folder.
+pub(super) fn check_call_store(keeping: &CallKeeping, service: &Service) -> Result<(), CommandError> {
+    match keeping {
+        CallKeeping::Machine => Ok(Ledger::check_place(&ledger_path(service)?)?),
+        CallKeeping::Chunks(_) => Ok(()),
+        #[cfg(feature = "queue")]
+        CallKeeping::Database(..) => Ok(()),
+    }
+}
+
+/// Opens the ledger that keeps the calls.
+///
+/// # Errors
+/// When it cannot be opened, or the user has no home folder.
+pub(super) fn open_ledger(keeping: &CallKeeping, service: &Service) -> Result<Ledger, CommandError> {
+    Ok(match keeping {
+        CallKeeping::Machine => Ledger::open(&ledger_path(service)?)?,
+        CallKeeping::Chunks(recordings) => Ledger::in_chunks(recordings)?,
+        #[cfg(feature = "queue")]
+        CallKeeping::Database(database, lease) => Ledger::postgres_with_lease(database, *lease)?,
+    })
 }
 
 /// The configuration for models over HTTP.

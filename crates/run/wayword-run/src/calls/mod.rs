@@ -1,6 +1,5 @@
 //! The calls of a command to models: over HTTP or in process, kept in the ledger, and limited by a budget.
 
-mod call_keeping;
 mod configured;
 mod gguf_refusal;
 #[cfg(feature = "local")]
@@ -17,7 +16,7 @@ use crate::{
     output::CommandOutput,
     settings::{RunJob, is_in_process},
 };
-use configured::{service_concurrency, service_config};
+use configured::{check_call_store, open_ledger, service_concurrency, service_config};
 use local::LocalCalls;
 use std::{
     collections::BTreeMap,
@@ -30,7 +29,7 @@ use wayword_ledger::{Ledger, LedgerRun, RunLimits};
 use wayword_remote::{ModelPrice, ModelServices, ServiceFinding};
 use wayword_synthesis::prompts::PromptManner;
 
-pub use call_keeping::CallKeeping;
+pub use crate::settings::CallKeeping;
 pub use configured::ledger_path;
 pub use spending::CallSpending;
 
@@ -79,7 +78,7 @@ impl ModelCalls {
         if let Some(recording) = &service.replay {
             File::open(recording).map_err(CommandError::io(recording, "read the recording"))?;
         } else if !settings.roles.model_names().is_empty() {
-            job.keeping.check_store(service)?;
+            check_call_store(&job.keeping, service)?;
         }
         let folder = service.record.as_deref().and_then(Path::parent).filter(|folder| !folder.as_os_str().is_empty());
         if let Some(missing) = folder.filter(|folder| !folder.is_dir()) {
@@ -103,7 +102,7 @@ impl ModelCalls {
         }
         let ledger = match &service.replay {
             Some(recording) => Ledger::replay_recording(recording)?,
-            None => job.keeping.open_ledger(service)?,
+            None => open_ledger(&job.keeping, service)?,
         };
         let is_in_chunks = service.replay.is_none() && matches!(job.keeping, CallKeeping::Chunks(_));
         let in_chunks = is_in_chunks.then(|| ledger.clone());

@@ -38,6 +38,10 @@ use worlds::world_of;
 
 pub use report::{AmbiguousText, CheckReport, CheckedText, DoubtedText, VerdictCounts};
 
+/// Runs `wayword check`, and prints the report.
+///
+/// # Errors
+/// As [`check_texts`].
 pub fn run_check(args: &Args, output: &CommandOutput) -> Result<Exit, CommandError> {
     let report = check_texts(args, output)?;
     output.print_result(&report, CheckReportText { report: &report, most: args.show });

@@ -12,7 +12,7 @@ use wayword_core::InstructionStyle;
 use wayword_synthesis::style::{built_in, built_in_names, hash_style};
 
 /// The styles that texts are checked against.
-pub struct CheckStyles {
+pub(super) struct CheckStyles {
     /// The style that was asked for; it applies to all texts.
     given: Option<CheckStyle>,
     /// The built-in styles, and those of a run. A text's style is found by name and hash, because a user's own style may have

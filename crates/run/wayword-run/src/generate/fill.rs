@@ -102,7 +102,7 @@ impl ItemWorkshop<'_> {
                 let (pace, bar) = (&pace, &bar);
                 let said = |told: &str| output.in_lines(format_args!("{}/{all} items, {told}", bar.position()));
                 scope.spawn(move || {
-                    pace.watch_calls(|| calls.spent_so_far(), |told| bar.set_message(told.to_owned()), said)
+                    pace.watch_calls(|| calls.spent_so_far(), |told| bar.set_message(told.to_owned()), said);
                 });
             }
             let kept = in_order(left, workers, making, |item, (made, span)| {

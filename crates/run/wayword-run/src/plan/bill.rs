@@ -29,8 +29,11 @@ struct ModelBillEntry {
 /// Calls and tokens of one role.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct CallLoad {
+    /// Number of calls.
     pub calls: u64,
+    /// Tokens that are sent.
     pub tokens_in: u64,
+    /// Tokens that come back.
     pub tokens_out: u64,
 }
 

@@ -13,7 +13,7 @@ use crate::{
     lookout::proposed_names,
     pipeline,
     platforms::RememberingPlatform,
-    settings::{Perception, RunSettings, is_model},
+    settings::{Perception, RunSettings},
     styles::MeasuredStyle,
     team::settings_prompts,
 };
@@ -226,13 +226,13 @@ impl DialogueLoad {
         let seeing = self.seeing.times(views).plus(self.settling.times(open));
         let summing = self.summing.times(views).plus(self.condensing.times(panoramas));
         let mut bill = ModelBill::default();
-        for (role, model, load, takes_part) in [
+        for (role, player, load, takes_part) in [
             ("asks", &roles.ask, self.asking.times(views), dialogue),
             ("sees", &roles.see, seeing, true),
             ("summarises", &roles.summarise, summing, dialogue),
             ("writes", &roles.write, writing, true),
         ] {
-            if is_model(model) && takes_part {
+            if let Some(model) = player.model_name().filter(|_| takes_part) {
                 bill.add_load(model, role, load);
             }
         }

@@ -1,13 +1,11 @@
 //! Wraps a platform with a cache of its views, so that each view is rendered or read once.
 
 use std::{
-    collections::{BTreeMap, BTreeSet},
-    path::PathBuf,
+    collections::BTreeMap,
     sync::{Arc, Mutex, PoisonError},
 };
 use wayword_core::{
-    DepthImage, Frame, FromAbove, GroundIsland, GroundRoute, ObjectId, Path, PathRequest, PlacedObject, Platform,
-    PlatformError, SceneId, View, ViewGaze, ViewpointGraph, ViewpointId,
+    Frame, Path, PathRequest, Platform, PlatformError, SceneId, View, ViewGaze, ViewpointGraph, ViewpointId,
 };
 
 /// A platform that caches its views, because perception, evidence and report look at the same ones.
@@ -106,44 +104,8 @@ impl Platform for RememberingPlatform<'_> {
         Ok(view)
     }
 
-    /// Depth is not cached: it is larger than a picture, and asked for once.
-    fn view_depth(&self, scene: &SceneId, from: &Frame, gaze: ViewGaze) -> Result<Option<DepthImage>, PlatformError> {
-        self.platform.view_depth(scene, from, gaze)
-    }
-
-    fn look_down(&self, scene: &SceneId, level: u32) -> Result<Option<FromAbove>, PlatformError> {
-        self.platform.look_down(scene, level)
-    }
-
-    fn object_name(&self, scene: &SceneId, near: &Frame, object: &ObjectId) -> Result<Option<String>, PlatformError> {
-        self.platform.object_name(scene, near, object)
-    }
-
-    fn visible_from(&self, scene: &SceneId, object: &ObjectId) -> Result<Option<BTreeSet<ViewpointId>>, PlatformError> {
-        self.platform.visible_from(scene, object)
-    }
-
-    fn ground_route(&self, scene: &SceneId, from: &Frame, to: &Frame) -> Result<Option<GroundRoute>, PlatformError> {
-        self.platform.ground_route(scene, from, to)
-    }
-
-    fn ground_islands(&self, scene: &SceneId) -> Result<Vec<GroundIsland>, PlatformError> {
-        self.platform.ground_islands(scene)
-    }
-
-    fn listed_objects(&self, scene: &SceneId) -> Result<Vec<PlacedObject>, PlatformError> {
-        self.platform.listed_objects(scene)
-    }
-
-    fn lists_everything(&self) -> bool {
-        self.platform.lists_everything()
-    }
-
-    fn scene_file(&self, scene: &SceneId) -> Result<Option<PathBuf>, PlatformError> {
-        self.platform.scene_file(scene)
-    }
-
-    fn source_files(&self, scene: &SceneId) -> Result<Vec<PathBuf>, PlatformError> {
-        self.platform.source_files(scene)
+    /// Nothing else is cached. Depth, for one, is larger than a picture, and asked for once.
+    fn inner(&self) -> Option<&dyn Platform> {
+        Some(self.platform)
     }
 }

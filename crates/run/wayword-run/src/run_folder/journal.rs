@@ -110,7 +110,7 @@ impl Journal {
         let (mut spans, mut start) = (Vec::new(), 0);
         lines::each_line(&self.path, |line| {
             let key = key_of(&line.parse()?);
-            let length = line.len() as u64;
+            let length = line.byte_count() as u64;
             spans.extend(key.and_then(|key| place(&key)).map(|place| (place, start, length)));
             start += length;
             Ok(())

@@ -51,7 +51,7 @@ pub fn each_line(
 
 impl RecordLine<'_> {
     /// Its length, bytes.
-    pub fn len(&self) -> usize {
+    pub fn byte_count(&self) -> usize {
         self.bytes.len()
     }
 

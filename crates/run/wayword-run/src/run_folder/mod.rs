@@ -24,6 +24,7 @@ use std::{
     path::{Path, PathBuf},
     time::SystemTime,
 };
+use wayword_core::hex_text;
 use wayword_world::files;
 
 use config::keep_settings;
@@ -299,5 +300,5 @@ pub fn hash_of_file(file: &Path) -> Result<String, CommandError> {
 
 /// The first eight bytes of a hash, as text.
 pub fn short_hex(hash: Sha256) -> String {
-    hash.finalize().iter().take(8).map(|byte| format!("{byte:02x}")).collect()
+    hex_text(&hash.finalize()[..8])
 }

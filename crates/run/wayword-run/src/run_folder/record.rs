@@ -114,6 +114,7 @@ pub(super) fn key_parts(key: &str) -> (&str, Option<&str>) {
 }
 
 impl FailedItem {
+    /// The key of a line of `errors.jsonl`: its item. `None` if the line has none.
     pub fn key_of(value: &Value) -> Option<String> {
         Some(value.get("item")?.as_str()?.to_owned())
     }

@@ -73,7 +73,7 @@ impl WorldData {
     pub fn check_scene(&self, platform: &dyn Platform, scene: &SceneId) -> Result<(), CommandError> {
         let mut state = self.lock_state();
         if !state.now.contains_key(scene.as_str()) {
-            let files = platform.source_files(scene)?;
+            let files = platform.files().source_files(scene)?;
             let now = if files.is_empty() { None } else { Some(state.hash_files(&files)?) };
             state.now.insert(scene.to_string(), now);
         }
@@ -120,7 +120,7 @@ pub(crate) fn scene_hashes<'a>(
     let mut state = SceneHashes::default();
     let mut hashes = BTreeMap::new();
     for scene in scenes {
-        let files = platform.source_files(scene)?;
+        let files = platform.files().source_files(scene)?;
         if !files.is_empty() {
             hashes.insert(scene.to_string(), state.hash_files(&files)?);
         }

@@ -1,35 +1,11 @@
-//! The settings as flags and the settings file give them, before defaults are filled in. Each group is declared once, by a
-//! macro, and serves as flags (clap) and as keys of the file (serde).
+//! The settings as flags and the settings file give them, before defaults are filled in.
 
-use super::{AskedRoles, EvidenceSources, Perception, ProviderTables, Service, TargetMode};
+use super::{AskedRoles, EvidenceSources, Perception, ProviderTables, Service, TargetMode, group::group};
 use crate::{platforms, styles};
 use clap::{Args, ValueEnum, builder::PossibleValuesParser};
 use serde::Deserialize;
 use std::path::PathBuf;
 use wayword_synthesis::walk::FrameSelection;
-
-/// A group of settings. Each is optional, so that a group from flags can be completed by one from a file.
-macro_rules! group {
-    ($(#[$of:meta])* pub struct $Group:ident { $($(#[$how:meta])* pub $key:ident: Option<$Type:ty>,)* }) => {
-        $(#[$of])*
-        pub struct $Group { $($(#[$how])* pub $key: Option<$Type>,)* }
-
-        impl $Group {
-            /// The values of this group, completed by those of `other`.
-            pub(super) fn over(self, other: Self) -> Self {
-                Self { $($key: self.$key.or(other.$key),)* }
-            }
-
-            /// The flags of the values that are given.
-            #[must_use]
-            pub fn given(&self) -> Vec<String> {
-                let keys = [$((stringify!($key), self.$key.is_some())),*];
-                keys.iter().filter(|(_, is_given)| *is_given).map(|(key, _)| format!("--{}", key.replace('_', "-"))).collect()
-            }
-        }
-    };
-}
-pub(super) use group;
 
 /// The groups with keys at the top of the settings file, by their fields in [`AskedSettings`].
 macro_rules! top_groups {

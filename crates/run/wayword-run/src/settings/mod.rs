@@ -1,11 +1,13 @@
 //! Settings of a run: flags and a TOML file, resolved once into [`RunSettings`], which the run folder keeps.
 
 mod asked_settings;
+mod group;
+mod role_player;
 mod roles;
 mod service;
 mod sources;
 
-use crate::{calls::CallKeeping, error::CommandError};
+use crate::error::CommandError;
 use serde::{Deserialize, Serialize};
 use std::{
     collections::BTreeMap,
@@ -20,10 +22,9 @@ use wayword_synthesis::{
 };
 
 pub use asked_settings::{AskedFrames, AskedPlatform, AskedSettings, Draw, Walks, Writing};
-pub use roles::{
-    AskedPrecision, AskedRoles, FailureFinish, LABELS_ROLE, RULES_ROLE, RunRoles, can_play, is_in_process, is_model,
-};
-pub use service::{ProviderTables, Service};
+pub use role_player::{RolePlayer, UnknownPlayer, is_in_process};
+pub use roles::{AskedPrecision, AskedRoles, FailureFinish, RunRoles};
+pub use service::{CallKeeping, ProviderTables, Service};
 pub use sources::EvidenceSources;
 
 /// The resolved settings of a run. They decide its results, so a run cannot be continued with others.
@@ -153,8 +154,8 @@ impl Perception {
     }
 
     /// The default for this model, or for labels.
-    fn default_for(see: &str) -> Self {
-        if is_model(see) && !is_in_process(see) { Self::Structured } else { Self::Dialogue }
+    fn default_for(see: &RolePlayer) -> Self {
+        if see.remote_model().is_some() { Self::Structured } else { Self::Dialogue }
     }
 }
 
@@ -284,8 +285,10 @@ impl AskedSettings {
         }
         let request = resolve_request(walks.hops.as_deref(), walks.metres.as_deref())?;
         let roles = roles.resolve()?;
-        let (repairs, candidates) =
-            if is_model(&roles.write) { (REPAIRS_OF_MODELS, 1) } else { (DEFAULT_REPAIRS, DEFAULT_CANDIDATES) };
+        let (repairs, candidates) = match roles.write {
+            RolePlayer::Model(_) => (REPAIRS_OF_MODELS, 1),
+            RolePlayer::Rules | RolePlayer::Labels => (DEFAULT_REPAIRS, DEFAULT_CANDIDATES),
+        };
         let perception = writing.perception.unwrap_or_else(|| Perception::default_for(&roles.see));
         let evidence = resolve_evidence(&writing, &roles)?;
         let styles = writing.style.filter(|styles| !styles.is_empty());

@@ -1,15 +1,10 @@
 //! The roles of a run: which model, or labels or rules, asks, sees, summarises and writes.
 
-use super::{asked_settings::group, is_false};
+use super::{RolePlayer, group::group, is_false, role_player::is_in_process};
 use crate::error::CommandError;
 use clap::{Args, ValueEnum};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
-
-/// The name of the role that answers from ground-truth labels.
-pub const LABELS_ROLE: &str = "labels";
-/// The name of a role that works by rules.
-pub const RULES_ROLE: &str = "rules";
 
 /// Default for the longer side of the pictures that models are sent, pixels.
 const PICTURE_PX: u32 = 512;
@@ -93,13 +88,13 @@ pub enum FailureFinish {
 #[serde(deny_unknown_fields)]
 pub struct RunRoles {
     /// Who asks.
-    pub ask: String,
+    pub ask: RolePlayer,
     /// Who sees.
-    pub see: String,
+    pub see: RolePlayer,
     /// Who summarises.
-    pub summarise: String,
+    pub summarise: RolePlayer,
     /// Who writes.
-    pub write: String,
+    pub write: RolePlayer,
     /// The detector that looks for things in the pictures; `None` without one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub detector: Option<String>,
@@ -124,10 +119,10 @@ pub struct RunRoles {
 impl Default for RunRoles {
     fn default() -> Self {
         Self {
-            ask: RULES_ROLE.to_owned(),
-            see: LABELS_ROLE.to_owned(),
-            summarise: RULES_ROLE.to_owned(),
-            write: RULES_ROLE.to_owned(),
+            ask: RolePlayer::Rules,
+            see: RolePlayer::Labels,
+            summarise: RolePlayer::Rules,
+            write: RolePlayer::Rules,
             detector: None,
             write_sees: false,
             finish: FailureFinish::default(),
@@ -155,10 +150,10 @@ impl AskedRoles {
     /// When a name is neither built in nor provider/model.
     pub fn resolve(self) -> Result<RunRoles, CommandError> {
         let default = RunRoles::default();
-        let text = |role: Option<String>, flag, none: &str| match (role, &self.llm) {
-            (Some(name), _) => check_role_name(flag, name, RULES_ROLE),
-            (None, Some(name)) => check_role_name("--llm", name.clone(), RULES_ROLE),
-            (None, None) => Ok(none.to_owned()),
+        let text = |role: Option<String>, flag, none| match (role, &self.llm) {
+            (Some(name), _) => parse_player(flag, &name, RolePlayer::Rules),
+            (None, Some(name)) => parse_player("--llm", name, RolePlayer::Rules),
+            (None, None) => Ok(none),
         };
         let picture_px = self.picture_px.unwrap_or(default.picture_px);
         if !(32..=MOST_PICTURE_PX).contains(&picture_px) {
@@ -167,18 +162,18 @@ impl AskedRoles {
                 "most models look at 300 to 1600 pixels",
             ));
         }
-        let write = text(self.write, "--write", &default.write)?;
+        let write = text(self.write, "--write", default.write)?;
         let write_sees = self.write_sees.unwrap_or(false);
-        if write_sees && (!is_model(&write) || is_in_process(&write)) {
+        if write_sees && write.remote_model().is_none() {
             return Err(CommandError::usage(
                 format!("--write-sees: {write} writes, and cannot be shown pictures"),
                 "name a model over HTTP that sees, as in --write openai/gpt-4.1-mini --write-sees",
             ));
         }
         Ok(RunRoles {
-            ask: text(self.ask, "--ask", &default.ask)?,
-            see: self.see.map_or(Ok(default.see), |name| check_role_name("--see", name, LABELS_ROLE))?,
-            summarise: text(self.summarise, "--summarise", &default.summarise)?,
+            ask: text(self.ask, "--ask", default.ask)?,
+            see: self.see.map_or(Ok(default.see), |name| parse_player("--see", &name, RolePlayer::Labels))?,
+            summarise: text(self.summarise, "--summarise", default.summarise)?,
             write,
             detector: self.detector.map(check_detector_name).transpose()?,
             write_sees,
@@ -191,15 +186,13 @@ impl AskedRoles {
     }
 }
 
-/// Checks the name of a role's player: `rules` or `labels`, or provider/model.
-fn check_role_name(flag: &str, name: String, embedded: &str) -> Result<String, CommandError> {
-    if can_play(&name, embedded) {
-        return Ok(name);
-    }
-    Err(CommandError::usage(
+/// Reads the player of a role: the embedded one, or provider/model.
+fn parse_player(flag: &str, name: &str, embedded: RolePlayer) -> Result<RolePlayer, CommandError> {
+    let (problem, hint) = (
         format!("{flag} {name}: this is neither `{embedded}` nor a model as provider/model"),
         format!("give {embedded}, or a provider and its model, as in {flag} ollama/llava"),
-    ))
+    );
+    embedded.or_model(name).ok_or_else(|| CommandError::usage(problem, hint))
 }
 
 /// Checks the name of a detector.
@@ -213,20 +206,14 @@ fn check_detector_name(name: String) -> Result<String, CommandError> {
     ))
 }
 
-/// Whether a role can have that name: `rules` or `labels`, or provider/model.
-#[must_use]
-pub fn can_play(name: &str, embedded: &str) -> bool {
-    let is_model = |(provider, model): (&str, &str)| !provider.is_empty() && !model.is_empty();
-    name == embedded || name.split_once('/').is_some_and(is_model)
-}
-
 impl RunRoles {
     /// The models among them, each once, in the order of their work.
     #[must_use]
     pub fn model_names(&self) -> Vec<&str> {
         let mut models: Vec<&str> = Vec::new();
-        for name in [&self.ask, &self.see, &self.summarise, &self.write].into_iter().chain(&self.detector) {
-            if is_model(name) && !models.contains(&name.as_str()) {
+        let players = [&self.ask, &self.see, &self.summarise, &self.write];
+        for name in players.into_iter().filter_map(RolePlayer::model_name).chain(self.detector.as_deref()) {
+            if !models.contains(&name) {
                 models.push(name);
             }
         }
@@ -237,21 +224,8 @@ impl RunRoles {
     #[must_use]
     pub fn shown_pictures(&self) -> Vec<&str> {
         let writer = Some(&self.write).filter(|name| self.write_sees && **name != self.see);
-        let shown = std::iter::once(&self.see).chain(writer).map(String::as_str);
-        shown.filter(|name| is_model(name) && !is_in_process(name)).collect()
+        std::iter::once(&self.see).chain(writer).filter_map(RolePlayer::remote_model).collect()
     }
-}
-
-/// Whether a model runs in process: its name begins with `hf/`.
-#[must_use]
-pub fn is_in_process(name: &str) -> bool {
-    name.starts_with("hf/")
-}
-
-/// Whether a role is played by a model.
-#[must_use]
-pub fn is_model(name: &str) -> bool {
-    name.contains('/')
 }
 
 #[cfg(test)]
@@ -265,7 +239,8 @@ mod tests {
     #[test]
     fn one_model_takes_the_three_text_roles_unless_one_is_named() {
         let roles = asked(Some("a/b"), Some("c/d:e")).resolve().unwrap();
-        assert_eq!((&*roles.ask, &*roles.see, &*roles.summarise, &*roles.write), ("a/b", "labels", "a/b", "c/d:e"));
+        let played = [&roles.ask, &roles.see, &roles.summarise, &roles.write].map(RolePlayer::as_str);
+        assert_eq!(played, ["a/b", "labels", "a/b", "c/d:e"]);
         assert_eq!(roles.model_names(), ["a/b", "c/d:e"]);
         assert_eq!(AskedRoles::default().resolve().unwrap(), RunRoles::default());
     }
@@ -273,9 +248,9 @@ mod tests {
     #[test]
     fn a_flag_for_all_roles_wins_over_the_roles_of_the_file() {
         let roles = asked(Some("a/b"), None).or_file(asked(None, Some("c/d"))).resolve().unwrap();
-        assert_eq!(roles.write, "a/b");
+        assert_eq!(roles.write.as_str(), "a/b");
         let roles = asked(None, None).or_file(asked(Some("e/f"), Some("c/d"))).resolve().unwrap();
-        assert_eq!((&*roles.ask, &*roles.write), ("e/f", "c/d"));
+        assert_eq!((roles.ask.as_str(), roles.write.as_str()), ("e/f", "c/d"));
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! How models are reached, and how much may be spent. No value changes an answer, so a run may be continued with other values.
 
-use super::asked_settings::group;
+use super::group::group;
 use crate::error::CommandError;
 use clap::Args;
 use serde::Deserialize;
@@ -61,6 +61,20 @@ group! {
 
 /// The user's own providers, and changes to the built-in ones: tables `[providers.NAME]` of a settings file.
 pub type ProviderTables = BTreeMap<String, toml::Table>;
+
+/// Where calls are kept.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub enum CallKeeping {
+    /// In the ledger of this machine, which all runs share.
+    #[default]
+    Machine,
+    /// In a recording in each chunk, for workers that share only a folder. The list has the recordings that a shard has so far;
+    /// their cost counts towards its budget.
+    Chunks(Vec<PathBuf>),
+    /// In a database that all workers share. The duration is how long a worker's sign of life counts.
+    #[cfg(feature = "queue")]
+    Database(wayword_database::PostgresDatabase, std::time::Duration),
+}
 
 impl Service {
     /// The values of flags, completed by those of a file.

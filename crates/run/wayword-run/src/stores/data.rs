@@ -6,11 +6,11 @@ use sha2::{Digest, Sha256};
 use std::{
     cell::Cell,
     collections::BTreeMap,
-    fmt::Write,
     path::{Path, PathBuf},
     sync::{Mutex, PoisonError},
     time::{Duration, Instant},
 };
+use wayword_core::hex_text;
 use wayword_queue::{QueueError, cloud::CloudBucket};
 
 /// Largest data that is fetched, bytes.
@@ -59,9 +59,5 @@ fn folder_of(address: &str) -> Result<PathBuf, CommandError> {
         CommandError::usage("there is no home folder to fetch the data to", "set HOME or XDG_CACHE_HOME")
     })?;
     let hash = Sha256::digest(address.trim_end_matches('/').as_bytes());
-    let name = hash.iter().take(16).fold(String::new(), |mut name, byte| {
-        let _ = write!(name, "{byte:02x}");
-        name
-    });
-    Ok(strategy.cache_dir().join("wayword").join("data").join(name))
+    Ok(strategy.cache_dir().join("wayword").join("data").join(hex_text(&hash[..16])))
 }

@@ -42,7 +42,7 @@ impl RunPlace {
     /// because workers continue in the store and not in this folder.
     ///
     /// # Errors
-    /// When the place is a folder already, the folder has another run, or the run cannot be fetched.
+    /// When `named` is a folder and not an object store, `to` has another run, or the run cannot be fetched.
     pub fn fetch_run(named: &Path, to: &Path, output: &CommandOutput) -> Result<(), CommandError> {
         let Some(address) = store_address(named) else {
             return Err(CommandError::usage(

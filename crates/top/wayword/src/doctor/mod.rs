@@ -18,7 +18,7 @@ use wayword_run::{
     output::CommandOutput,
     platforms,
     run_folder::fresh_id,
-    settings::{LABELS_ROLE, RunSettings, is_model},
+    settings::{RolePlayer, RunSettings},
     settings_file as config,
     team::settings_prompts,
 };
@@ -80,7 +80,7 @@ pub(crate) fn run_doctor(args: &DoctorArgs, output: &CommandOutput) -> Result<Ex
         Ok(Some(calls)) => {
             for model in job.settings.roles.model_names() {
                 output.say(format_args!("asking {model} ..."));
-                let sees = job.settings.roles.see == model;
+                let sees = job.settings.roles.see.is_named(model);
                 findings.extend(calls.check_model(model, sees).into_iter().map(|found| DoctorFinding {
                     state: match found.level {
                         CheckLevel::Ok => DoctorGrade::Ok,
@@ -150,12 +150,12 @@ impl ModelExamination {
         };
         let told = format!("{}; its first view has {has}", count_phrase(scenes, "scene"));
         let see = &settings.roles.see;
-        let hint = if is_model(see) && !picture {
-            Some(format!("{see} needs pictures: add them to the data folder, or use --see labels"))
-        } else if see == LABELS_ROLE && !labels {
-            Some("name a model that sees: --see provider/model".to_owned())
-        } else {
-            None
+        let hint = match see {
+            RolePlayer::Model(name) if !picture => {
+                Some(format!("{name} needs pictures: add them to the data folder, or use --see labels"))
+            }
+            RolePlayer::Labels if !labels => Some("name a model that sees: --see provider/model".to_owned()),
+            _ => None,
         };
         let state = if hint.is_some() { DoctorGrade::Problem } else { DoctorGrade::Ok };
         DoctorFinding { state, about, told, hint }

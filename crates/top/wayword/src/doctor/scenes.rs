@@ -15,7 +15,7 @@ pub(super) fn examine_run_scenes(
     output: &CommandOutput,
 ) -> Result<Vec<SceneCondition>, CommandError> {
     let platform = platforms::open_platform(settings)?;
-    let conditions = examine_scenes(&platform.candidate_scenes()?, platform.as_ref(), output)?;
+    let conditions = examine_scenes(&platform.files().candidate_scenes()?, platform.as_ref(), output)?;
     if conditions.is_empty() {
         let problem = format!("the scenes of platform {} cannot be examined before they are used", settings.platform);
         return Err(CommandError::usage(

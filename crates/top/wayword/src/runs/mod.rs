@@ -15,7 +15,10 @@ use wayword_run::{
 
 pub(crate) fn run_runs(args: &RunsArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
     match &args.command {
-        RunsCommand::Status(args) => status::run_status(args, output),
+        RunsCommand::Status(args) => status::run_status(args, |status| match args.prometheus {
+            true => output.print_result(status, prometheus::prometheus_text(status)),
+            false => output.print_result(status, status),
+        }),
         RunsCommand::Merge(args) => merge::run_merge(args, output),
         RunsCommand::Retry(args) => retry::run_retry(args, output),
         RunsCommand::Database(args) => database::run_database(args, output),

@@ -1,6 +1,5 @@
 //! `wayword runs status`: how far a run of many workers is.
 
-use super::prometheus;
 use crate::runs::args::{RunsQueue, RunsStatus};
 use serde::Serialize;
 use std::{
@@ -16,7 +15,6 @@ use wayword_run::{
     error::{CommandError, Exit},
     generate::ChunkHandout,
     interrupt,
-    output::CommandOutput,
     stores::RunPlace,
 };
 
@@ -102,7 +100,8 @@ pub(super) struct AtWork {
     pub(super) is_fresh: bool,
 }
 
-pub(super) fn run_status(args: &RunsStatus, output: &CommandOutput) -> Result<Exit, CommandError> {
+/// Runs `wayword runs status`: gives the status of the run to `show`, once or again and again.
+pub(super) fn run_status(args: &RunsStatus, show: impl Fn(&RunStatus)) -> Result<Exit, CommandError> {
     let place = RunPlace::open_named(&args.run)?;
     let (folder, plan) = (place.folder(), ChunkPlan::for_folder(place.folder())?);
     let queue = queue_of(&place, &plan, &args.database)?;
@@ -116,11 +115,7 @@ pub(super) fn run_status(args: &RunsStatus, output: &CommandOutput) -> Result<Ex
         #[cfg(not(feature = "queue"))]
         let _ = &queue;
         status.workers.sort_by(|a, b| a.worker.cmp(&b.worker));
-        if args.prometheus {
-            output.print_result(&status, prometheus::prometheus_text(&status));
-        } else {
-            output.print_result(&status, &status);
-        }
+        show(&status);
         if !args.watch || status.open + status.running == 0 {
             return Ok(Exit::Done);
         }

@@ -66,13 +66,13 @@ pub(super) fn apply_detections(
             _ if is_proposal => {}
             (DetectionVerdict::Absent, DetectionPurpose::Captions) => struck_out(observations, name, by),
             (DetectionVerdict::Open, DetectionPurpose::Captions) => {
-                mark_missed_as_unsure(observations, name, &finds, &looked_at, by)
+                mark_missed_as_unsure(observations, name, &finds, &looked_at, by);
             }
             (DetectionVerdict::Absent, DetectionPurpose::Claims) => {
-                said_of_all(observations, name, WitnessAnswer::Denied, by)
+                said_of_all(observations, name, WitnessAnswer::Denied, by);
             }
             (DetectionVerdict::Open, DetectionPurpose::Claims) => {
-                said_of_all(observations, name, WitnessAnswer::Unsure, by)
+                said_of_all(observations, name, WitnessAnswer::Unsure, by);
             }
         }
     }

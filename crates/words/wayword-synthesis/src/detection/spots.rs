@@ -90,7 +90,7 @@ pub(super) fn measure_distances(
         }
         let gaze = ViewGaze { heading: view.pose.heading, horizontal_fov_rad: view.horizontal_fov_rad };
         let from = &walk.path.frames[*frame];
-        let Some(depth) = walk.platform.view_depth(&walk.path.scene, from, gaze)? else { continue };
+        let Some(depth) = walk.platform.ground().view_depth(&walk.path.scene, from, gaze)? else { continue };
         let [width, height] = size_px.map(f64::from);
         for spot in finds.iter_mut().filter_map(|finds| finds.get_mut(&place)).flatten() {
             let [left, top, right, bottom] = spot.found.box_px.map(f64::from);

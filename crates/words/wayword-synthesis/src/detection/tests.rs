@@ -2,9 +2,9 @@ use super::*;
 use std::sync::Arc;
 use wayword_checks::{CheckSubject, Evidence, EvidenceSource, check_text, detection::DetectorRates};
 use wayword_core::{
-    CheckKind, DVec3, DepthImage, DetectedBox, DetectionSpot, DetectorScoring, DialogueExchange, Frame, Image,
-    InstructionStyle, ModelError, ObjectId, PathMotion, PathRequest, PlatformError, SceneId, Verdict, ViewThird,
-    ViewpointGraph, ViewpointId, path::PathStop,
+    CheckKind, DVec3, DepthImage, DetectedBox, DetectionSpot, DetectorScoring, DialogueExchange, Frame, Ground, Image,
+    InstructionStyle, ModelError, PathMotion, PathRequest, PlatformError, SceneId, Verdict, ViewThird, ViewpointGraph,
+    path::PathStop,
 };
 
 /// A platform with three frames straight ahead, with a picture each.
@@ -32,18 +32,16 @@ impl Platform for Corridor {
         Ok(View::new(from.pose, gaze.horizontal_fov_rad, picture, None))
     }
 
+    fn ground(&self) -> &dyn Ground {
+        self
+    }
+}
+
+impl Ground for Corridor {
     /// A thing 3 m ahead on the right, before a wall at 6 m; the last frame has no depth.
     fn view_depth(&self, _: &SceneId, from: &Frame, _: ViewGaze) -> Result<Option<DepthImage>, PlatformError> {
         let metres = (0..90 * 60).map(|at| if at % 90 >= 70 { 3.0 } else { 6.0 }).collect();
         Ok((from.pose.position.y < 3.0).then(|| DepthImage::new(90, 60, metres).unwrap()))
-    }
-
-    fn object_name(&self, _: &SceneId, _: &Frame, _: &ObjectId) -> Result<Option<String>, PlatformError> {
-        Ok(None)
-    }
-
-    fn visible_from(&self, _: &SceneId, _: &ObjectId) -> Result<Option<BTreeSet<ViewpointId>>, PlatformError> {
-        Ok(None)
     }
 }
 

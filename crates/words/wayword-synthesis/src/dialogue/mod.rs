@@ -8,15 +8,17 @@ mod extract;
 mod faults;
 mod news;
 mod questions;
+mod roles;
 mod summary;
 mod trouble;
 
-use wayword_core::{AnswerTrouble, Caption, DialogueExchange, ModelError};
+use wayword_core::{AnswerTrouble, DialogueExchange};
 use wayword_language::text::split_words;
 
 pub(crate) use answers::{QuestionSubject, QuestionThing, colour_at, dialogue_room, dialogue_sightings, read_question};
 pub use faults::{CaptionFault, caption_faults};
 pub use questions::RulesAsker;
+pub use roles::{CaptionSummariser, CondensedCaption, ObservationRoles, QuestionAsker};
 pub use summary::RulesSummariser;
 pub(crate) use summary::caption_of;
 pub(crate) use trouble::{refuses_to_look, rephrase_question};
@@ -29,44 +31,6 @@ pub const FIXED_QUERIES: [&str; 2] = ["What objects are there?", "Which room is 
 
 /// Most questions after the opening, by default (ChatCaptioner asks nine).
 pub const DEFAULT_MAX_QUESTIONS: usize = 9;
-
-/// Chooses the questions.
-pub trait QuestionAsker: Send + Sync {
-    /// `rules`, or `provider/model`.
-    fn name(&self) -> &str;
-    /// The next question after this transcript, or `None` if there is none left to ask.
-    ///
-    /// # Errors
-    /// When the model that chooses it fails.
-    fn next_question(&self, transcript: &[DialogueExchange]) -> Result<Option<String>, ModelError>;
-}
-
-/// Sums a dialogue up.
-pub trait CaptionSummariser: Send + Sync {
-    /// `rules`, or `provider/model`.
-    fn name(&self) -> &str;
-    /// A caption of the answers that `answerer` gave. It names no object that an answer denied.
-    ///
-    /// # Errors
-    /// When the model that writes it fails.
-    fn sum_up(&self, transcript: &[DialogueExchange], answerer: &str) -> Result<Caption, ModelError>;
-
-    /// Condenses captions of one place, each with its direction in words ("north"), into one description of fewer than
-    /// `fewer_words_than` words. The result names who made it, where that is not this summariser.
-    ///
-    /// # Errors
-    /// When the model that writes it fails.
-    fn condense(&self, captions: &[(&str, &Caption)], fewer_words_than: usize) -> Result<CondensedCaption, ModelError>;
-}
-
-/// Captions of several looks as one description.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct CondensedCaption {
-    /// The description.
-    pub text: String,
-    /// The name of who made it, if the summariser failed and another took over.
-    pub by: Option<String>,
-}
 
 /// How a view is asked about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -192,7 +156,7 @@ impl Dialogue {
             // A structured request is no dialogue.
             DialogueMode::Single | DialogueMode::Structured { .. } => self.exhausted = true,
             DialogueMode::Fixed => {
-                self.set_pending(FIXED_QUERIES.get(self.transcript.len()).map(|query| (*query).to_owned()))
+                self.set_pending(FIXED_QUERIES.get(self.transcript.len()).map(|query| (*query).to_owned()));
             }
         }
     }

@@ -5,7 +5,7 @@
 //! missing label means "not sure" and not "no", unless the platform lists everything or a calibration decides
 //! otherwise.
 
-use super::structured_answer::labels_as_json;
+use super::structured_answer::{labels_as_json, third_of_view};
 use crate::dialogue::{QuestionSubject, QuestionThing, read_question};
 use std::sync::Arc;
 use wayword_checks::open::{Calibration, is_expected};
@@ -124,10 +124,6 @@ fn wants_all(question: &str) -> bool {
 
 fn not_sure() -> AnswerText {
     "I am not sure.".to_owned()
-}
-
-pub(super) fn third_of_view(view: &View, label: &ObjectLabel) -> ViewThird {
-    ViewThird::from_offset(view.pose.heading.turn_to(label.heading), view.horizontal_fov_rad)
 }
 
 fn place_phrase(third: ViewThird) -> &'static str {

@@ -1,6 +1,5 @@
 //! Writes the labels of a view as the JSON of a structured answer, so that labels can stand in for a model.
 
-use super::labels::third_of_view;
 use crate::seeing::FAR_M;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -44,4 +43,9 @@ pub(super) fn labels_as_json(view: &View, truth: &GroundTruth) -> String {
     things.truncate(MOST_LISTED);
     let room = truth.room.as_deref().unwrap_or("unknown");
     json!({ "room": room, "room_sure": "sure", "ways_out": ways, "things": things, "stands_out": [] }).to_string()
+}
+
+/// The third of a view in which the thing of a label lies.
+pub(super) fn third_of_view(view: &View, label: &ObjectLabel) -> ViewThird {
+    ViewThird::from_offset(view.pose.heading.turn_to(label.heading), view.horizontal_fov_rad)
 }

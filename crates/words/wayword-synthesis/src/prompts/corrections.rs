@@ -1,6 +1,6 @@
 //! Explains to the model why its text failed, and what would be right, as far as the walk shows it.
 
-use super::writing::{frame_of_move, turn_words};
+use super::move_words::{frame_of_move, turn_words};
 use crate::writer::{TextComplaint, WritingBrief};
 use wayword_core::{CheckFinding, CheckKind, ClimbDirection, PathMove, Side, TurnKind, Verdict};
 use wayword_language::{

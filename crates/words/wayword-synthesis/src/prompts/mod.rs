@@ -7,12 +7,13 @@
 mod bounds;
 mod corrections;
 mod memory_lines;
+mod move_words;
 pub(crate) mod trial_fill;
 mod writing;
 
 use minijinja::{Environment, ErrorKind, UndefinedBehavior, context};
 use sha2::{Digest, Sha256};
-use wayword_core::{DialogueExchange, ModelError, ObjectSighting, WitnessAnswer};
+use wayword_core::{DialogueExchange, ModelError, ObjectSighting, WitnessAnswer, hex_text};
 
 use crate::{dialogue::is_opening, writer::WritingBrief};
 
@@ -115,7 +116,7 @@ impl Prompts {
             bounds::check_template(name, source)?;
             templates.add_template_owned(name, source.to_owned()).map_err(failed)?;
         }
-        let hash = hash.finalize().iter().take(8).map(|byte| format!("{byte:02x}")).collect();
+        let hash = hex_text(&hash.finalize()[..8]);
         let prompts = Self { templates, hash };
         trial_fill::fill_all(&prompts)?;
         Ok(prompts)

@@ -1,18 +1,20 @@
 //! Computes the values that fill the writing prompt: frames, moves, references, constraints.
 
-use super::{corrections::refusal_reasons, memory_lines::remembered_lines};
+use super::{
+    corrections::refusal_reasons,
+    memory_lines::remembered_lines,
+    move_words::{move_words, way_overview},
+};
 use crate::{walk::ObservedWalk, writer::WritingBrief};
 use minijinja::{Value, context};
 use rand::seq::index;
-use wayword_core::{ClimbDirection, PathMove, PathTarget, Side, TurnKind, seeded_rng};
+use wayword_core::{PathTarget, Side, seeded_rng};
 use wayword_language::{lexicon::names_agree, text::word_count};
 
 /// Most reference texts of a prompt. A style may have thousands, and more examples do not make a text more alike.
 const MOST_REFERENCES: usize = 24;
 /// Most landmarks of a frame.
 const MOST_LANDMARKS: usize = 8;
-/// Most steps of the overview; a longer way has no overview.
-const MOST_STEPS: usize = 40;
 
 pub(super) fn writing_context(brief: &WritingBrief<'_>) -> Value {
     let walk = brief.walk;
@@ -85,67 +87,6 @@ fn frame_landmarks(walk: &ObservedWalk, frame: usize) -> Vec<String> {
         told.push(format!("{several}{colour}{name}{side}"));
     }
     told
-}
-
-/// The name of a frame in reasons and in the overview.
-pub(super) fn frame_of_move(at: usize) -> String {
-    format!("Frame {at}")
-}
-
-/// The words for a turn of the walk.
-pub(super) fn turn_words(turn: TurnKind) -> &'static str {
-    match turn {
-        TurnKind::Straight => "goes straight on",
-        TurnKind::SlightLeft => "turns slightly left",
-        TurnKind::SlightRight => "turns slightly right",
-        TurnKind::Left => "turns left",
-        TurnKind::Right => "turns right",
-        TurnKind::Around => "turns around",
-    }
-}
-
-/// A move in words, with its numbers.
-fn move_words(step: &PathMove) -> String {
-    let deg = step.turn_rad.to_degrees().abs().round();
-    let turn = match step.turn() {
-        TurnKind::Straight => "straight on".to_owned(),
-        turn => format!("{} ({deg} degrees)", turn_words(turn)),
-    };
-    format!("{turn}, {:.1} metres{}", step.distance_m, climb_words(step.climb(), step.rise_m))
-}
-
-fn climb_words(climb: ClimbDirection, rise_m: f64) -> String {
-    match climb {
-        ClimbDirection::Level => String::new(),
-        ClimbDirection::Up => format!(", up {rise_m:.1} metres of stairs"),
-        ClimbDirection::Down => format!(", down {:.1} metres of stairs", -rise_m),
-    }
-}
-
-/// The way in short: a move that goes straight on is joined to the one before.
-fn way_overview(moves: &[PathMove]) -> Vec<String> {
-    let mut steps: Vec<(usize, usize, TurnKind, ClimbDirection, f64)> = Vec::new();
-    for (at, step) in moves.iter().enumerate() {
-        match steps.last_mut() {
-            Some((_, to, _, climb, length_m)) if step.turn() == TurnKind::Straight && *climb == step.climb() => {
-                (*to, *length_m) = (at + 1, *length_m + step.distance_m);
-            }
-            _ => steps.push((at, at + 1, step.turn(), step.climb(), step.distance_m)),
-        }
-    }
-    if steps.len() > MOST_STEPS || steps.len() < 2 {
-        return Vec::new();
-    }
-    let told = steps.into_iter().map(|(from, to, turn, climb, length_m)| {
-        let turn = if turn == TurnKind::Straight { String::new() } else { format!("{}, then ", turn_words(turn)) };
-        let stairs = match climb {
-            ClimbDirection::Level => "",
-            ClimbDirection::Up => " up the stairs",
-            ClimbDirection::Down => " down the stairs",
-        };
-        format!("At {} the walk {turn}goes {length_m:.0} metres{stairs}, to {}", frame_of_move(from), frame_of_move(to))
-    });
-    told.collect()
 }
 
 fn told_target(walk: &ObservedWalk, target: &PathTarget) -> String {

@@ -12,12 +12,9 @@ mod tests;
 
 pub(crate) use caption::caption_text;
 
-use crate::{
-    dialogue::{
-        CaptionSummariser, OPENING_REQUEST, RulesSummariser, dialogue_room, dialogue_sightings, refuses_to_look,
-        rephrase_question,
-    },
-    observe::{ObservationRoles, unanswered_error},
+use crate::dialogue::{
+    CaptionSummariser, OPENING_REQUEST, ObservationRoles, RulesSummariser, dialogue_room, dialogue_sightings,
+    refuses_to_look, rephrase_question,
 };
 use wayword_core::{
     AnswerForm, AnswerTrouble, Caption, DialogueExchange, FormOutcome, ModelError, ObjectSighting, ReplySchema, View,
@@ -89,7 +86,7 @@ pub(crate) fn see_view(view: &View, observers: ObservationRoles<'_>, questions: 
 /// would copy.
 fn ask_in_form(view: &View, question: &str, observers: ObservationRoles<'_>) -> Result<String, ModelError> {
     let ask = ViewQuestion { view, question, history: &[], answer: AnswerForm::Json(VIEW_SCHEMA) };
-    observers.answerer.answer_questions(&[ask]).pop().unwrap_or_else(|| Err(unanswered_error(observers.answerer)))
+    observers.answerer.answer_questions(&[ask]).pop().unwrap_or_else(|| Err(observers.unanswered_error()))
 }
 
 /// Asks the open questions. They do not depend on each other, so they are sent together; refused ones are sent once
@@ -121,7 +118,7 @@ fn in_words(view: &View, questions: &[String], observers: ObservationRoles<'_>) 
         .map(|question| ViewQuestion { view, question, history: &[], answer: AnswerForm::Words })
         .collect();
     let mut answers = observers.answerer.answer_questions(&asks).into_iter();
-    asks.iter().map(|_| answers.next().unwrap_or_else(|| Err(unanswered_error(observers.answerer)))).collect()
+    asks.iter().map(|_| answers.next().unwrap_or_else(|| Err(observers.unanswered_error()))).collect()
 }
 
 fn cut_answer(answer: &str) -> String {

@@ -2,9 +2,8 @@
 
 use super::{
     names, verbs,
-    wording::{PlaceWording, WordingShares},
+    wording::{PlaceWording, WordingCounts, WordingShares},
 };
-use std::collections::BTreeMap;
 use wayword_language::{
     lexicon::room_name,
     reading::{
@@ -13,16 +12,6 @@ use wayword_language::{
     },
     text::split_words,
 };
-
-/// Counts of constructions, by table.
-#[derive(Default)]
-pub(super) struct WordingCounts(pub(super) BTreeMap<String, WordingShares>);
-
-impl WordingCounts {
-    pub(super) fn add(&mut self, table: &str, key: &str) {
-        *self.0.entry(table.to_owned()).or_default().entry(key.to_owned()).or_default() += 1.0;
-    }
-}
 
 /// Measures the wording of reference texts for places and tasks.
 pub(super) fn measure_wording<'a>(texts: impl Iterator<Item = (&'a str, &'a TextReading)>) -> PlaceWording {

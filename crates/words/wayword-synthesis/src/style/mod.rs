@@ -9,7 +9,7 @@ pub mod way;
 mod wording;
 
 use sha2::{Digest, Sha256};
-use wayword_core::InstructionStyle;
+use wayword_core::{InstructionStyle, hex_text};
 
 pub use profile::StyleProfile;
 pub use wording::{PlaceWording, WordingShares};
@@ -118,7 +118,7 @@ pub fn validate_style(style: InstructionStyle) -> Result<InstructionStyle, Style
 #[must_use]
 pub fn hash_style(style: &InstructionStyle) -> String {
     let json = serde_json::to_vec(style).unwrap_or_default();
-    Sha256::digest(json).iter().take(8).map(|byte| format!("{byte:02x}")).collect()
+    hex_text(&Sha256::digest(json)[..8])
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Counts which of several equivalent names people use for rooms and things ("hallway", "hall", "corridor").
 
-use super::{measure::WordingCounts, wording::NAME_TABLE_PREFIX};
+use super::wording::{NAME_TABLE_PREFIX, WordingCounts};
 use wayword_language::{
     lexicon::normalise_name,
     reading::{EventContent, TextReading},

@@ -1,9 +1,6 @@
 //! Collects the verbs that reference texts use for tasks on things ("turn on {o}"), by kind of thing.
 
-use super::{
-    measure::WordingCounts,
-    wording::{VERB_TABLE_PREFIX, verbs_of_class, verbs_of_kind},
-};
+use super::wording::{VERB_TABLE_PREFIX, WordingCounts, verbs_of_class, verbs_of_kind};
 use std::collections::BTreeSet;
 use wayword_language::{
     lexicon::{find_thing, kinds_of},

@@ -13,6 +13,16 @@ use wayword_language::lexicon::{ThingClass, find_thing, kinds_of};
 /// A table of constructions with their shares.
 pub type WordingShares = BTreeMap<String, f64>;
 
+/// Counts of constructions, by table.
+#[derive(Default)]
+pub(super) struct WordingCounts(pub(super) BTreeMap<String, WordingShares>);
+
+impl WordingCounts {
+    pub(super) fn add(&mut self, table: &str, key: &str) {
+        *self.0.entry(table.to_owned()).or_default().entry(key.to_owned()).or_default() += 1.0;
+    }
+}
+
 /// The built-in shares.
 static BUILT_IN: LazyLock<PlaceWording> = LazyLock::new(|| PlaceWording { tables: parse_wording() });
 

@@ -1,15 +1,16 @@
-//! Words for the object of the task: its name, and the properties that distinguish it from other objects.
+//! The object of the task: chosen where no target is given, with words for its name and for the properties that distinguish
+//! it from other objects.
 
 use crate::{
     style::PlaceWording,
     weighted_draw::draw_weighted,
-    writer::{WriteError, WritingBrief, phrases::storey_ordinal, task::free_object},
+    writer::{WriteError, WritingBrief, phrases::storey_ordinal},
 };
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeMap;
-use wayword_core::{ObjectDescription, ObjectDistinction, ObjectRelation, Side};
-use wayword_language::lexicon::{is_plural, names_agree};
+use wayword_core::{ObjectDescription, ObjectDistinction, ObjectRelation, Side, Verdict};
+use wayword_language::lexicon::{ThingClass, find_thing, is_plural, names_agree, normalise_name};
 
 /// The object of the task with its possible descriptions.
 pub(super) struct TaskObject<'a> {
@@ -132,6 +133,39 @@ impl<'a> TaskObject<'a> {
         }
         std::iter::once(phrase).chain(behind).collect::<Vec<_>>().join(" ")
     }
+}
+
+/// Chooses an object for the task that was seen from the last frame, preferably the only one of its kind and a good
+/// landmark.
+fn free_object(brief: &WritingBrief<'_>, rng: &mut ChaCha8Rng) -> Option<String> {
+    let last = brief.walk.path.frames.len() - 1;
+    let blamed = |name: &str| {
+        let failed = brief.complaints.iter().flat_map(|complaint| {
+            complaint
+                .findings
+                .iter()
+                .filter(|finding| finding.verdict == Verdict::Fail)
+                .map(move |finding| (complaint, finding))
+        });
+        failed
+            .filter_map(|(complaint, finding)| complaint.text.get(finding.span?[0]..finding.span?[1]))
+            .any(|words| normalise_name(words) == normalise_name(name))
+    };
+    let seen: Vec<_> = brief.walk.seen_from(last).collect();
+    let alone = |name: &str| seen.iter().filter(|other| names_agree(&other.sighting.name, name)).count() == 1;
+    let plain = |name: &str| name.len() <= 40 && name.chars().all(|c| c.is_alphabetic() || c == ' ');
+    let candidates = seen.iter().filter(|seen| plain(&seen.sighting.name) && !blamed(&seen.sighting.name));
+    let scored = candidates.map(|seen| {
+        let name = &seen.sighting.name;
+        let (salience, class) =
+            find_thing(name).map_or((0, ThingClass::Unknown), |thing| (thing.salience, thing.class));
+        // One of several, or a part of the building, is chosen only if there is no other object.
+        let poor = seen.sighting.several
+            || matches!(class, ThingClass::Structure | ThingClass::Fabric | ThingClass::Stairs | ThingClass::Unknown);
+        let score = f64::from(salience) + if alone(name) { 4.0 } else { 0.0 } - if poor { 20.0 } else { 0.0 };
+        (score + rng.random_range(0.0..2.0), name.clone())
+    });
+    scored.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, name)| name)
 }
 
 /// Draws one of several descriptions: first the combination of kinds of properties, by how likely people use it, then

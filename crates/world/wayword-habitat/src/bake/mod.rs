@@ -86,10 +86,13 @@ pub fn bake_navmesh(model: &SceneModel, settings: &NavMeshSettings) -> Result<Na
 /// The settings in voxels (`rcConfig`).
 struct VoxelSettings {
     settings: NavMeshSettings,
+    /// Height and highest step of the agent, in heights of a voxel.
     height: u16,
     climb: u16,
+    /// Radius of the agent and longest border edge, in sides of a voxel.
     radius: u16,
     max_edge: u16,
+    /// Regions with fewer voxels than the first are dropped, and with fewer than the second merged into others.
     least_region: u16,
     merged_region: u16,
 }
@@ -121,6 +124,7 @@ impl VoxelSettings {
         })
     }
 
+    /// Recast's steps, in the order in which Habitat takes them.
     fn build_polygons(
         &self,
         mut mesh: TriMesh,
@@ -146,12 +150,14 @@ impl VoxelSettings {
         open.build_distance_field();
         open.build_regions(0, self.least_region, self.merged_region)?;
         let polygons = contours::polygons_from_regions(&open, self)?;
+        // Habitat takes a distance below 0.9 cells as none.
         let sample_m = if settings.detail_sample_dist < 0.9 { 0.0 } else { cell_size * settings.detail_sample_dist };
         let detail = DetailNavmesh::new(&polygons, &open, sample_m, cell_height * settings.detail_sample_max_error)?;
         Ok((polygons, detail))
     }
 }
 
+/// A model's triangles in Habitat's frame.
 fn trimesh_from_model(model: &SceneModel) -> TriMesh {
     let mut mesh = TriMesh::default();
     for triangle in model.triangles() {
@@ -163,6 +169,7 @@ fn trimesh_from_model(model: &SceneModel) -> TriMesh {
     mesh
 }
 
+/// Returns an error for a scene that would need too many voxels.
 fn check_size(bounds: &Aabb3d, settings: &NavMeshSettings) -> Result<(), BakeError> {
     let size = bounds.max - bounds.min;
     let (across, along) = (size.x / settings.cell_size_m, size.z / settings.cell_size_m);

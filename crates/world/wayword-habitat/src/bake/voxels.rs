@@ -23,6 +23,7 @@ pub(super) fn fill_voxels(
     Ok(())
 }
 
+/// Cuts a triangle along rows and columns of voxels, and marks the height of each piece in its column.
 fn fill_one(
     solid: &mut Heightfield,
     triangle: &[Vec3A; 3],
@@ -44,14 +45,14 @@ fn fill_one(
 
 /// Cuts a convex polygon into slices of equal thickness along an axis, each with its number. Slices before the first and
 /// after the last of `count` are left out.
-fn slice_polygon(mut left: Vec<Vec3A>, axis: usize, low: f32, side: f32, count: i32) -> Vec<(i32, Vec<Vec3A>)> {
-    let ends = left.iter().fold((f32::MAX, f32::MIN), |(a, b), at| (a.min(at[axis]), b.max(at[axis])));
+fn slice_polygon(mut rest: Vec<Vec3A>, axis: usize, low: f32, side: f32, count: i32) -> Vec<(i32, Vec<Vec3A>)> {
+    let ends = rest.iter().fold((f32::MAX, f32::MIN), |(a, b), at| (a.min(at[axis]), b.max(at[axis])));
     let number = |at: f32| (((at - low) / side).floor() as i32).clamp(-1, count - 1);
     let (first, last) = (number(ends.0), number(ends.1));
     let mut slices = Vec::new();
     for slice in first..=last {
-        let (below, above) = cut_polygon(&left, axis, low + (slice + 1) as f32 * side);
-        left = above;
+        let (below, above) = cut_polygon(&rest, axis, low + (slice + 1) as f32 * side);
+        rest = above;
         if slice >= 0 && below.len() >= 3 {
             slices.push((slice, below));
         }

@@ -4,7 +4,7 @@ use super::NavMeshGround;
 use crate::axes::EYE_M;
 use wayword_core::{DVec3, GroundRoute, path::PathStop};
 
-/// Most frames of one way.
+/// Most frames of one way; on a longer way they are further apart.
 const MAX_STOPS: f64 = 10_000.0;
 
 /// Positions of the eye at equal distances of at most `interval_m` along a way, both ends included. Each is [`EYE_M`]
@@ -15,7 +15,8 @@ pub fn stops_along(ground: &NavMeshGround, way: &GroundRoute, interval_m: f64) -
     let count = (way.length_m / interval_m - 1e-9).ceil().clamp(1.0, MAX_STOPS) as usize;
     let stop = |step: usize| {
         let on_way = place_at(way, way.length_m * step as f64 / count as f64);
-        // The way runs straight from corner to corner, so on stairs it can lie above or below the treads.
+        // The way runs straight from corner to corner, so on stairs it can lie above or below the treads. The ground counts only
+        // straight under or over the way (within 5 cm), and on the same storey (within 1 m).
         let under = ground.nearest_foothold(on_way).map(|foothold| foothold.place);
         let near =
             under.filter(|place| (*place - on_way).truncate().length() < 0.05 && (place.z - on_way.z).abs() < 1.0);

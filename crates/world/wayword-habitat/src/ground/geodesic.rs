@@ -36,7 +36,7 @@ impl NavMeshGround {
         Ok(GroundRoute { corners, length_m })
     }
 
-    /// The corners of the shortest way between its start and its end; `None` if there is no way.
+    /// The corners of the shortest way, without its start and end; `None` if there is no way.
     fn way_bends(&self, start: &Foothold, end: &Foothold) -> Option<Vec<DVec3>> {
         if start.island != end.island {
             return None;
@@ -45,7 +45,7 @@ impl NavMeshGround {
             return Some(Vec::new());
         }
         let island = self.islands.get(start.island)?;
-        let maze = island.maze.get_or_init(|| super::IslandSearchMesh::new(&self.polygons, &island.polygons));
-        maze.as_ref()?.shortest_bends(start, end)
+        let search_mesh = island.maze.get_or_init(|| super::IslandSearchMesh::new(&self.polygons, &island.polygons));
+        search_mesh.as_ref()?.shortest_bends(start, end)
     }
 }

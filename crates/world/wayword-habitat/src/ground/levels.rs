@@ -3,7 +3,7 @@
 use super::NavMeshGround;
 use wayword_core::DVec3;
 
-/// Height of a slice, metres.
+/// Height of the slices into which the ground is sorted, metres.
 const SLICE_M: f64 = 0.25;
 /// Least height between two storeys, metres.
 const STOREY_M: f64 = 2.0;

@@ -33,6 +33,7 @@ impl NavMeshGround {
         self.nearest_of(place, |polygon| polygon.island == island)
     }
 
+    /// The nearest ground of the wanted polygons; of several at one distance, the first polygon's.
     fn nearest_of(&self, place: DVec3, wanted: impl Fn(&GroundPolygon) -> bool) -> Option<Foothold> {
         if !place.is_finite() {
             return None;

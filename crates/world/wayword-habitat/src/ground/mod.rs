@@ -32,7 +32,7 @@ use search_mesh::IslandSearchMesh;
 use std::sync::OnceLock;
 use wayword_core::DVec3;
 
-/// Polygons with less area do not count as ground (`PathFinder::removeZeroAreaPolys`), square metres.
+/// Polygons with less area than this do not count as ground (`PathFinder::removeZeroAreaPolys`), square metres.
 const LEAST_AREA_M2: f64 = 1e-5;
 
 /// The walkable ground of a scene.

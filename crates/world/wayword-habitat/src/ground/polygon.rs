@@ -8,8 +8,10 @@ use wayword_core::DVec3;
 pub(super) struct GroundPolygon {
     /// Counter-clockwise seen from above; at least three, unless the polygon is not ground.
     pub(super) corners: Vec<PolygonCorner>,
+    /// Its surface.
     pub(super) triangles: Vec<[DVec3; 3]>,
     pub(super) area_m2: f64,
+    /// The box around it: the smallest and the largest coordinates.
     pub(super) low: DVec3,
     pub(super) high: DVec3,
     pub(super) is_walkable: bool,
@@ -36,6 +38,7 @@ pub(super) struct EdgePortal {
     pub(super) to: f64,
 }
 
+/// A position of a navmesh file in Wayword's frame.
 pub(super) fn wayword_place(place: [f32; 3]) -> DVec3 {
     wayword_from_habitat(glam::Vec3::from(place).as_dvec3())
 }
@@ -119,6 +122,7 @@ pub(super) fn side_of_line(a: DVec3, b: DVec3, c: DVec3) -> f64 {
     (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)
 }
 
+/// Twice the area of a polygon seen from above; negative if its corners go clockwise.
 fn doubled_area(places: &[DVec3]) -> f64 {
     let first = places.first().copied().unwrap_or_default();
     places.windows(2).map(|pair| side_of_line(first, pair[0], pair[1])).sum()

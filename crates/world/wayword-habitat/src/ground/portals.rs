@@ -10,14 +10,15 @@ use wayword_core::DVec3;
 const LEAST_M: f64 = 0.02;
 /// How far the sides of two tiles may lie apart, metres.
 const APART_M: f64 = 0.01;
-/// Most portals in one edge. Detour allows four. Without a limit, every one of many edges at the same place would be
-/// joined with every other.
+/// Most portals in one edge; further ones are not entered. Detour allows four. Without a limit, every one of many edges at the
+/// same place would be joined with every other.
 const MAX_DOORS: usize = 32;
 
 /// An edge on a side of a tile, where a portal may be.
 #[derive(Debug)]
 struct TileOpening {
     polygon: usize,
+    /// Index of the corner at which the edge begins.
     corner: usize,
     ends: [DVec3; 2],
     /// The axis along which one crosses the side: 0 for Habitat's x, 1 for its z.
@@ -66,6 +67,7 @@ fn edge_of(polygon: &GroundPolygon, ends: [DVec3; 2]) -> Option<usize> {
     polygon.edges().position(|(a, b)| ends == [a.place, b.place] || ends == [b.place, a.place])
 }
 
+/// Enters a portal at two openings, if they lie along each other at about the same height.
 fn join_openings(polygons: &mut [GroundPolygon], one: &TileOpening, other: &TileOpening, climb_m: f64) {
     // Wayword's x is Habitat's x, and Wayword's y is Habitat's -z. The side runs along the axis that does not cross it.
     let across = |place: DVec3| if one.axis == 0 { place.x } else { place.y };
@@ -94,8 +96,8 @@ fn join_openings(polygons: &mut [GroundPolygon], one: &TileOpening, other: &Tile
     if !near {
         return;
     }
-    let doors = |opening: &TileOpening| polygons[opening.polygon].corners[opening.corner].portals.len();
-    if doors(one) >= MAX_DOORS || doors(other) >= MAX_DOORS {
+    let portal_count = |opening: &TileOpening| polygons[opening.polygon].corners[opening.corner].portals.len();
+    if portal_count(one) >= MAX_DOORS || portal_count(other) >= MAX_DOORS {
         return;
     }
     for (opening, beyond) in [(one, other), (other, one)] {

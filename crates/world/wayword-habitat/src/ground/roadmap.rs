@@ -23,9 +23,9 @@ const MAX_TRIES: usize = 40_000;
 /// Most viewpoints, without those at bends: all pairs of them are examined for edges. On 3,000 square metres or less,
 /// where [`MAX_TRIES`] does not thin out the tries, fewer are found.
 const MAX_PLACED: usize = 2000;
-/// Most failed searches for a way between two parts.
+/// Most failed searches for a way between two parts; after them, parts stay unconnected.
 const MAX_IN_VAIN: usize = 4000;
-/// Distances to the border that exceed this count as equal, metres.
+/// Distances to the border that exceed this count as equal to it, metres.
 const OPEN_ENOUGH_M: f64 = 1.0;
 
 /// Makes a road map of an island (0 is the largest). The same ground gives the same graph. Every viewpoint can be
@@ -41,11 +41,13 @@ pub fn viewpoint_graph(ground: &NavMeshGround, island: usize) -> Result<Viewpoin
     map.into_graph()
 }
 
+/// A graph in the making.
 struct ViewpointRoadMap<'a> {
     ground: &'a NavMeshGround,
     island: usize,
-    /// On the ground.
+    /// The places of the viewpoints on the ground.
     nodes: Vec<DVec3>,
+    /// Pairs of indices into `nodes`.
     edges: Vec<(usize, usize)>,
 }
 
@@ -86,8 +88,9 @@ impl ViewpointRoadMap<'_> {
         closed.map(|(corner, next)| (corner.place, next.place)).collect()
     }
 
+    /// Joins viewpoints at most [`REACH_M`] apart between which the way is nearly straight, the nearest pairs first.
     fn join_near(&mut self) {
-        let mut found: Vec<(f64, usize, usize)> = Vec::new();
+        let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
         for a in 0..self.nodes.len() {
             for b in a + 1..self.nodes.len() {
                 let straight_m = self.nodes[a].distance(self.nodes[b]);
@@ -95,12 +98,12 @@ impl ViewpointRoadMap<'_> {
                     continue;
                 }
                 if self.way_between(a, b).is_some_and(|way| way.length_m <= straight_m * MAX_DETOUR_FACTOR) {
-                    found.push((straight_m, a, b));
+                    pairs.push((straight_m, a, b));
                 }
             }
         }
-        found.sort_by(|x, y| x.0.total_cmp(&y.0).then((x.1, x.2).cmp(&(y.1, y.2))));
-        for (_, a, b) in found {
+        pairs.sort_by(|x, y| x.0.total_cmp(&y.0).then((x.1, x.2).cmp(&(y.1, y.2))));
+        for (_, a, b) in pairs {
             let leads_past = |from: usize, to: usize| {
                 let way = (self.nodes[to] - self.nodes[from]).normalize_or_zero();
                 self.neighbours(from).any(|other| {
@@ -152,6 +155,7 @@ impl ViewpointRoadMap<'_> {
                 continue;
             };
             let mut last = a;
+            // All corners of the way but the first and the last.
             for bend in way.corners.iter().skip(1).rev().skip(1).rev() {
                 self.nodes.push(*bend);
                 parts.push(parts[a]);
@@ -189,10 +193,11 @@ impl ViewpointRoadMap<'_> {
     }
 }
 
-/// Whether two places are far enough apart for both to be viewpoints.
+/// Whether two places are far enough apart for both to be viewpoints. Places with more than 1.2 m of height between them are on
+/// different storeys.
 fn are_far_apart(a: DVec3, b: DVec3) -> bool {
-    let off = a - b;
-    off.truncate().length() >= APART_M || off.z.abs() > 1.2
+    let difference = a - b;
+    difference.truncate().length() >= APART_M || difference.z.abs() > 1.2
 }
 
 /// Distance of a place from the border on its storey, at most [`OPEN_ENOUGH_M`].

@@ -10,13 +10,13 @@ impl NavMeshGround {
         let members = &self.islands.get(island)?.polygons;
         let area = |[a, b, c]: &[wayword_core::DVec3; 3]| 0.5 * (*b - *a).cross(*c - *a).length();
         let all = || members.iter().flat_map(|at| self.polygons[*at].triangles.iter().map(move |each| (*at, each)));
-        let mut left = rng.random::<f64>() * self.islands.get(island)?.area_m2;
-        // Rounding can leave a rest after the last triangle: then the last one is chosen.
+        let mut rest_m2 = rng.random::<f64>() * self.islands.get(island)?.area_m2;
+        // Rounding can leave a positive rest after the last triangle: then the last one is chosen.
         let mut chosen = None;
         for (polygon, triangle) in all() {
             chosen = Some((polygon, triangle));
-            left -= area(triangle);
-            if left < 0.0 {
+            rest_m2 -= area(triangle);
+            if rest_m2 < 0.0 {
                 break;
             }
         }

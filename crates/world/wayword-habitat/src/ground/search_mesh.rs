@@ -13,9 +13,10 @@ use wayword_core::{DVec3, contain_panics::run_decoder};
 
 /// Vertices at the ends of portals are merged if they are nearer than this seen from above, metres.
 const WELD_M: f64 = 1e-3;
-/// They are merged only if their heights also differ by less than this, metres.
+/// Two vertices are merged only if their heights also differ by less than this, metres.
 const SAME_STOREY_M: f64 = 0.5;
-/// A bend lies at most this far from its vertex, metres: mostly within millimetres, but rounding errors add up.
+/// The search returns a bend at most this far from the vertex at which the way bends, metres: mostly within millimetres, but
+/// rounding errors add up.
 const BEND_M: f32 = 0.1;
 /// Two bends at most this far apart may be the same one, metres (`lands_on` in the search's `instance.rs`).
 const NOISE_M: f32 = 3e-3;
@@ -33,6 +34,7 @@ pub(super) struct IslandSearchMesh {
 }
 
 impl IslandSearchMesh {
+    /// Prepares the polygons with the indices `members`; `None` if the search cannot use them.
     pub(super) fn new(polygons: &[GroundPolygon], members: &[usize]) -> Option<Self> {
         let numbers: BTreeMap<usize, u32> =
             members.iter().enumerate().map(|(at, polygon)| (*polygon, at as u32)).collect();
@@ -46,12 +48,12 @@ impl IslandSearchMesh {
             .zip(outlines.polygons_around())
             .map(|(coords, around)| Vertex::new(coords, around))
             .collect();
-        let one_way =
+        let is_dead_end =
             |polygon: &usize| polygons[*polygon].neighbours().filter(|other| numbers.contains_key(other)).count() < 2;
         let pieces = members
             .iter()
             .zip(&outlines.rings)
-            .map(|(polygon, ring)| polyanya::Polygon::new(ring.clone(), one_way(polygon)));
+            .map(|(polygon, ring)| polyanya::Polygon::new(ring.clone(), is_dead_end(polygon)));
         let pieces = pieces.collect();
         let mut mesh = run_decoder(|| Mesh::new(vertices, pieces).map_err(|error| error.to_string())).ok()?;
         let heights = outlines.places.iter().map(|place| place.z as f32).collect();
@@ -64,7 +66,7 @@ impl IslandSearchMesh {
     /// through a narrow place that it finds from the other end. Therefore it runs from both ends, and the shorter result
     /// is used.
     pub(super) fn shortest_bends(&self, start: &Foothold, end: &Foothold) -> Option<Vec<DVec3>> {
-        let there = self.search_one_way(start, end);
+        let forth = self.search_one_way(start, end);
         let mut back = self.search_one_way(end, start);
         if let Some(back) = &mut back {
             back.reverse();
@@ -73,9 +75,10 @@ impl IslandSearchMesh {
             let places: Vec<DVec3> = [&[start.place], bends.as_slice(), &[end.place]].concat();
             places.windows(2).map(|pair| pair[0].distance(pair[1])).sum::<f64>()
         };
-        there.into_iter().chain(back).min_by(|a, b| length_m(a).total_cmp(&length_m(b)))
+        forth.into_iter().chain(back).min_by(|a, b| length_m(a).total_cmp(&length_m(b)))
     }
 
+    /// The bends that the search finds from `start` to `end`, each as the exact place of its vertex.
     fn search_one_way(&self, start: &Foothold, end: &Foothold) -> Option<Vec<DVec3>> {
         let (from, to) = (self.search_coords(start)?, self.search_coords(end)?);
         let path = run_decoder(|| Ok(self.mesh.path(from, to))).ok()??;
@@ -117,6 +120,7 @@ impl IslandSearchMesh {
         let tries = [0.0, 1e-4, 1e-3, 1e-2].map(|share| place + (middle - place) * share);
         tries.into_iter().find_map(|place| {
             let found = self.mesh.get_closest_point_at_height(place, mean_m as f32)?;
+            // The upper byte is the number of the layer; there is only one.
             let found_number = found.polygon() & 0x00ff_ffff;
             (found_number == number || self.share_edge(found_number, number)).then_some(found)
         })
@@ -156,10 +160,10 @@ impl PolygonOutlines {
         let ring = |polygon: &GroundPolygon| {
             let mut ring: Vec<u32> = Vec::with_capacity(polygon.corners.len());
             for (corner, next) in polygon.edges() {
-                let mut shares: Vec<f64> = corner.portals.iter().flat_map(|door| [door.from, door.to]).collect();
+                let mut shares: Vec<f64> = corner.portals.iter().flat_map(|portal| [portal.from, portal.to]).collect();
                 shares.sort_by(f64::total_cmp);
-                let doors = shares.into_iter().map(|share| corner.place.lerp(next.place, share));
-                for place in std::iter::once(corner.place).chain(doors) {
+                let portal_ends = shares.into_iter().map(|share| corner.place.lerp(next.place, share));
+                for place in std::iter::once(corner.place).chain(portal_ends) {
                     let vertex = welds.vertex_at(place);
                     if !ring.contains(&vertex) {
                         ring.push(vertex);
@@ -199,6 +203,7 @@ struct WeldedVertices {
 }
 
 impl WeldedVertices {
+    /// The number of the vertex at a place; a new one if there is none yet.
     fn vertex_at(&mut self, place: DVec3) -> u32 {
         let (x, y) = ((place.x / WELD_M).floor() as i64, (place.y / WELD_M).floor() as i64);
         let cells = (-1..=1).flat_map(|dx| (-1..=1).map(move |dy| (x + dx, y + dy)));

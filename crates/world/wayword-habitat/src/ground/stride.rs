@@ -23,13 +23,13 @@ impl NavMeshGround {
     /// walker stops where the ground ends, and does not slide along its border.
     #[must_use]
     pub fn stride_to(&self, from: &Foothold, to: DVec3) -> GroundStride {
-        let (start, mut number, mut gone) = (from.place, from.polygon, 0.0);
+        let (start, mut number, mut reached_share) = (from.place, from.polygon, 0.0);
         for _ in 0..MAX_EDGES {
             let Some(polygon) = self.polygons.get(number) else { break };
             let Some((share, corner, on_edge)) = polygon_exit(polygon, start, to) else {
                 return GroundStride { end: self.foothold_in(number, to), is_blocked: false };
             };
-            gone = share.max(gone);
+            reached_share = share.max(reached_share);
             match polygon_behind(corner, on_edge)
                 .filter(|other| self.polygons.get(*other).is_some_and(|it| it.is_walkable))
             {
@@ -37,7 +37,7 @@ impl NavMeshGround {
                 None => break,
             }
         }
-        GroundStride { end: self.foothold_in(number, start.lerp(to, gone)), is_blocked: true }
+        GroundStride { end: self.foothold_in(number, start.lerp(to, reached_share)), is_blocked: true }
     }
 
     /// The point of a polygon's surface under or over `place`, or else the nearest one on its border.

@@ -16,6 +16,7 @@ pub(crate) struct TileSurface {
     /// Metres, y up.
     pub(crate) verts: Vec<[f32; 3]>,
     pub(crate) pieces: Vec<TilePiece>,
+    /// The box around the scene: its smallest and its largest coordinates.
     pub(crate) low_m: [f32; 3],
     pub(crate) high_m: [f32; 3],
 }
@@ -29,6 +30,7 @@ pub(crate) struct TilePiece {
     pub(crate) neighbours: Vec<u16>,
     /// Vertices of the detail mesh, without the corners.
     pub(crate) detail_verts: Vec<[f32; 3]>,
+    /// Triangles of the surface, each as three vertices and flags ([`NavMeshTile`]).
     pub(crate) detail_tris: Vec<[u8; 4]>,
 }
 
@@ -78,6 +80,7 @@ pub(crate) fn build_tile(surface: &TileSurface, settings: &NavMeshSettings) -> N
         tile.detail_tris.extend(&piece.detail_tris);
     }
     let edges: usize = surface.pieces.iter().map(|piece| piece.corners.len()).sum();
+    // A link has 12 bytes.
     tile.links = vec![0; 12 * edges];
     tile.bv_nodes = build_box_tree(surface, settings.cell_size_m);
     tile.header = TileHeader {
@@ -122,6 +125,7 @@ fn build_box_tree(surface: &TileSurface, cell_size_m: f32) -> Vec<BvNode> {
     nodes
 }
 
+/// Adds the nodes for these boxes: a node around all of them, then the nodes of each half.
 fn divide_boxes(boxes: &mut [BvNode], nodes: &mut Vec<BvNode>) {
     if let [only] = boxes {
         nodes.push(*only);

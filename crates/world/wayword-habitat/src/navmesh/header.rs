@@ -13,6 +13,7 @@ pub(super) const HEADER_BYTES: u64 = 100;
 pub(crate) struct TileHeader {
     /// Column, row and layer in the grid of tiles.
     pub(crate) place: [i32; 3],
+    /// A number that only the writer understands.
     pub(crate) user_id: u32,
     pub(crate) polys: u32,
     pub(crate) verts: u32,
@@ -21,10 +22,12 @@ pub(crate) struct TileHeader {
     pub(crate) detail_verts: u32,
     pub(crate) detail_tris: u32,
     pub(crate) bv_nodes: u32,
+    /// Off-mesh connections, Detour's links between places that no ground joins, and the index of their first polygon.
     pub(crate) off_mesh: u32,
     pub(crate) off_mesh_base: i32,
     /// Height, radius and climb of the agent, metres.
     pub(crate) agent_m: [f32; 3],
+    /// The box around the tile: its smallest and its largest coordinates, metres, y up.
     pub(crate) low_m: [f32; 3],
     pub(crate) high_m: [f32; 3],
     /// Steps per metre in which the boxes of the tree are given.

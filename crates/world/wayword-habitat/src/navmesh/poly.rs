@@ -18,10 +18,12 @@ pub(crate) enum EdgeNeighbour {
     Portal(u8),
 }
 
-/// A convex piece of ground, or an off-mesh connection.
+/// A convex piece of ground, or an off-mesh connection: a link between two places that no ground joins.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct TilePolygon {
+    /// A number that Detour sets when it loads the tile.
     pub(crate) first_link: u32,
+    /// Indices of its vertices in the tile; `vert_count` of them count.
     pub(crate) verts: [u16; MAX_CORNERS],
     /// The neighbour behind the edge from corner i to the next, as in the file.
     pub(crate) neis: [u16; MAX_CORNERS],
@@ -48,6 +50,7 @@ impl TilePolygon {
         Ok(poly)
     }
 
+    /// Checks that the polygon's vertices and neighbours exist. `start` is its offset in the file.
     fn check_corners(&self, start: usize, header: &TileHeader) -> Result<(), NavMeshError> {
         let least = if self.is_ground() { 3 } else { 2 };
         if !(least..=MAX_CORNERS as u8).contains(&self.vert_count) {

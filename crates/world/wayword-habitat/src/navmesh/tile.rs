@@ -5,18 +5,21 @@ use super::{cursor::NavMeshCursor, error::NavMeshError, header::TileHeader, poly
 /// The triangles over one polygon (`dtPolyDetail`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct DetailMesh {
+    /// Index of its first vertex and of its first triangle in the tile's lists.
     pub(crate) vert_base: u32,
     pub(crate) tri_base: u32,
+    /// How many of each it has.
     pub(crate) verts: u8,
     pub(crate) tris: u8,
     /// Bytes without a meaning; they are kept.
     pub(crate) padding: [u8; 2],
 }
 
-/// A box of the tree (`dtBVNode`). Detour uses it to find polygons. This program only preserves it, or makes it for
-/// Detour.
+/// A box of the tree of boxes around polygons (`dtBVNode`), with which Detour finds polygons. This program only preserves the
+/// boxes, or makes them for Detour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct BvNode {
+    /// Smallest and largest coordinates, in steps from the tile's lowest corner.
     pub(crate) low: [u16; 3],
     pub(crate) high: [u16; 3],
     /// The polygon, or minus the number of nodes to skip.
@@ -100,9 +103,9 @@ impl NavMeshTile {
     fn check_detail(&self, meshes_at: usize, tris_at: usize) -> Result<(), NavMeshError> {
         for (index, (mesh, poly)) in self.detail_meshes.iter().zip(&self.polys).enumerate() {
             let end = |base: u32, count: u8| u64::from(base) + u64::from(count);
-            let within = |what, offset, end: u64, of: u32| {
-                let expected = format!("at most {of}");
-                if end <= u64::from(of) { Ok(()) } else { Err(NavMeshError::bad_value(offset, what, end, expected)) }
+            let within = |what, offset, end: u64, limit: u32| {
+                let expected = format!("at most {limit}");
+                if end <= u64::from(limit) { Ok(()) } else { Err(NavMeshError::bad_value(offset, what, end, expected)) }
             };
             let offset = meshes_at + 12 * index;
             within(

@@ -1,7 +1,7 @@
 //! Examines the files of a scene before a run uses them.
 
 use super::{
-    files::SceneFiles,
+    files::StageFiles,
     graph,
     graph_fit::{self, GraphMisfit},
 };
@@ -13,7 +13,7 @@ use crate::{
 use wayword_core::{GraphFit, GraphSize, PlatformError, RoomNames, SceneCondition, SceneId, SceneLack};
 
 /// Reads a scene's files without decoding its pictures, and reports what they offer and which faults they have.
-pub(super) fn examine_scene(id: &SceneId, files: &SceneFiles) -> Result<SceneCondition, PlatformError> {
+pub(super) fn examine_scene(id: &SceneId, files: &StageFiles) -> Result<SceneCondition, PlatformError> {
     let mut condition = SceneCondition {
         scene: id.clone(),
         has_pictures: false,
@@ -38,7 +38,7 @@ pub(super) fn examine_scene(id: &SceneId, files: &SceneFiles) -> Result<SceneCon
 }
 
 /// Fills in the findings, up to the first file that cannot be used.
-fn fill_condition(condition: &mut SceneCondition, files: &SceneFiles) -> Result<(), PlatformError> {
+fn fill_condition(condition: &mut SceneCondition, files: &StageFiles) -> Result<(), PlatformError> {
     let stage = HabitatStage::from_file(&files.stage)?;
     let model = SceneModel::read_shape(&stage.asset, stage.habitat_from_asset)?;
     condition.has_pictures = true;
@@ -78,6 +78,7 @@ fn fill_condition(condition: &mut SceneCondition, files: &SceneFiles) -> Result<
     Ok(())
 }
 
+/// How a graph lies in its scene, whether or not that is good enough.
 fn fit_of(judged: &Result<GraphFit, GraphMisfit>) -> GraphFit {
     match judged {
         Ok(fit) => *fit,

@@ -1,4 +1,4 @@
-//! Finds the scenes in a folder and the files that belong to each.
+//! Finds the scenes in a folder and the files that belong to each. Habitat calls the mesh of a scene its stage.
 
 use crate::{
     file_error::FileError,
@@ -11,15 +11,15 @@ use std::{
 };
 use wayword_core::SceneId;
 
-/// Depth of nested folders that is searched.
+/// Depth of nested folders that is searched; deeper folders are ignored.
 const MAX_FOLDER_DEPTH: usize = 4;
-/// Most files and folders that are examined.
+/// Most files and folders that are examined; the others are ignored.
 pub(super) const MAX_ENTRIES: usize = 200_000;
 const DATA_HINT: &str = "give a scene's .glb file, or a folder of scenes laid out as in Habitat's datasets";
 
 /// The files of one scene.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct SceneFiles {
+pub(super) struct StageFiles {
     /// The stage configuration, GLB or glTF.
     pub(super) stage: PathBuf,
     /// The viewpoint graph for its paths; `None` if paths lead over its ground.
@@ -28,13 +28,14 @@ pub(super) struct SceneFiles {
 
 /// Every scene at a path, which is a file or a folder. The id is the file's name without the ending for its format; if
 /// two are equal, the folder's name is put before it.
-pub(super) fn find_scenes(place: &Path) -> Result<BTreeMap<SceneId, SceneFiles>, FileError> {
+pub(super) fn find_scenes(place: &Path) -> Result<BTreeMap<SceneId, StageFiles>, FileError> {
     let mut files = Vec::new();
     if place.is_dir() {
         collect_files(place, MAX_FOLDER_DEPTH, &mut files)?;
     } else {
         files.push(place.to_owned());
     }
+    // For each folder and scene name in it, the best stage with its rank.
     let mut by_stem: BTreeMap<(PathBuf, String), (u8, PathBuf)> = BTreeMap::new();
     for file in files {
         let name = file.file_name().and_then(|name| name.to_str()).unwrap_or_default();
@@ -51,7 +52,7 @@ pub(super) fn find_scenes(place: &Path) -> Result<BTreeMap<SceneId, SceneFiles>,
         let names = [stem.clone(), format!("{parent}.{stem}")];
         let free = names.into_iter().filter_map(|name| SceneId::new(name).ok()).find(|id| !scenes.contains_key(id));
         if let Some(id) = free {
-            scenes.insert(id, SceneFiles { stage, graph: None });
+            scenes.insert(id, StageFiles { stage, graph: None });
         }
     }
     if scenes.is_empty() {
@@ -71,6 +72,7 @@ fn is_gltf(file: &Path) -> bool {
     file.extension().is_some_and(|ending| ending == "glb" || ending == "gltf")
 }
 
+/// Adds the files in a folder and, down to `depth`, in the folders below it.
 fn collect_files(folder: &Path, depth: usize, files: &mut Vec<PathBuf>) -> Result<(), FileError> {
     let wrong = |error: std::io::Error| FileError::new(folder, error.to_string(), DATA_HINT);
     let mut entries = Vec::new();
@@ -91,7 +93,7 @@ fn collect_files(folder: &Path, depth: usize, files: &mut Vec<PathBuf>) -> Resul
     Ok(())
 }
 
-impl SceneFiles {
+impl StageFiles {
     /// The navmesh beside the scene.
     pub(super) fn navmesh_file(&self, stage: &HabitatStage) -> Option<PathBuf> {
         let own = self.sibling_files(&[".basis.navmesh", ".navmesh"]);
@@ -126,6 +128,7 @@ impl SceneFiles {
         }
     }
 
+    /// The paths beside the stage that have the scene's name and one of these endings.
     fn sibling_files(&self, endings: &[&str]) -> Vec<PathBuf> {
         let name = self.stage.file_name().and_then(|name| name.to_str()).unwrap_or_default();
         endings.iter().map(|ending| self.stage.with_file_name(format!("{}{ending}", scene_stem(name)))).collect()
@@ -183,7 +186,7 @@ mod tests {
             let file = place.join(name);
             std::fs::write(&file, bytes).unwrap();
             let all =
-                SceneFiles { stage: file.clone(), graph: None }.all_files(&HabitatStage::from_file(&file).unwrap());
+                StageFiles { stage: file.clone(), graph: None }.all_files(&HabitatStage::from_file(&file).unwrap());
             assert_eq!(all, [place.join("paint/a.png"), place.join("yard walls.bin"), file]);
             std::fs::remove_file(place.join(name)).unwrap();
         }

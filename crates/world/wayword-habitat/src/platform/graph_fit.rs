@@ -15,7 +15,7 @@ const MOST_THROUGH_WALLS: f64 = 0.02;
 const LOWER_M: f64 = 0.4;
 /// Greatest distance from the floor of viewpoints that should lie on it, metres: a navmesh is a little above or below.
 const ON_FLOOR_M: f64 = 0.3;
-/// Most edges that are examined, spread over the graph.
+/// Most edges that are examined, spread over the graph; the others count neither as open nor as blocked.
 const MOST_EDGES: usize = 20_000;
 /// Most tests of a triangle for one graph: about a second.
 const TRIANGLE_BUDGET: u64 = 200_000_000;
@@ -23,7 +23,7 @@ const TRIANGLE_BUDGET: u64 = 200_000_000;
 const OWN_GRAPH_HINT: &str =
     "give this scene's own graph, with poses in metres and in the frame of the scan, z up, as in Matterport3D";
 
-/// Axes, or a height, in which viewpoints are written by mistake.
+/// A mistake with which viewpoints may be written: axes, a unit or a height.
 struct MistakenAxes {
     /// The mistake, as the end of a sentence about the viewpoints.
     told: &'static str,
@@ -121,8 +121,11 @@ pub(super) fn judge_fit(columns: &TriangleColumns, graph: &ConnectivityGraph) ->
     if is_plausible(&fit) {
         return Ok(fit);
     }
-    let refused =
-        |told: &str, hint| GraphMisfit { fit, reason: format!("the viewpoints of this graph {told}: {fit}"), hint };
+    let refused = |mistake: &str, hint| GraphMisfit {
+        fit,
+        reason: format!("the viewpoints of this graph {mistake}: {fit}"),
+        hint,
+    };
     if fit.viewpoints == 0 {
         return Err(refused("are none that is included", "give this scene a graph with included viewpoints"));
     }
@@ -156,7 +159,7 @@ fn fit_in_axes(columns: &TriangleColumns, graph: &ConnectivityGraph, frame: &Mis
         if frame.lies_on_floor { place + DVec3::Z * at.height_m } else { place }
     };
     let eyes: Vec<DVec3> = graph.viewpoints.iter().map(eye).collect();
-    let stands = |(eye, at): &(&DVec3, &PanoramaViewpoint)| {
+    let is_over_floor = |(eye, at): &(&DVec3, &PanoramaViewpoint)| {
         let is_floor = |drop_m: f64| !frame.lies_on_floor || (drop_m - at.height_m).abs() <= ON_FLOOR_M;
         columns.drop_m(**eye).is_some_and(|drop_m| FLOOR_M.contains(&drop_m) && is_floor(drop_m))
     };
@@ -165,7 +168,7 @@ fn fit_in_axes(columns: &TriangleColumns, graph: &ConnectivityGraph, frame: &Mis
     pairs.dedup();
     let (mut budget, mut fit) =
         (TRIANGLE_BUDGET, GraphFit { viewpoints: eyes.len(), over_floor: 0, edges: 0, through_walls: 0 });
-    fit.over_floor = eyes.iter().zip(&graph.viewpoints).filter(stands).count();
+    fit.over_floor = eyes.iter().zip(&graph.viewpoints).filter(is_over_floor).count();
     // The budget may run out early, so the edges are taken in an order that is spread over the graph.
     for (a, b) in spread_pairs(&pairs) {
         if budget == 0 {

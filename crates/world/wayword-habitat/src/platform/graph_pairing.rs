@@ -1,6 +1,6 @@
 //! Finds the viewpoint graph of each scene: the file `SCENE_connectivity.json` in a folder.
 
-use super::files::{MAX_ENTRIES, SceneFiles};
+use super::files::{MAX_ENTRIES, StageFiles};
 use crate::{file_error::FileError, scene::scene_stem};
 use std::{
     collections::BTreeMap,
@@ -16,7 +16,7 @@ const CONNECTIVITY_HINT: &str = "give --connectivity the folder with the files S
 /// Scenes with their graphs.
 #[derive(Debug, Default)]
 pub(super) struct GraphPairing {
-    pub(super) scenes: BTreeMap<SceneId, SceneFiles>,
+    pub(super) scenes: BTreeMap<SceneId, StageFiles>,
     /// Scenes and graphs that cannot be used, with the reason.
     pub(super) unpaired: BTreeMap<SceneId, SceneLack>,
     /// Names of graphs without a scene. A folder of graphs usually has many more of them than there are scenes.
@@ -27,7 +27,7 @@ pub(super) struct GraphPairing {
 
 impl GraphPairing {
     /// Scenes without graphs.
-    pub(super) fn without_graphs(scenes: BTreeMap<SceneId, SceneFiles>) -> Self {
+    pub(super) fn without_graphs(scenes: BTreeMap<SceneId, StageFiles>) -> Self {
         Self { scenes, ..Self::default() }
     }
 
@@ -44,34 +44,35 @@ impl GraphPairing {
 ///
 /// HM3D's scenes are numbered: the folder `00800-TEEsavR23oF` holds `TEEsavR23oF.basis.glb`, and graphs have either
 /// name. The scene id has the number if the folder or the graph shows it, because official splits use it.
-pub(super) fn pair_graphs(scenes: BTreeMap<SceneId, SceneFiles>, folder: &Path) -> Result<GraphPairing, FileError> {
+pub(super) fn pair_graphs(scenes: BTreeMap<SceneId, StageFiles>, folder: &Path) -> Result<GraphPairing, FileError> {
     let graphs = find_graphs(folder)?;
-    let mut taken: BTreeMap<PathBuf, SceneId> = BTreeMap::new();
+    let mut used_graphs: BTreeMap<PathBuf, SceneId> = BTreeMap::new();
     let mut pairs = GraphPairing::default();
     for (id, files) in scenes {
         let (stem, numbered) = scene_names(&files.stage);
-        let of_graph = graphs.keys().find(|name| number_of(name, &stem)).cloned();
-        let candidates = [numbered.clone(), of_graph.clone(), Some(stem.clone())];
+        let numbered_by_graph = graphs.keys().find(|name| number_of(name, &stem)).cloned();
+        let candidates = [numbered.clone(), numbered_by_graph.clone(), Some(stem.clone())];
         let found = candidates.into_iter().flatten().find_map(|name| Some((graphs.get(&name)?.clone(), name)));
         let Some((graph, name)) = found else {
             pairs.unpaired.insert(id, no_graph(&files, folder, &stem, numbered.as_deref()));
             continue;
         };
-        if let Some(first) = taken.get(&graph) {
+        if let Some(first) = used_graphs.get(&graph) {
             pairs.unpaired.insert(id, taken_already(&files, &graph, first));
             continue;
         }
-        let called = numbered.or(of_graph).and_then(|name| SceneId::new(name).ok());
-        let called = called.filter(|called| !pairs.scenes.contains_key(called)).unwrap_or_else(|| id.clone());
+        let chosen_id = numbered.or(numbered_by_graph).and_then(|name| SceneId::new(name).ok());
+        let chosen_id =
+            chosen_id.filter(|chosen_id| !pairs.scenes.contains_key(chosen_id)).unwrap_or_else(|| id.clone());
         for other in [Some(id), SceneId::new(name).ok(), SceneId::new(stem).ok()].into_iter().flatten() {
-            if other != called {
-                pairs.others.entry(other).or_insert_with(|| called.clone());
+            if other != chosen_id {
+                pairs.others.entry(other).or_insert_with(|| chosen_id.clone());
             }
         }
-        taken.insert(graph.clone(), called.clone());
-        pairs.scenes.insert(called, SceneFiles { graph: Some(graph), ..files });
+        used_graphs.insert(graph.clone(), chosen_id.clone());
+        pairs.scenes.insert(chosen_id, StageFiles { graph: Some(graph), ..files });
     }
-    pairs.idle = graphs.into_iter().filter(|(_, file)| !taken.contains_key(file)).map(|(name, _)| name).collect();
+    pairs.idle = graphs.into_iter().filter(|(_, file)| !used_graphs.contains_key(file)).map(|(name, _)| name).collect();
     Ok(pairs)
 }
 
@@ -114,7 +115,8 @@ fn number_of(name: &str, stem: &str) -> bool {
     number.is_some_and(|number| number.len() == 5 && number.bytes().all(|byte| byte.is_ascii_digit()))
 }
 
-fn no_graph(files: &SceneFiles, folder: &Path, stem: &str, numbered: Option<&str>) -> SceneLack {
+/// The reason why a scene without a graph is left out.
+fn no_graph(files: &StageFiles, folder: &Path, stem: &str, numbered: Option<&str>) -> SceneLack {
     let name = numbered.unwrap_or(stem);
     SceneLack {
         what: format!("{}: there is no viewpoint graph for it in {}", files.stage.display(), folder.display()),
@@ -124,7 +126,8 @@ fn no_graph(files: &SceneFiles, folder: &Path, stem: &str, numbered: Option<&str
     }
 }
 
-fn taken_already(files: &SceneFiles, graph: &Path, first: &SceneId) -> SceneLack {
+/// The reason why a scene is left out when another scene has its graph.
+fn taken_already(files: &StageFiles, graph: &Path, first: &SceneId) -> SceneLack {
     SceneLack {
         what: format!("{}: scene {first} has the graph {} already", files.stage.display(), graph.display()),
         hint: "give --data a folder in which each scene is once".to_owned(),

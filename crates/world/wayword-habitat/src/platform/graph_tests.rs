@@ -43,13 +43,18 @@ fn paths_go_along_the_graph_from_eye_to_eye() {
         assert_eq!(path.target.unwrap().name, "toy box");
         let view = platform.look_from(&yard_id(), &path.frames[1], ViewGaze::quarter_view(Heading::NORTH)).unwrap();
         assert!(view.image.is_some());
-        assert_eq!(platform.ground_route(&yard_id(), &path.frames[0], &path.frames[1]).unwrap(), None);
+        assert_eq!(platform.ground().ground_route(&yard_id(), &path.frames[0], &path.frames[1]).unwrap(), None);
     }
-    assert!(platform.ground_islands(&yard_id()).unwrap().is_empty());
-    let seen = platform.visible_from(&yard_id(), &ObjectId::new("2").unwrap()).unwrap().unwrap();
+    assert!(platform.ground().ground_islands(&yard_id()).unwrap().is_empty());
+    let seen = platform.catalogue().visible_from(&yard_id(), &ObjectId::new("2").unwrap()).unwrap().unwrap();
     assert_eq!(seen.len(), 8);
     assert!(
-        platform.source_files(&yard_id()).unwrap().iter().any(|file| file.ends_with("graphs/yard_connectivity.json"))
+        platform
+            .files()
+            .source_files(&yard_id())
+            .unwrap()
+            .iter()
+            .any(|file| file.ends_with("graphs/yard_connectivity.json"))
     );
     assert!(platform.navmesh(&yard_id()).is_ok(), "who asks for a navmesh gets one");
 }
@@ -70,8 +75,8 @@ fn views_are_taken_at_viewpoints_and_on_the_way_between_two() {
 fn a_scene_is_examined_with_what_it_offers_and_lacks() {
     for has_labels in [true, false] {
         let (platform, _folder) = open_platform(&ring_graph(), has_labels);
-        assert_eq!(platform.candidate_scenes().unwrap(), [yard_id()]);
-        let found = platform.examine_scene(&yard_id()).unwrap().unwrap();
+        assert_eq!(platform.files().candidate_scenes().unwrap(), [yard_id()]);
+        let found = platform.files().examine_scene(&yard_id()).unwrap().unwrap();
         assert_eq!(found.unusable, None);
         assert_eq!(found.graph.unwrap(), wayword_core::GraphSize { viewpoints: 8, edges: 8 });
         let fit = found.fit.unwrap();
@@ -93,7 +98,7 @@ fn a_graph_that_does_not_fit_is_refused_whether_or_not_it_was_examined() {
     let (platform, _folder) = open_platform(&graph, false);
     let told = platform.graph_for_scene(&yard_id()).unwrap_err().to_string();
     assert!(told.contains("yard_connectivity.json: the viewpoints of this graph have y up, as in Habitat"), "{told}");
-    let found = platform.examine_scene(&yard_id()).unwrap().unwrap();
+    let found = platform.files().examine_scene(&yard_id()).unwrap().unwrap();
     let why = found.unusable.unwrap();
     assert!(why.what.contains("have y up") && why.hint.contains("pose[7] becomes -pose[11]"), "{why:?}");
     assert!(platform.graph_for_scene(&yard_id()).is_err());
@@ -105,14 +110,14 @@ fn broken_files_are_found_before_they_are_drawn() {
     let stage = folder.path().join("yard.glb");
     let whole = std::fs::read(&stage).unwrap();
     std::fs::write(&stage, &whole[..whole.len() / 2]).unwrap();
-    let why = platform.examine_scene(&yard_id()).unwrap().unwrap().unusable.unwrap();
+    let why = platform.files().examine_scene(&yard_id()).unwrap().unwrap().unusable.unwrap();
     assert!(why.what.contains("yard.glb"), "{why:?}");
     let (platform, folder) = open_platform(&json!([{ "image_id": "a" }]), true);
-    let why = platform.examine_scene(&yard_id()).unwrap().unwrap().unusable.unwrap();
+    let why = platform.files().examine_scene(&yard_id()).unwrap().unwrap().unusable.unwrap();
     assert!(why.what.contains("viewpoint 0: a: field `included` is missing") && why.hint.contains("get the graph"));
     std::fs::remove_file(folder.path().join("yard.semantic.txt")).unwrap();
     let (platform, folder) = open_platform(&ring_graph(), true);
     std::fs::write(folder.path().join("yard.semantic.txt"), "no annotations").unwrap();
-    let why = platform.examine_scene(&yard_id()).unwrap().unwrap().unusable.unwrap();
+    let why = platform.files().examine_scene(&yard_id()).unwrap().unwrap().unusable.unwrap();
     assert!(why.what.contains("yard.semantic.txt"), "{why:?}");
 }

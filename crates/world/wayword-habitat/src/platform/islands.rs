@@ -12,7 +12,7 @@ use wayword_core::{GroundCover, GroundIsland, seeded_rng};
 
 /// Random places that are examined on each island.
 const PLACES_PER_ISLAND: usize = 400;
-/// Most islands that are examined, the largest first.
+/// Most islands that are examined, the largest first; paths never stay on another one, unless the user chooses it.
 const MAX_ISLANDS: usize = 64;
 /// Least area of an island that is examined, square metres.
 const LEAST_M2: f64 = 1.0;
@@ -33,10 +33,15 @@ const MAX_LISTED_ISLANDS: usize = 6;
 pub(super) struct IslandSurvey {
     pub(super) number: usize,
     area_m2: f64,
+    /// The median height of its places.
     height_m: f64,
+    /// Under a ceiling at which a person can stand upright.
     ceiling: f64,
+    /// Under the sky, on firm ground.
     sky: f64,
+    /// Under the sky, on the roof of a room.
     roof: f64,
+    /// Under a ceiling that is too low to stand upright.
     low: f64,
 }
 
@@ -55,36 +60,37 @@ pub(super) fn survey_islands(ground: &NavMeshGround, columns: &TriangleColumns) 
 }
 
 fn survey_island(ground: &NavMeshGround, columns: &TriangleColumns, number: usize, area_m2: f64) -> IslandSurvey {
-    let mut dice = seeded_rng(0, &["habitat islands", &number.to_string()]);
+    let mut rng = seeded_rng(0, &["habitat islands", &number.to_string()]);
     let places =
-        (0..PLACES_PER_ISLAND).filter_map(|_| ground.random_place(number, &mut dice)).map(|foothold| foothold.place);
+        (0..PLACES_PER_ISLAND).filter_map(|_| ground.random_place(number, &mut rng)).map(|foothold| foothold.place);
     let places: Vec<wayword_core::DVec3> = places.collect();
-    let over: Vec<OverheadCover> = places.iter().map(|place| columns.cover_over(*place)).collect();
-    let share =
-        |is: fn(&OverheadCover) -> bool| over.iter().filter(|over| is(over)).count() as f64 / over.len().max(1) as f64;
+    let covers: Vec<OverheadCover> = places.iter().map(|place| columns.cover_over(*place)).collect();
+    let share = |is: fn(&OverheadCover) -> bool| {
+        covers.iter().filter(|cover| is(cover)).count() as f64 / covers.len().max(1) as f64
+    };
     let mut heights: Vec<f64> = places.iter().map(|place| place.z).collect();
     heights.sort_by(f64::total_cmp);
     IslandSurvey {
         number,
         area_m2,
         height_m: heights.get(heights.len() / 2).copied().unwrap_or_default(),
-        ceiling: share(|over| matches!(over, OverheadCover::Ceiling(_)) && over.is_headroom()),
-        sky: share(|over| *over == OverheadCover::Sky),
-        roof: share(|over| *over == OverheadCover::SkyOnRoof),
-        low: share(|over| !over.is_headroom()),
+        ceiling: share(|cover| matches!(cover, OverheadCover::Ceiling(_)) && cover.is_headroom()),
+        sky: share(|cover| *cover == OverheadCover::Sky),
+        roof: share(|cover| *cover == OverheadCover::SkyOnRoof),
+        low: share(|cover| !cover.is_headroom()),
     }
 }
 
 /// Chooses the island that paths stay on: of the indoor islands, the one with the most area under a ceiling; an island
 /// under the open sky only if the scene has almost no rooms. `None` if no island is a place to walk on.
 pub(super) fn choose_island(surveys: &[IslandSurvey]) -> Option<IslandChoice> {
-    let fit = || surveys.iter().filter(|survey| survey.ceiling + survey.sky >= LEAST_USABLE_SHARE);
-    let best = |most: fn(&IslandSurvey) -> f64, of: Vec<&IslandSurvey>| {
-        let better = |a: &&IslandSurvey, b: &&IslandSurvey| most(a).total_cmp(&most(b)).then(b.number.cmp(&a.number));
-        of.into_iter().max_by(better).copied()
+    let usable = || surveys.iter().filter(|survey| survey.ceiling + survey.sky >= LEAST_USABLE_SHARE);
+    let best = |area: fn(&IslandSurvey) -> f64, candidates: Vec<&IslandSurvey>| {
+        let better = |a: &&IslandSurvey, b: &&IslandSurvey| area(a).total_cmp(&area(b)).then(b.number.cmp(&a.number));
+        candidates.into_iter().max_by(better).copied()
     };
-    let open = best(IslandSurvey::open_m2, fit().collect());
-    let rooms = best(IslandSurvey::rooms_m2, fit().filter(|survey| survey.ceiling >= LEAST_INDOOR_SHARE).collect());
+    let open = best(IslandSurvey::open_m2, usable().collect());
+    let rooms = best(IslandSurvey::rooms_m2, usable().filter(|survey| survey.ceiling >= LEAST_INDOOR_SHARE).collect());
     let open_m2 = open.map_or(0.0, |open| open.open_m2());
     let (chosen, room_m2): (IslandSurvey, fn(&IslandSurvey) -> f64) =
         match rooms.filter(|rooms| rooms.rooms_m2() >= LEAST_ROOMS_SHARE * open_m2) {
@@ -93,7 +99,8 @@ pub(super) fn choose_island(surveys: &[IslandSurvey]) -> Option<IslandChoice> {
         };
     let is_rival =
         |other: &&IslandSurvey| other.number != chosen.number && room_m2(other) >= RIVAL_AREA_SHARE * room_m2(&chosen);
-    let is_doubtful = surveys.iter().any(|other| other.area_m2 > chosen.area_m2) || fit().any(|other| is_rival(&other));
+    let is_doubtful =
+        surveys.iter().any(|other| other.area_m2 > chosen.area_m2) || usable().any(|other| is_rival(&other));
     Some(IslandChoice { number: chosen.number, is_doubtful })
 }
 
@@ -107,7 +114,7 @@ impl IslandSurvey {
     }
 
     /// The island for display. `walked` is the number of the island that paths stay on.
-    pub(super) fn to_island(&self, walked: Option<usize>) -> GroundIsland {
+    pub(super) fn ground_island(&self, walked: Option<usize>) -> GroundIsland {
         let covers = [
             (self.ceiling, GroundCover::Ceiling),
             (self.sky, GroundCover::Sky),
@@ -132,7 +139,7 @@ pub(super) fn list_islands(surveys: &[IslandSurvey]) -> String {
         return format!("it has no island of at least {LEAST_M2} m2");
     }
     let named: Vec<String> =
-        surveys.iter().take(MAX_LISTED_ISLANDS).map(|survey| survey.to_island(None).to_string()).collect();
+        surveys.iter().take(MAX_LISTED_ISLANDS).map(|survey| survey.ground_island(None).to_string()).collect();
     let more = surveys.len().saturating_sub(MAX_LISTED_ISLANDS);
     let rest = if more > 0 { format!("; and {more} smaller") } else { String::new() };
     format!("{}{rest}", named.join("; "))

@@ -1,4 +1,5 @@
-//! Habitat's scenes as a [`Platform`].
+//! Habitat's scenes as a [`Platform`]: paths lead over a navmesh, or along a viewpoint graph from a file, and views are drawn
+//! from the scene's mesh.
 
 mod examine;
 mod files;
@@ -18,7 +19,7 @@ use crate::{
     navmesh::NavMesh,
     scene::{HabitatStage, SceneModel},
 };
-use files::SceneFiles;
+use files::StageFiles;
 use graph_pairing::GraphPairing;
 use scene::HabitatScene;
 use std::{
@@ -27,8 +28,9 @@ use std::{
     sync::{Arc, Mutex, PoisonError},
 };
 use wayword_core::{
-    DepthImage, Frame, FromAbove, GroundIsland, GroundRoute, ObjectId, Path, PathRequest, Platform, PlatformError,
-    RecentCache, SceneCondition, SceneId, View, ViewGaze, ViewpointGraph, ViewpointId,
+    DepthImage, Frame, FromAbove, Ground, GroundIsland, GroundRoute, ObjectId, Path, PathRequest, Platform,
+    PlatformError, RecentCache, SceneCatalogue, SceneCondition, SceneFiles, SceneId, View, ViewGaze, ViewpointGraph,
+    ViewpointId,
 };
 use wayword_render::to_flat_gaze;
 use wayword_world::output_lines::OutputListener;
@@ -40,7 +42,9 @@ const SCENES_IN_MEMORY: usize = 2;
 pub struct HabitatPlatform {
     options: HabitatOptions,
     hear: OutputListener,
+    /// The scenes with their files and graphs.
     pairs: GraphPairing,
+    /// The scenes in memory.
     ready: RecentCache<SceneId, HabitatScene>,
     /// The condition of each scene that was examined, so that none is examined twice.
     examined: Mutex<BTreeMap<SceneId, SceneCondition>>,
@@ -95,12 +99,12 @@ impl HabitatPlatform {
             Some(folder) => graph_pairing::pair_graphs(scenes, folder)?,
             None => GraphPairing::without_graphs(scenes),
         };
-        let (ready, examined, told) =
+        let (ready, examined, warned) =
             (RecentCache::one_at_a_time(SCENES_IN_MEMORY), Mutex::default(), Mutex::default());
         if let Some(idle) = pairs.describe_idle_graphs() {
             hear(&idle);
         }
-        Ok(Self { options, hear, pairs, ready, examined, told })
+        Ok(Self { options, hear, pairs, ready, examined, told: warned })
     }
 
     /// The navmesh of a scene, from its file or baked. [`NavMesh::to_bytes`] returns a file that Habitat can read.
@@ -116,22 +120,23 @@ impl HabitatPlatform {
         Ok(walkable::read_or_bake_navmesh(&SceneModel::from_stage(&stage)?, &stage, files, &self.options)?)
     }
 
+    /// A scene in memory, read if necessary.
     fn prepared_scene(&self, scene: &SceneId) -> Result<Arc<HabitatScene>, PlatformError> {
         let (scene, files) = self.files_of(scene)?;
         self.ready.get_or_make(scene.clone(), || {
             let fits = self.known_condition(scene).is_some_and(|condition| condition.unusable.is_none());
-            let home = HabitatScene::from_files(scene, files, &self.options, fits)?;
-            if let Some(doubt) = home.walkable.as_ref().and_then(|walkable| walkable.island_doubt())
+            let prepared = HabitatScene::from_files(scene, files, &self.options, fits)?;
+            if let Some(doubt) = prepared.walkable.as_ref().and_then(|walkable| walkable.island_doubt())
                 && self.told.lock().unwrap_or_else(PoisonError::into_inner).insert(scene.clone())
             {
                 (self.hear)(&format!("scene {scene}: {doubt}"));
             }
-            Ok(home)
+            Ok(prepared)
         })
     }
 
     /// A scene's id and files, by its id or by another name that it has.
-    fn files_of(&self, name: &SceneId) -> Result<(&SceneId, &SceneFiles), PlatformError> {
+    fn files_of(&self, name: &SceneId) -> Result<(&SceneId, &StageFiles), PlatformError> {
         let id = self.pairs.others.get(name).unwrap_or(name);
         self.pairs.scenes.get_key_value(id).ok_or_else(|| self.unknown_scene(name))
     }
@@ -151,9 +156,9 @@ impl HabitatPlatform {
     }
 
     fn view_from(&self, scene: &SceneId, from: &Frame, gaze: ViewGaze, pictured: bool) -> Result<View, PlatformError> {
-        let home = self.prepared_scene(scene)?;
-        home.check_frame(from)?;
-        home.view_from(
+        let prepared = self.prepared_scene(scene)?;
+        prepared.check_frame(from)?;
+        prepared.view_from(
             from.pose.position,
             to_flat_gaze(gaze),
             [self.options.width_px, self.options.height_px],
@@ -171,6 +176,74 @@ impl Platform for HabitatPlatform {
         Ok(self.pairs.scenes.keys().cloned().collect())
     }
 
+    fn graph_for_scene(&self, scene: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {
+        Ok(self.prepared_scene(scene)?.graph.clone())
+    }
+
+    fn sample_path(&self, scene: &SceneId, request: &PathRequest, seed: u64) -> Result<Path, PlatformError> {
+        sample::sample_path(&*self.prepared_scene(scene)?, request, seed, self.options.interval_m)
+    }
+
+    fn look_from(&self, scene: &SceneId, from: &Frame, gaze: ViewGaze) -> Result<View, PlatformError> {
+        self.view_from(scene, from, gaze, true)
+    }
+
+    fn look_without_picture(&self, scene: &SceneId, from: &Frame, gaze: ViewGaze) -> Result<View, PlatformError> {
+        self.view_from(scene, from, gaze, false)
+    }
+
+    fn ground(&self) -> &dyn Ground {
+        self
+    }
+
+    fn catalogue(&self) -> &dyn SceneCatalogue {
+        self
+    }
+
+    fn files(&self) -> &dyn SceneFiles {
+        self
+    }
+}
+
+impl Ground for HabitatPlatform {
+    fn view_depth(&self, scene: &SceneId, from: &Frame, gaze: ViewGaze) -> Result<Option<DepthImage>, PlatformError> {
+        let prepared = self.prepared_scene(scene)?;
+        prepared.check_frame(from)?;
+        let size = [self.options.width_px, self.options.height_px];
+        prepared.depth_from(from.pose.position, to_flat_gaze(gaze), size).map(Some)
+    }
+
+    fn look_down(&self, scene: &SceneId, level: u32) -> Result<Option<FromAbove>, PlatformError> {
+        self.prepared_scene(scene)?.look_down(level)
+    }
+
+    /// The way over the navmesh, as Habitat measures it; `None` if the scene has a graph from a file instead.
+    fn ground_route(&self, scene: &SceneId, from: &Frame, to: &Frame) -> Result<Option<GroundRoute>, PlatformError> {
+        Ok(self.prepared_scene(scene)?.way_between(from.pose.position, to.pose.position))
+    }
+
+    fn ground_islands(&self, scene: &SceneId) -> Result<Vec<GroundIsland>, PlatformError> {
+        Ok(self.prepared_scene(scene)?.islands())
+    }
+}
+
+impl SceneCatalogue for HabitatPlatform {
+    fn object_name(&self, scene: &SceneId, _: &Frame, object: &ObjectId) -> Result<Option<String>, PlatformError> {
+        let prepared = self.prepared_scene(scene)?;
+        let thing = prepared.semantics.as_ref().and_then(|semantics| semantics.find_thing(object));
+        Ok(thing.and_then(|thing| thing.name.clone()))
+    }
+
+    fn visible_from(&self, scene: &SceneId, object: &ObjectId) -> Result<Option<BTreeSet<ViewpointId>>, PlatformError> {
+        let prepared = self.prepared_scene(scene)?;
+        if prepared.semantics.is_none() {
+            return Ok(None);
+        }
+        Ok(Some(prepared.seen_from()?.get(object).cloned().unwrap_or_default()))
+    }
+}
+
+impl SceneFiles for HabitatPlatform {
     fn canonical_scene(&self, scene: &SceneId) -> SceneId {
         self.files_of(scene).map_or_else(|_| scene.clone(), |(id, _)| id.clone())
     }
@@ -195,56 +268,6 @@ impl Platform for HabitatPlatform {
         };
         // The caller may have used another name of the scene, and gets that name back.
         Ok(Some(SceneCondition { scene: scene.clone(), ..found }))
-    }
-
-    fn graph_for_scene(&self, scene: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {
-        Ok(self.prepared_scene(scene)?.graph.clone())
-    }
-
-    fn sample_path(&self, scene: &SceneId, request: &PathRequest, seed: u64) -> Result<Path, PlatformError> {
-        sample::sample_path(&*self.prepared_scene(scene)?, request, seed, self.options.interval_m)
-    }
-
-    fn look_from(&self, scene: &SceneId, from: &Frame, gaze: ViewGaze) -> Result<View, PlatformError> {
-        self.view_from(scene, from, gaze, true)
-    }
-
-    fn look_without_picture(&self, scene: &SceneId, from: &Frame, gaze: ViewGaze) -> Result<View, PlatformError> {
-        self.view_from(scene, from, gaze, false)
-    }
-
-    fn view_depth(&self, scene: &SceneId, from: &Frame, gaze: ViewGaze) -> Result<Option<DepthImage>, PlatformError> {
-        let home = self.prepared_scene(scene)?;
-        home.check_frame(from)?;
-        let size = [self.options.width_px, self.options.height_px];
-        home.depth_from(from.pose.position, to_flat_gaze(gaze), size).map(Some)
-    }
-
-    fn look_down(&self, scene: &SceneId, level: u32) -> Result<Option<FromAbove>, PlatformError> {
-        self.prepared_scene(scene)?.look_down(level)
-    }
-
-    fn object_name(&self, scene: &SceneId, _: &Frame, object: &ObjectId) -> Result<Option<String>, PlatformError> {
-        let home = self.prepared_scene(scene)?;
-        let thing = home.semantics.as_ref().and_then(|semantics| semantics.find_thing(object));
-        Ok(thing.and_then(|thing| thing.name.clone()))
-    }
-
-    fn visible_from(&self, scene: &SceneId, object: &ObjectId) -> Result<Option<BTreeSet<ViewpointId>>, PlatformError> {
-        let home = self.prepared_scene(scene)?;
-        if home.semantics.is_none() {
-            return Ok(None);
-        }
-        Ok(Some(home.seen_from()?.get(object).cloned().unwrap_or_default()))
-    }
-
-    /// The way over the navmesh, as Habitat measures it; `None` if the scene has a graph from a file instead.
-    fn ground_route(&self, scene: &SceneId, from: &Frame, to: &Frame) -> Result<Option<GroundRoute>, PlatformError> {
-        Ok(self.prepared_scene(scene)?.way_between(from.pose.position, to.pose.position))
-    }
-
-    fn ground_islands(&self, scene: &SceneId) -> Result<Vec<GroundIsland>, PlatformError> {
-        Ok(self.prepared_scene(scene)?.islands())
     }
 
     fn scene_file(&self, scene: &SceneId) -> Result<Option<PathBuf>, PlatformError> {

@@ -24,6 +24,7 @@ pub(super) fn sample_path(
     }
 }
 
+/// A random path over the ground.
 fn over_ground(
     home: &HabitatScene,
     walkable: &WalkableGround,

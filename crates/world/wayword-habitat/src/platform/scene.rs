@@ -1,6 +1,6 @@
 //! A scene of the platform in memory, with its model, its ground and its labels.
 
-use super::{HabitatOptions, files::SceneFiles, graph, walkable::WalkableGround};
+use super::{HabitatOptions, files::StageFiles, graph, walkable::WalkableGround};
 use crate::{
     file_error::FileError,
     scene::{HabitatStage, SceneModel},
@@ -37,18 +37,18 @@ impl HabitatScene {
     /// Reads a scene. With `fits` the graph from its file is known to lie in it and is not checked again.
     pub(super) fn from_files(
         id: &SceneId,
-        files: &SceneFiles,
+        files: &StageFiles,
         options: &HabitatOptions,
         fits: bool,
     ) -> Result<Self, PlatformError> {
         let stage = HabitatStage::from_file(&files.stage)?;
         let model = SceneModel::from_stage(&stage)?;
-        let named = |source| PlatformError::Graph { scene: id.clone(), source };
+        let graph_error = |source| PlatformError::Graph { scene: id.clone(), source };
         let (walkable, graph) = match &files.graph {
             Some(file) => (None, graph::read_graph(file, (!fits).then_some(&model))?),
             None => {
                 let walkable = WalkableGround::from_files(&model, &stage, files, options)?;
-                let graph = walkable.viewpoint_graph().map_err(named)?;
+                let graph = walkable.viewpoint_graph().map_err(graph_error)?;
                 (Some(walkable), graph)
             }
         };

@@ -114,15 +114,15 @@ fn views_show_the_scene_and_label_it() {
     let image = view.image.unwrap();
     let middle = 3 * (60 * 160 + 80);
     assert_eq!(image.rgb_bytes()[middle..middle + 3], [200, 10, 10]);
-    let depth = platform.view_depth(&scene, &frame, ViewGaze::quarter_view(Heading::NORTH)).unwrap().unwrap();
+    let depth = platform.ground().view_depth(&scene, &frame, ViewGaze::quarter_view(Heading::NORTH)).unwrap().unwrap();
     let far_m = depth.level_m([0.4, 0.4, 0.6, 0.6], view.horizontal_fov_rad).unwrap();
     assert!((far_m - 2.2).abs() < 0.03, "the box begins at 3 m north, the eye stands at 0.8: {far_m}");
     let behind =
         platform.look_without_picture(&scene, &frame, ViewGaze::quarter_view(Heading::NORTH.turned_by(3.0))).unwrap();
     assert!(behind.image.is_none());
     let object = ObjectId::new("2").unwrap();
-    assert_eq!(platform.object_name(&scene, &frame, &object).unwrap().as_deref(), Some("toy box"));
-    assert!(!platform.visible_from(&scene, &object).unwrap().unwrap().is_empty());
+    assert_eq!(platform.catalogue().object_name(&scene, &frame, &object).unwrap().as_deref(), Some("toy box"));
+    assert!(!platform.catalogue().visible_from(&scene, &object).unwrap().unwrap().is_empty());
     let away = Frame {
         pose: wayword_core::Pose::looking_level(wayword_core::DVec3::new(90.0, 0.0, 1.5), Heading::NORTH),
         ..frame
@@ -131,13 +131,13 @@ fn views_show_the_scene_and_label_it() {
         platform.look_from(&scene, &away, ViewGaze::quarter_view(Heading::NORTH)),
         Err(PlatformError::UnknownViewpoint { .. })
     ));
-    assert!(platform.view_depth(&scene, &away, ViewGaze::quarter_view(Heading::NORTH)).is_err());
+    assert!(platform.ground().view_depth(&scene, &away, ViewGaze::quarter_view(Heading::NORTH)).is_err());
 }
 
 #[test]
 fn a_scene_without_semantics_has_no_labels_and_targets() {
     let (platform, scene) = platform(false);
-    assert_eq!(platform.visible_from(&scene, &ObjectId::new("2").unwrap()).unwrap(), None);
+    assert_eq!(platform.catalogue().visible_from(&scene, &ObjectId::new("2").unwrap()).unwrap(), None);
     let path = platform.sample_path(&scene, &PathRequest::default(), 3).unwrap();
     assert_eq!(path.target, None);
     assert!(NavMesh::from_bytes(&platform.navmesh(&scene).unwrap().to_bytes()).is_ok());
@@ -180,7 +180,7 @@ fn open_flat(options: HabitatOptions) -> (HabitatPlatform, SceneId, Arc<Mutex<Ve
 #[test]
 fn walks_keep_to_the_floor_under_the_ceiling_and_not_to_its_larger_top() {
     let (platform, scene, heard, _folder) = open_flat(HabitatOptions::default());
-    let islands = platform.ground_islands(&scene).unwrap();
+    let islands = platform.ground().ground_islands(&scene).unwrap();
     let told: Vec<(GroundCover, bool)> = islands.iter().map(|island| (island.cover, island.is_walked)).collect();
     assert_eq!(told, [(GroundCover::OnRoof, false), (GroundCover::Ceiling, true)]);
     for seed in 0..50 {
@@ -234,8 +234,8 @@ fn a_way_leads_over_the_ground_with_a_corner_at_every_bend() {
         let pose = wayword_core::Pose::looking_level(wayword_core::DVec3::new(x, y, 1.5), Heading::NORTH);
         Frame { pose, viewpoint: None, level: None }
     };
-    let way = platform.ground_route(&scene, &standing(2.0, 4.0), &standing(6.0, 4.1)).unwrap().unwrap();
+    let way = platform.ground().ground_route(&scene, &standing(2.0, 4.0), &standing(6.0, 4.1)).unwrap().unwrap();
     assert!(way.corners.len() >= 3 && way.length_m > 4.5, "{way:?}");
     assert!(way.corners.iter().all(|corner| corner.z.abs() < 0.3), "{way:?}");
-    assert_eq!(platform.ground_route(&scene, &standing(2.0, 4.0), &standing(90.0, 4.0)).unwrap(), None);
+    assert_eq!(platform.ground().ground_route(&scene, &standing(2.0, 4.0), &standing(90.0, 4.0)).unwrap(), None);
 }

@@ -2,7 +2,7 @@
 
 use super::{
     HabitatOptions,
-    files::SceneFiles,
+    files::StageFiles,
     islands::{self, IslandChoice, IslandSurvey},
 };
 use crate::{
@@ -16,6 +16,7 @@ use crate::{
 };
 use wayword_core::{DVec3, GroundIsland, GroundRoute, PlatformError, ViewpointGraph, graph::GraphError};
 
+/// Largest navmesh file that is read, bytes; a larger one is an error.
 const MAX_NAVMESH: u64 = 1 << 30;
 const NAVMESH_HINT: &str = "remove the file, and a navmesh is baked from the scene instead";
 const ISLAND_HINT: &str = "choose an existing island with --island, or give the scene a .navmesh of its rooms";
@@ -24,7 +25,9 @@ const ISLAND_HINT: &str = "choose an existing island with --island, or give the 
 pub(super) struct WalkableGround {
     pub(super) navmesh: NavMesh,
     pub(super) ground: NavMeshGround,
+    /// The scene's triangles, to find ceilings.
     columns: TriangleColumns,
+    /// The examined islands.
     surveys: Vec<IslandSurvey>,
     /// Whether the user may prefer another island to the chosen one.
     is_doubtful: bool,
@@ -34,7 +37,7 @@ pub(super) struct WalkableGround {
 pub(super) fn read_or_bake_navmesh(
     model: &SceneModel,
     stage: &HabitatStage,
-    files: &SceneFiles,
+    files: &StageFiles,
     options: &HabitatOptions,
 ) -> Result<NavMesh, FileError> {
     match options.navmesh.clone().or_else(|| files.navmesh_file(stage)) {
@@ -48,10 +51,11 @@ pub(super) fn read_or_bake_navmesh(
 }
 
 impl WalkableGround {
+    /// Reads or bakes the navmesh of a scene, and chooses the island for its paths.
     pub(super) fn from_files(
         model: &SceneModel,
         stage: &HabitatStage,
-        files: &SceneFiles,
+        files: &StageFiles,
         options: &HabitatOptions,
     ) -> Result<Self, PlatformError> {
         let columns = TriangleColumns::new(model.triangles());
@@ -80,7 +84,7 @@ impl WalkableGround {
 
     /// The islands of the navmesh, the largest first.
     pub(super) fn islands(&self) -> Vec<GroundIsland> {
-        self.surveys.iter().map(|survey| survey.to_island(Some(self.ground.main()))).collect()
+        self.surveys.iter().map(|survey| survey.ground_island(Some(self.ground.main()))).collect()
     }
 
     /// The shortest way over the ground between two eyes.

@@ -1,4 +1,5 @@
-//! Reads the numbers in a glTF file through its accessors (glTF 2.0, section 3.6.2).
+//! Reads the numbers in a glTF file through its accessors (glTF 2.0, section 3.6.2). An accessor is a list of entries, such as
+//! positions; each entry has one to four components.
 
 use super::asset::GltfAsset;
 use gltf::json::{
@@ -35,8 +36,10 @@ pub(super) fn read_indices(asset: &GltfAsset, index: Index<Accessor>) -> Result<
 /// The entries of an accessor; all of them lie within `bytes`.
 struct AccessorEntries<'a> {
     bytes: &'a [u8],
+    /// Distance from one entry to the next, bytes.
     stride: usize,
     count: usize,
+    /// Numbers of an entry.
     components: usize,
     kind: ComponentType,
     is_normalised: bool,
@@ -63,7 +66,7 @@ impl<'a> AccessorEntries<'a> {
         };
         let size = components * component.0.size();
         let stride = view.byte_stride.map_or(size, |stride| stride.0.max(1));
-        let lies = || {
+        let entry_bytes = || {
             let start = usize::try_from(accessor.byte_offset.map_or(0, |offset| offset.0)).ok()?;
             let count = usize::try_from(accessor.count.0).ok()?;
             let end = match count.checked_sub(1) {
@@ -72,7 +75,7 @@ impl<'a> AccessorEntries<'a> {
             };
             Some((bytes.get(start..end)?, count))
         };
-        let (bytes, count) = lies().ok_or_else(|| wrong("lies outside its view"))?;
+        let (bytes, count) = entry_bytes().ok_or_else(|| wrong("lies outside its view"))?;
         // Without this check a file with overlapping entries could have far more entries than bytes.
         if stride < component.0.size() || count > bytes.len() {
             return Err(wrong("has entries that overlap"));

@@ -14,17 +14,19 @@ use std::{
 use wayword_core::contain_panics::run_decoder;
 
 const EXPORT_HINT: &str = "export the scene again as GLB";
-/// Largest file that is read: HM3D's and Matterport3D's are below 1 GB.
+/// Largest file that is read, bytes; a larger one is an error. HM3D's and Matterport3D's are below 1 GB.
 const MAX_BYTES: u64 = 4 << 30;
 /// Number of bytes before the document in a GLB.
 const GLB_HEAD_BYTES: u64 = 20;
-/// Extensions that a file may require: those that the reader supports, and those that change nothing in unlit pictures.
+/// Extensions that a file may require, by the beginning of their names: those that the reader supports, and those that change
+/// nothing in unlit pictures.
 const KNOWN_EXTENSIONS: [&str; 4] =
     ["GOOGLE_texture_basis", "KHR_texture_transform", "KHR_mesh_quantization", "KHR_materials_"];
 
 /// A document and its bytes.
 pub(super) struct GltfAsset {
     pub(super) root: Root,
+    /// The bytes of each of its buffers; views are parts of buffers.
     buffers: Vec<Rc<Vec<u8>>>,
     beside: AdjacentFiles,
 }
@@ -101,7 +103,9 @@ impl GltfAsset {
 /// The files in a file's folder to which it refers. Each is read once, however often and in whatever spelling it is named.
 struct AdjacentFiles {
     folder: PathBuf,
+    /// The files that were read, by their paths in the folder.
     read: RefCell<BTreeMap<PathBuf, Rc<Vec<u8>>>>,
+    /// Length of the main file and of these files.
     bytes: Cell<u64>,
 }
 

@@ -48,9 +48,9 @@ impl SceneModel {
 
     pub(crate) fn read_file(file: &Path, habitat_from_asset: DMat3) -> Result<Self, FileError> {
         let asset = GltfAsset::read(file)?;
-        let mut reading = SceneModelBuilder::from_asset(&asset);
-        reading.read_materials(file)?;
-        reading.place_meshes(file, habitat_from_asset)
+        let mut builder = SceneModelBuilder::from_asset(&asset);
+        builder.read_materials(file)?;
+        builder.place_meshes(file, habitat_from_asset)
     }
 
     /// Reads a file's triangles without decoding its pictures; it checks only that their bytes are there. This takes a small
@@ -148,6 +148,7 @@ impl<'a> SceneModelBuilder<'a> {
         Ok(())
     }
 
+    /// Index in the model of texture `number` of the file, which is read when it is first needed.
     fn texture_index(&mut self, number: usize) -> Result<usize, String> {
         if let Some(known) = self.textures.get(&number) {
             return Ok(*known);
@@ -163,6 +164,7 @@ impl<'a> SceneModelBuilder<'a> {
         Ok(index)
     }
 
+    /// Index of the material for meshes without one.
     fn plain_material(&mut self) -> usize {
         *self.plain.get_or_insert_with(|| {
             self.model.materials.push(MeshMaterial::default());

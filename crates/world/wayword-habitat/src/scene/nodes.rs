@@ -8,13 +8,13 @@ use gltf::json::{Root, scene::Node};
 pub(super) fn placed_meshes(root: &Root) -> Vec<(usize, DMat4)> {
     let mut seen = vec![false; root.nodes.len()];
     let first = root.scene.map_or(0, |scene| scene.value());
-    let mut open: Vec<(usize, DMat4)> = match root.scenes.get(first) {
+    let mut pending: Vec<(usize, DMat4)> = match root.scenes.get(first) {
         Some(scene) => scene.nodes.iter().rev().map(|node| (node.value(), DMat4::IDENTITY)).collect(),
         // If a file has no scenes, all nodes without a parent are shown.
         None => root_nodes(root).into_iter().rev().map(|node| (node, DMat4::IDENTITY)).collect(),
     };
     let mut placed = Vec::new();
-    while let Some((index, above)) = open.pop() {
+    while let Some((index, above)) = pending.pop() {
         let Some(node) = root.nodes.get(index) else { continue };
         if std::mem::replace(&mut seen[index], true) {
             continue;
@@ -23,21 +23,23 @@ pub(super) fn placed_meshes(root: &Root) -> Vec<(usize, DMat4)> {
         if let Some(mesh) = node.mesh {
             placed.push((mesh.value(), here));
         }
-        open.extend(node.children.iter().flatten().rev().map(|child| (child.value(), here)));
+        pending.extend(node.children.iter().flatten().rev().map(|child| (child.value(), here)));
     }
     placed
 }
 
+/// The nodes without a parent.
 fn root_nodes(root: &Root) -> Vec<usize> {
-    let mut hangs = vec![false; root.nodes.len()];
+    let mut has_parent = vec![false; root.nodes.len()];
     for child in root.nodes.iter().flat_map(|node| node.children.iter().flatten()) {
-        if let Some(hangs) = hangs.get_mut(child.value()) {
-            *hangs = true;
+        if let Some(has_parent) = has_parent.get_mut(child.value()) {
+            *has_parent = true;
         }
     }
-    (0..hangs.len()).filter(|node| !hangs[*node]).collect()
+    (0..has_parent.len()).filter(|node| !has_parent[*node]).collect()
 }
 
+/// The transform from a node's frame into that of its parent.
 fn local_transform(node: &Node) -> DMat4 {
     if let Some(matrix) = node.matrix {
         return DMat4::from_cols_array(&matrix.map(f64::from));

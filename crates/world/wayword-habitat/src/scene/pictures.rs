@@ -6,7 +6,7 @@ use std::io::Cursor;
 use wayword_core::contain_panics::run_decoder;
 use wayword_render::{MAX_TEXTURE_SIDE, Texture};
 
-/// Texels that any picture may have.
+/// Texels (pixels of a texture) that any picture may have.
 const FREE_TEXELS: u64 = 1 << 20;
 /// Further texels for each byte of the file: compression shrinks pictures of one colour to a 300th, and real files are
 /// less uniform.
@@ -20,12 +20,12 @@ pub(super) fn read_texture(asset: &GltfAsset, number: usize) -> Result<Texture, 
     let source = basis.and_then(|source| usize::try_from(source).ok()).unwrap_or(texture.source.value());
     let wrong = |reason: String| format!("image {source}: {reason}");
     let image = asset.root.images.get(source).ok_or_else(|| wrong("does not exist".to_owned()))?;
-    let read;
+    let file_bytes;
     let bytes = match (&image.buffer_view, &image.uri) {
         (Some(view), _) => asset.view_bytes(*view).map_err(wrong)?.1,
         (None, Some(uri)) => {
-            read = asset.read_adjacent(uri).map_err(wrong)?;
-            &read
+            file_bytes = asset.read_adjacent(uri).map_err(wrong)?;
+            &file_bytes
         }
         (None, None) => return Err(wrong("has no bytes".to_owned())),
     };
@@ -44,6 +44,7 @@ pub(super) fn most_texels(bytes: u64) -> u64 {
     4 * FREE_TEXELS + TEXELS_PER_BYTE.saturating_mul(bytes)
 }
 
+/// Returns an error for a picture with far more texels than its bytes can hold.
 fn check_size(width: u32, height: u32, bytes: usize) -> Result<(), String> {
     let texels = u64::from(width) * u64::from(height);
     if width.max(height) > MAX_TEXTURE_SIDE || texels > FREE_TEXELS + TEXELS_PER_BYTE * bytes as u64 {

@@ -39,6 +39,7 @@ fn texture_set(asset: &GltfAsset, primitive: &Primitive) -> u32 {
     info.map_or(0, |info| info.tex_coord)
 }
 
+/// The triangles that a list, strip or fan of vertices forms.
 fn triangles_from_order(mode: Mode, order: &[u32]) -> Vec<[u32; 3]> {
     match mode {
         Mode::TriangleStrip => {

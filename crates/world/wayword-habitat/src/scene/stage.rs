@@ -30,6 +30,7 @@ struct StageConfig {
 }
 
 const STAGE_CONFIG_HINT: &str = "see Habitat's documentation of stage_config.json";
+/// Largest configuration that is read, bytes; a larger one is an error.
 const MAX_BYTES: u64 = 1 << 20;
 const STAGE_CONFIG_ENDING: &str = ".stage_config.json";
 
@@ -63,23 +64,23 @@ impl HabitatStage {
 
     fn parse(config: &Path, file: &Path, text: &str) -> Result<Self, FileError> {
         let wrong = |reason: String| FileError::new(config, reason, STAGE_CONFIG_HINT);
-        let read: StageConfig = serde_json::from_str(text).map_err(|error| wrong(error.to_string()))?;
+        let fields: StageConfig = serde_json::from_str(text).map_err(|error| wrong(error.to_string()))?;
         let axis = |field: &str, given: Option<[f64; 3]>, default: DVec3| {
             let axis = given.map_or(default, DVec3::from);
             let length = axis.length();
             let usable = length.is_finite() && length > 1e-6;
             usable.then(|| axis / length).ok_or_else(|| wrong(format!("{field} is not a direction: {axis}")))
         };
-        let (up, front) = (axis("up", read.up, DVec3::Z)?, axis("front", read.front, DVec3::Y)?);
+        let (up, front) = (axis("up", fields.up, DVec3::Z)?, axis("front", fields.front, DVec3::Y)?);
         if front.cross(up).length() < 1e-6 {
             return Err(wrong(format!("front {front} is parallel to up {up}")));
         }
-        let scale = read.units_to_meters.unwrap_or(1.0);
+        let scale = fields.units_to_meters.unwrap_or(1.0);
         if !(scale.is_finite() && (1e-6..=1e6).contains(&scale)) {
             return Err(wrong(format!("units_to_meters is {scale}, expected a positive number")));
         }
         let beside = |name: &str| config.parent().unwrap_or(Path::new("")).join(name);
-        let asset = match &read.render_asset {
+        let asset = match &fields.render_asset {
             Some(name) => beside(name),
             None if file != config => file.to_owned(),
             None => return Err(wrong("has no render_asset".to_owned())),
@@ -87,8 +88,8 @@ impl HabitatStage {
         Ok(Self {
             asset,
             habitat_from_asset: habitat_from_axes(up, front) * scale,
-            navmesh: read.nav_asset.as_deref().filter(|name| name.ends_with(".navmesh")).map(beside),
-            semantics: read.semantic_asset.as_deref().map(beside),
+            navmesh: fields.nav_asset.as_deref().filter(|name| name.ends_with(".navmesh")).map(beside),
+            semantics: fields.semantic_asset.as_deref().map(beside),
         })
     }
 }

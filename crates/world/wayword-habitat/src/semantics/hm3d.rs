@@ -1,4 +1,5 @@
-//! Reads HM3D's `*.semantic.txt`, which gives the name and the room of the object for each colour of the semantic mesh.
+//! Reads the `*.semantic.txt` of HM3D (the Habitat-Matterport 3D dataset), which gives the name and the room of the object for
+//! each colour of the semantic mesh.
 //!
 //! A header, then `id,RRGGBB,"category",region` on each line; a category may contain commas (HM3D's semantics, version
 //! 0.2).
@@ -17,6 +18,7 @@ pub(super) struct Hm3dAnnotations {
     pub(super) by_colour: BTreeMap<[u8; 3], usize>,
 }
 
+/// Parses the whole file; the error names the line.
 pub(super) fn parse_annotations(text: &str) -> Result<Hm3dAnnotations, String> {
     let mut lines = text.lines().enumerate();
     let header = lines.next().map_or("", |(_, line)| line.trim_start_matches('\u{feff}').trim());
@@ -34,6 +36,7 @@ pub(super) fn parse_annotations(text: &str) -> Result<Hm3dAnnotations, String> {
     Ok(annotations)
 }
 
+/// The colour and the thing of a line.
 fn parse_line(line: &str) -> Result<([u8; 3], SemanticThing), String> {
     let columns = || {
         let (id, rest) = line.split_once(',')?;

@@ -17,6 +17,7 @@ pub(super) struct MatterportHouse {
     pub(super) regions: Vec<HouseRegion>,
 }
 
+/// Parses the whole file; the error names the line.
 pub(super) fn parse_house(text: &str) -> Result<MatterportHouse, String> {
     if !text.starts_with("ASCII") {
         return Err("line 1: does not begin with ASCII".to_owned());
@@ -74,6 +75,7 @@ impl<'a> HouseLine<'a, '_> {
 
     /// `R index level 0 0 label px py pz xlo ylo zlo xhi yhi zhi height ...`
     fn read_region(&self) -> Result<HouseRegion, String> {
+        // Z is Matterport3D's letter for regions that are no rooms.
         let letter = self.word_at(5)?.chars().next().unwrap_or('Z');
         Ok(HouseRegion { low: self.place_at(9)?, high: self.place_at(12)?, letter })
     }

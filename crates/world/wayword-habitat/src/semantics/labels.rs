@@ -14,8 +14,8 @@ impl SceneSemantics {
     ) -> Result<Vec<ObjectLabel>, RenderError> {
         let picture = self.draw_ids(camera)?;
         let seen = evident_objects(&picture);
-        let told = seen.iter().filter_map(|each| label_for_thing(camera, each, self.thing_with_id(each.id)?));
-        Ok(told.filter(|label| gaze.holds_heading(label.heading)).collect())
+        let labels = seen.iter().filter_map(|each| label_for_thing(camera, each, self.thing_with_id(each.id)?));
+        Ok(labels.filter(|label| gaze.holds_heading(label.heading)).collect())
     }
 }
 

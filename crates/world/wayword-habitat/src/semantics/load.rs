@@ -14,6 +14,7 @@ use std::{
 use wayword_core::RoomNames;
 use wayword_render::{Mesh, MeshMaterial, RenderScene, Texture, TextureFilter};
 
+/// Largest list of objects and largest mesh that are read, bytes; larger ones are errors.
 const MAX_TEXT: u64 = 64 << 20;
 const MAX_MESH: u64 = 4 << 30;
 const HM3D_HINT: &str = "download it again from HM3D's semantic annotations";
@@ -63,6 +64,7 @@ fn read_text(file: &Path, hint: &'static str) -> Result<String, FileError> {
     file_error::text_if_there(file, MAX_TEXT, hint)?.ok_or_else(|| FileError::new(file, "there is no such file", hint))
 }
 
+/// Reads HM3D's files. The colour of a triangle's texture, or of its vertices, gives its thing.
 fn load_painted(mesh: &Path, annotations: &Path, habitat_from_asset: DMat3) -> Result<SceneSemantics, FileError> {
     let hm3d::Hm3dAnnotations { mut things, by_colour } = hm3d::parse_annotations(&read_text(annotations, HM3D_HINT)?)
         .map_err(|reason| FileError::new(annotations, reason, HM3D_HINT))?;
@@ -77,12 +79,13 @@ fn load_painted(mesh: &Path, annotations: &Path, habitat_from_asset: DMat3) -> R
             None => each.colours.get(corners[0] as usize).map(|all| all.map(|factor| (factor * 255.0 + 0.5) as u8)),
         };
         let thing = |corners: [u32; 3]| colour(corners).and_then(|colour| by_colour.get(&colour)).copied();
-        let told: Vec<OwnedTriangle> = each.triangles.iter().map(|corners| (*corners, thing(*corners))).collect();
-        measure_things(&each.positions, &told, &mut things);
-        shells.extend(shell_triangles(&each.positions, &told, &things));
+        let owned_triangles: Vec<OwnedTriangle> =
+            each.triangles.iter().map(|corners| (*corners, thing(*corners))).collect();
+        measure_things(&each.positions, &owned_triangles, &mut things);
+        shells.extend(shell_triangles(&each.positions, &owned_triangles, &things));
         match texture {
             Some(_) => meshes.push(Mesh { id: PAINTED_ID, colours: Vec::new(), ..each }),
-            None => meshes.extend(by_thing(&each.positions, &told)),
+            None => meshes.extend(by_thing(&each.positions, &owned_triangles)),
         }
     }
     // The picture must have the colours of the file, so no material may change them.
@@ -105,6 +108,7 @@ fn load_painted(mesh: &Path, annotations: &Path, habitat_from_asset: DMat3) -> R
     })
 }
 
+/// Reads Matterport3D's files. The number of a face gives its thing.
 fn load_numbered(mesh: &Path, house: &Path, habitat_from_asset: DMat3) -> Result<SceneSemantics, FileError> {
     let house::MatterportHouse { mut things, by_number, regions } =
         house::parse_house(&read_text(house, MATTERPORT_HINT)?)
@@ -114,9 +118,10 @@ fn load_numbered(mesh: &Path, house: &Path, habitat_from_asset: DMat3) -> Result
     let place = |position: &Vec3| wayword_from_habitat(habitat_from_asset * position.as_dvec3()).as_vec3();
     let positions: Vec<Vec3> = faces.positions.iter().map(place).collect();
     let thing = |object: u32| by_number.get(&object).copied();
-    let told: Vec<OwnedTriangle> = faces.triangles.iter().map(|(corners, object)| (*corners, thing(*object))).collect();
-    measure_things(&positions, &told, &mut things);
-    let meshes = by_thing(&positions, &told);
+    let owned_triangles: Vec<OwnedTriangle> =
+        faces.triangles.iter().map(|(corners, object)| (*corners, thing(*object))).collect();
+    measure_things(&positions, &owned_triangles, &mut things);
+    let meshes = by_thing(&positions, &owned_triangles);
     // Scans are seen only from inside, and the winding of their faces is not reliable.
     let material = MeshMaterial { double_sided: true, ..MeshMaterial::default() };
     let scene = RenderScene::new(meshes, vec![material], Vec::new()).map_err(|error| wrong(error.to_string()))?;
@@ -127,8 +132,8 @@ fn load_numbered(mesh: &Path, house: &Path, habitat_from_asset: DMat3) -> Result
 type OwnedTriangle = ([u32; 3], Option<usize>);
 
 /// Extends the boxes of things to contain their triangles.
-fn measure_things(positions: &[Vec3], told: &[OwnedTriangle], things: &mut [SemanticThing]) {
-    for (corners, thing) in told {
+fn measure_things(positions: &[Vec3], owned_triangles: &[OwnedTriangle], things: &mut [SemanticThing]) {
+    for (corners, thing) in owned_triangles {
         if let Some(thing) = thing.and_then(|thing| things.get_mut(thing)) {
             let places = corners.iter().filter_map(|corner| positions.get(*corner as usize));
             places.for_each(|place| thing.include_place(place.as_dvec3()));
@@ -137,17 +142,24 @@ fn measure_things(positions: &[Vec3], told: &[OwnedTriangle], things: &mut [Sema
 }
 
 /// The triangles of floors, stairs and ceilings of numbered rooms, each with the index of its thing.
-fn shell_triangles(positions: &[Vec3], told: &[OwnedTriangle], things: &[SemanticThing]) -> Vec<([Vec3; 3], u32)> {
+fn shell_triangles(
+    positions: &[Vec3],
+    owned_triangles: &[OwnedTriangle],
+    things: &[SemanticThing],
+) -> Vec<([Vec3; 3], u32)> {
     let place = |corner: u32| positions.get(corner as usize).copied().unwrap_or_default();
-    let tells = |thing: usize| things.get(thing).is_some_and(|thing| thing.part.is_some() && thing.room.is_some());
-    let told = told.iter().filter_map(|(corners, thing)| Some((corners, (*thing)?)));
-    told.filter(|(_, thing)| tells(*thing)).map(|(corners, thing)| (corners.map(place), thing as u32)).collect()
+    let is_shell = |thing: usize| things.get(thing).is_some_and(|thing| thing.part.is_some() && thing.room.is_some());
+    let owned_triangles = owned_triangles.iter().filter_map(|(corners, thing)| Some((corners, (*thing)?)));
+    owned_triangles
+        .filter(|(_, thing)| is_shell(*thing))
+        .map(|(corners, thing)| (corners.map(place), thing as u32))
+        .collect()
 }
 
 /// One mesh for each thing. Its id is the thing's index plus 1; for triangles without a thing it is 0.
-fn by_thing(positions: &[Vec3], told: &[OwnedTriangle]) -> Vec<Mesh> {
+fn by_thing(positions: &[Vec3], owned_triangles: &[OwnedTriangle]) -> Vec<Mesh> {
     let mut parts: BTreeMap<u32, Mesh> = BTreeMap::new();
-    for (corners, thing) in told {
+    for (corners, thing) in owned_triangles {
         let id = thing.map_or(0, |thing| thing as u32 + 1);
         let part = parts.entry(id).or_insert_with(|| Mesh { id, ..Mesh::default() });
         let first = part.positions.len() as u32;
@@ -157,6 +169,7 @@ fn by_thing(positions: &[Vec3], told: &[OwnedTriangle]) -> Vec<Mesh> {
     parts.into_values().collect()
 }
 
+/// The texture coordinates in the middle of a triangle.
 fn uv_middle(uvs: &[Vec2], corners: [u32; 3]) -> Vec2 {
     corners.iter().filter_map(|corner| uvs.get(*corner as usize)).copied().sum::<Vec2>() / 3.0
 }

@@ -39,13 +39,14 @@ impl SemanticThing {
         Self { id, name, bounds: None, room: None, part }
     }
 
+    /// Extends the box to contain a place.
     fn include_place(&mut self, place: DVec3) {
         let (low, high) = self.bounds.unwrap_or((place, place));
         self.bounds = Some((low.min(place), high.max(place)));
     }
 }
 
-/// A room: a box, and the letter of its kind.
+/// A room of Matterport3D: a box, and the letter of its kind in Matterport3D's files.
 #[derive(Clone, Debug, PartialEq)]
 struct HouseRegion {
     low: DVec3,
@@ -79,6 +80,7 @@ impl SceneSemantics {
         Ok(picture)
     }
 
+    /// The thing with an id of the drawn picture.
     fn thing_with_id(&self, id: u32) -> Option<&SemanticThing> {
         self.things.get((id as usize).checked_sub(1)?)
     }

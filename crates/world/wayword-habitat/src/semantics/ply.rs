@@ -12,7 +12,7 @@ use ply_rs_bw::{
 use std::io::ErrorKind;
 use wayword_core::contain_panics::run_decoder;
 
-/// Longest header, bytes.
+/// Longest header, bytes; a longer one is an error.
 const MAX_HEADER: usize = 1 << 14;
 
 /// Triangles with the number of their object.
@@ -22,13 +22,14 @@ pub(super) struct SemanticFaces {
     pub(super) triangles: Vec<([u32; 3], u32)>,
 }
 
-/// The contents of a vertex or a face.
+/// The contents of a vertex or a face; of a vertex only the position is set, of a face only the other fields.
 struct PlyEntry {
     position: Vec3,
     corners: Vec<u32>,
     object: u32,
 }
 
+/// Parses the whole file, and checks that the faces' vertices exist.
 pub(super) fn parse_faces(bytes: &[u8]) -> Result<SemanticFaces, String> {
     run_decoder(|| {
         let faces = read_faces(bytes)?;
@@ -116,6 +117,7 @@ impl PropertyAccess for PlyEntry {
     }
 }
 
+/// The value of a property that is a single number.
 fn property_number(property: &Property) -> Option<f64> {
     Some(match *property {
         Property::Char(number) => number.into(),

@@ -23,7 +23,7 @@ const REACH_STEPS: f64 = 3.0;
 const LEVEL_M: f64 = 0.1;
 /// Greatest distance of a walk's place from the ground nearest to it, seen from above, metres.
 const BESIDE_M: f64 = 0.5;
-/// Most actions of one walk.
+/// Most actions of one walk; more are an error.
 const MOST_ACTIONS: usize = 20_000;
 
 /// A walk by single actions.
@@ -141,6 +141,7 @@ fn join_places(ground: &NavMeshGround, places: &[DVec3]) -> Result<(GroundLine, 
     Ok((line, marks))
 }
 
+/// An agent on its way along a line. It stays within `tolerance_m` metres of the line.
 struct LineFollower<'a> {
     ground: &'a NavMeshGround,
     line: &'a GroundLine,
@@ -149,6 +150,7 @@ struct LineFollower<'a> {
 }
 
 impl LineFollower<'_> {
+    /// Walks from the line's beginning to its end. `marks` are the distances along the line of the places to reach, metres.
     fn walk_line(&self, mut now: AgentStance, marks: &[f64]) -> Result<ActionWalk, WalkFollowError> {
         let forward_m = self.gait.forward_m();
         let (mut actions, mut stances, mut reached) = (Vec::new(), Vec::new(), Vec::new());
@@ -226,6 +228,7 @@ impl LineFollower<'_> {
         PROGRESS_STEPS * self.gait.forward_m()
     }
 
+    /// The cost of some turns, as a distance to the aim, metres.
     fn price_m(&self, turns: i32) -> f64 {
         f64::from(turns.abs()) * TURN_STEPS * self.gait.forward_m()
     }

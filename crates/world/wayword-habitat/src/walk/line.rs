@@ -4,12 +4,14 @@ use wayword_core::DVec3;
 
 /// Two points of the line that are nearer than this count as one, metres.
 const SAME_M: f64 = 1e-6;
-/// The ground under a place of the line lies at most this far above or below it, metres: on stairs the line runs straight.
+/// A place farther above or below the line than this is on another storey, metres. On stairs the two differ a little, because the
+/// line runs straight from point to point.
 const HEIGHT_M: f64 = 1.2;
 
-/// Points with how far along the line each is, seen from above.
+/// A line of straight pieces on the ground.
 #[derive(Debug, Clone, Default)]
 pub(super) struct GroundLine {
+    /// Each corner with its distance from the beginning along the line, seen from above, metres.
     points: Vec<(DVec3, f64)>,
 }
 

@@ -1,5 +1,7 @@
 //! The integration tests of `wayword-habitat`, one program: a module for each topic.
 
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 mod frames_real;
 mod navmesh_real;
 mod oracles;

@@ -64,7 +64,7 @@ fn every_frame_of_a_walk_stands_on_a_storey_with_headroom() {
         let name = oracle.name;
         let platform = open(&oracle, None);
         let scene = platform.list_scenes().unwrap().remove(0);
-        let islands = platform.ground_islands(&scene).unwrap();
+        let islands = platform.ground().ground_islands(&scene).unwrap();
         for island in &islands {
             println!("{name}: {island}{}", if island.is_walked { ", walked" } else { "" });
         }
@@ -118,7 +118,9 @@ fn ways_are_as_long_as_habitats_and_straight_between_their_corners() {
         assert_eq!(oracle.name, scene);
         let platform = open(&oracle, None);
         let scene = platform.list_scenes().unwrap().remove(0);
-        move |from: DVec3, to: DVec3| platform.ground_route(&scene, &standing(from), &standing(to)).unwrap().unwrap()
+        move |from: DVec3, to: DVec3| {
+            platform.ground().ground_route(&scene, &standing(from), &standing(to)).unwrap().unwrap()
+        }
     };
     let mut expected: Vec<(Box<Measure>, DVec3, DVec3, f64)> = Vec::new();
     for (name, number) in [("flat", 0), ("simple_room", 2)] {

@@ -22,29 +22,30 @@ fn usual_built_ins(kind: RoomKind) -> &'static [(K, i32)] {
 pub(super) fn add_built_ins(room: &mut RoomFurnisher<'_>, kind: RoomKind) {
     let walls = room.shuffled_walls();
     // A bedroom has one closet, and a living room one wall of books; a hallway has several of both.
-    let most = if kind == RoomKind::Hallway { 4 } else { 1 };
+    let max_pieces = if kind == RoomKind::Hallway { 4 } else { 1 };
     let on_walls =
         walls.iter().flat_map(|wall| usual_built_ins(kind).iter().map(move |(kind, width)| (*wall, *kind, *width)));
     let mut built = 0;
     for (wall, kind, width) in on_walls {
-        if built < most && fix_to_wall(room, wall, kind, width, 0).is_some() {
+        if built < max_pieces && fix_to_wall(room, wall, kind, width, 0).is_some() {
             built += 1;
         }
     }
     let radiators = walls.iter().flat_map(|wall| [120, 90, 60].map(|width| (*wall, width)));
-    let mut left = match kind {
+    let mut radiators_left = match kind {
         RoomKind::Garage | RoomKind::Closet | RoomKind::LaundryRoom | RoomKind::Staircase => 0,
         _ if room.inner.area_m2() > 12.0 => 2,
         _ => 1,
     };
     for (wall, width) in radiators {
-        if left > 0 && fix_to_wall(room, wall, K::Radiator, width, 12).is_some() {
-            left -= 1;
+        if radiators_left > 0 && fix_to_wall(room, wall, K::Radiator, width, 12).is_some() {
+            radiators_left -= 1;
         }
     }
 }
 
-/// Fixes a piece to a wall at the first place where the wall is bare, from the middle outwards.
+/// Fixes a piece of this width to a wall, `base` centimetres over the floor, at the first place where the wall is bare,
+/// from the middle outwards.
 fn fix_to_wall(room: &mut RoomFurnisher<'_>, wall: WallSide, kind: K, width: i32, base: i32) -> Option<PieceIndex> {
     let [_, depth, height] = kind.entry().size_cm;
     let edge = room.inner.edge_at(wall);

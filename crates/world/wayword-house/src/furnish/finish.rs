@@ -2,7 +2,6 @@
 //! pieces.
 
 use super::super::{catalogue::FurnitureKind as K, colour::Colour, dice::HouseDice, model::RoomKind};
-use super::placing::{PieceIndex, RoomFurnisher};
 
 /// Finishes of wood, as people name them.
 const WOOD_FINISHES: [Colour; 10] = [
@@ -54,26 +53,22 @@ impl RoomFinishes {
     pub(super) fn of_room(seed: u64, index: usize, kind: RoomKind, house: Colour) -> Self {
         let mut dice = HouseDice::new(seed, &["finish", &index.to_string()]);
         // The rooms where guests are match; bedrooms and offices are furnished one by one.
-        let own = if matches!(kind, RoomKind::Bedroom | RoomKind::Office | RoomKind::Entryway) { 60 } else { 30 };
-        let main = if dice.chance(own) { dice.pick(WOOD_FINISHES) } else { house };
+        let own_finish_percent =
+            if matches!(kind, RoomKind::Bedroom | RoomKind::Office | RoomKind::Entryway) { 60 } else { 30 };
+        let main = if dice.chance(own_finish_percent) { dice.pick(WOOD_FINISHES) } else { house };
         let accent = dice.pick(WOOD_FINISHES);
         Self { main, accent, dice }
     }
-}
 
-impl RoomFurnisher<'_> {
-    /// Gives a wooden piece the finish of its room, or now and then another one.
-    pub(super) fn apply_finish(&mut self, piece: PieceIndex) {
-        let can_be_glass =
-            matches!(self.piece_at(piece).kind, K::CoffeeTable | K::SideTable | K::ConsoleTable | K::DiningTable);
-        let finishes = &mut self.finishes;
-        let colour = if can_be_glass && finishes.dice.chance(45) {
+    /// The finish of the next wooden piece: mostly the room's own, now and then another one.
+    pub(super) fn draw_finish(&mut self, kind: K) -> Colour {
+        let can_be_glass = matches!(kind, K::CoffeeTable | K::SideTable | K::ConsoleTable | K::DiningTable);
+        if can_be_glass && self.dice.chance(45) {
             Colour::Glass
-        } else if finishes.dice.chance(30) {
-            finishes.accent
+        } else if self.dice.chance(30) {
+            self.accent
         } else {
-            finishes.main
-        };
-        self.set_colour(piece, colour);
+            self.main
+        }
     }
 }

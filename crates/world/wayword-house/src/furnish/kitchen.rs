@@ -58,12 +58,14 @@ fn add_breakfast_table(room: &mut RoomFurnisher<'_>) {
     }
 }
 
+/// Places the row of counters at a wall; `None` if not even a short row fits. One piece as long as the whole row is placed
+/// first and taken away again, which finds the free stretch of wall.
 fn place_row(room: &mut RoomFurnisher<'_>, wall: WallSide) -> Option<Vec<PieceIndex>> {
     let mut kinds = COUNTER_ROW;
     if room.dice.chance(50) {
         kinds.reverse();
     }
-    // Tries shorter rows where the long one does not fit.
+    // Tries shorter rows where the long one does not fit: each list has the indices of the pieces that are left out.
     for skip in [&[][..], &[3][..], &[3, 5][..], &[1, 3, 5][..], &[0, 1, 3, 5][..]] {
         let kept = kinds.iter().enumerate().filter(|(at, _)| !skip.contains(at));
         let sizes: Vec<_> = kept.map(|(_, kind)| (*kind, kind.entry().size_cm)).collect();
@@ -106,6 +108,7 @@ fn finish_kitchen_piece(room: &mut RoomFurnisher<'_>, piece: PieceIndex) {
     }
 }
 
+/// Places an island in or near the middle of the room, with a bowl of fruit on it and two stools in front.
 fn add_island(room: &mut RoomFurnisher<'_>) {
     let (x, y) = room.inner.centre();
     let colour = room.taste.kitchen;

@@ -34,6 +34,8 @@ pub(super) fn furnish_living_room(room: &mut RoomFurnisher<'_>) {
     room.hang_curtains();
 }
 
+/// Places a television opposite the sofa, a rug and a coffee table in front of it, a side table beside it, and a painting
+/// over it.
 fn around_sofa(room: &mut RoomFurnisher<'_>, sofa: PieceIndex) {
     let wall = room.wall_behind(sofa);
     let stand = room.stand_at_walls(K::TvStand, &[wall.opposite()], WallPreference::Middle, 60);

@@ -17,6 +17,7 @@ pub(super) struct RoomFurnisher<'a> {
     pub(super) taste: HousePalette,
     pub(super) finishes: RoomFinishes,
     pub(super) room: &'a HouseRoom,
+    /// Index of the room in the plan.
     index: usize,
     /// The area between the walls.
     pub(super) inner: RectCm,
@@ -38,8 +39,11 @@ pub(super) struct RoomFurnisher<'a> {
 /// Which places along a wall are tried first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum WallPreference {
+    /// Those nearest to the middle of the wall.
     Middle,
+    /// Those nearest to the corners of the room.
     Ends,
+    /// All, in random order.
     Anywhere,
 }
 
@@ -62,8 +66,8 @@ fn material_name(kind: FurnitureKind, colour: Colour) -> &'static str {
 impl<'a> RoomFurnisher<'a> {
     pub(super) fn new(seed: u64, layout: &'a HouseLayout, index: usize, taste: HousePalette) -> Self {
         let room = &layout.rooms[index];
-        let of_room = |opening: &&WallOpening| opening.room == index || opening.beyond == Some(index);
-        let openings = || layout.openings.iter().filter(of_room);
+        let touches_room = |opening: &&WallOpening| opening.room == index || opening.beyond == Some(index);
+        let openings = || layout.openings.iter().filter(touches_room);
         let windows = layout.windows.iter().filter(|window| window.room == index);
         Self {
             dice: HouseDice::new(seed, &["furniture", &index.to_string()]),
@@ -110,6 +114,12 @@ impl<'a> RoomFurnisher<'a> {
         let piece = &mut self.pieces[piece];
         piece.colour = colour;
         piece.material = material_name(piece.kind, colour).to_owned();
+    }
+
+    /// Gives a wooden piece the finish of its room, or now and then another one.
+    pub(super) fn apply_finish(&mut self, piece: PieceIndex) {
+        let colour = self.finishes.draw_finish(self.pieces[piece].kind);
+        self.set_colour(piece, colour);
     }
 
     /// Adds a piece without checking whether it fits.
@@ -163,6 +173,7 @@ impl<'a> RoomFurnisher<'a> {
         self.stand_at_walls(kind, &walls, along, clearance)
     }
 
+    /// As [`Self::stand_at_walls`], with a given size: width, depth and height, centimetres.
     pub(super) fn stand_sized(
         &mut self,
         kind: FurnitureKind,
@@ -257,6 +268,7 @@ impl<'a> RoomFurnisher<'a> {
         Some((wall, (x + dx * 50, y + dy * 50)))
     }
 
+    /// The four walls in random order.
     pub(super) fn shuffled_walls(&mut self) -> [WallSide; 4] {
         let mut walls = WallSide::ALL;
         self.dice.shuffle(&mut walls);
@@ -270,6 +282,7 @@ impl<'a> RoomFurnisher<'a> {
         walls
     }
 
+    /// Whether a span lies on this wall of the room.
     fn is_on(&self, wall: WallSide, span: &SpanCm) -> bool {
         self.room.outline.wall_of(span) == Some(wall)
     }
@@ -313,11 +326,13 @@ impl<'a> RoomFurnisher<'a> {
         }
     }
 
+    /// Whether a piece at a wall would reach more than 25 cm above the sill of a window there.
     fn blinds_window(&self, wall: WallSide, footprint: &RectCm, height: i32) -> bool {
         let covers = |span: &SpanCm| self.is_on(wall, span) && span.thickened_by(20).overlaps(footprint);
         self.windows.iter().any(|(span, sill)| *sill < height - 25 && covers(span))
     }
 
+    /// Whether a piece fits here, with the free floor `before` it.
     fn is_free(&self, footprint: &RectCm, before: &RectCm) -> bool {
         self.inner.contains(footprint)
             && self.inner.contains(before)
@@ -327,6 +342,7 @@ impl<'a> RoomFurnisher<'a> {
             && self.keeps_ways_open(footprint)
     }
 
+    /// Whether a footprint overlaps a doorstep, an open door or another piece.
     fn touches_fixed(&self, footprint: &RectCm) -> bool {
         self.doorsteps.iter().chain(&self.leaves).any(|area| area.overlaps(footprint))
             || self.standing_footprints().any(|area| area.overlaps(footprint))
@@ -334,6 +350,7 @@ impl<'a> RoomFurnisher<'a> {
 
     /// Footprints of the pieces that take floor.
     fn standing_footprints(&self) -> impl Iterator<Item = RectCm> + '_ {
+        // A piece that begins higher than this, such as a cabinet on the wall, takes no floor.
         let low = self.room.base_cm() + 150;
         let takes_floor = move |piece: &&FurniturePiece| {
             !piece.kind.is_flat() && !piece.kind.is_slim_on_wall() && piece.base_cm < low
@@ -341,6 +358,7 @@ impl<'a> RoomFurnisher<'a> {
         self.pieces.iter().filter(takes_floor).map(|piece| piece.footprint)
     }
 
+    /// Whether all doors can still be reached if a piece is placed here.
     fn keeps_ways_open(&self, footprint: &RectCm) -> bool {
         let obstacles: Vec<_> =
             self.standing_footprints().chain(self.leaves.iter().copied()).chain([*footprint]).collect();

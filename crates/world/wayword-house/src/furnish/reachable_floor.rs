@@ -4,7 +4,7 @@ use super::super::rect::RectCm;
 
 /// Side of a cell, centimetres.
 const CELL_CM: i32 = 10;
-/// Half the width of a walker, with a margin.
+/// Half the width of a walker, with a margin, centimetres.
 const RADIUS_CM: i32 = 27;
 
 /// Whether, with these obstacles, every doorstep can be reached from every other, and no large part of the floor is cut
@@ -36,6 +36,7 @@ pub(super) fn ways_stay_open(inner: &RectCm, obstacles: &[RectCm], doorsteps: &[
     };
     let steps: Vec<_> = doorsteps.iter().map(part_of).collect();
     let joined = steps.iter().all(|part| part.is_some() && *part == steps[0]);
+    // Corners behind furniture may be cut off, but together they are at most 12 % of the free floor.
     joined && largest * 100 >= total * 88
 }
 
@@ -45,6 +46,7 @@ struct FloorParts {
     sizes: Vec<usize>,
 }
 
+/// Divides the free cells of a grid into connected parts. Cells are numbered row by row.
 fn flood_parts(free: &[bool], columns: i32, rows: i32) -> FloorParts {
     let mut parts = FloorParts { part: vec![None; free.len()], sizes: Vec::new() };
     for start in 0..free.len() {

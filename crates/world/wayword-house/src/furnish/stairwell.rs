@@ -7,18 +7,21 @@ use super::super::{
 };
 use super::placing::RoomFurnisher;
 
-/// Least width of a column of pictures, and the distance to the next, centimetres.
+/// Least width of a column of pictures, centimetres.
 const COLUMN_CM: i32 = 50;
+/// Distance between two columns, centimetres.
 const GAP_CM: i32 = 8;
-/// From the steps to the lowest picture, and between two pictures of a column, centimetres.
+/// From the steps up to the lowest picture, centimetres.
 const OVER_STEPS_CM: i32 = 55;
+/// Distance between two pictures of a column, centimetres.
 const APART_CM: i32 = 12;
-/// Where the highest picture ends, and the height of each, centimetres.
+/// Height above the ground floor at which the highest picture ends, centimetres.
 const TOP_CM: i32 = STOREY_CM + 240;
+/// Usual height of a picture, centimetres; the highest one of a column may be lower.
 const HEIGHT_CM: i32 = 138;
 /// How many columns in a hundred have pictures.
 const FILLED_PERCENT: i32 = 86;
-/// Over the opening at the foot of the stairs, centimetres.
+/// Height above the ground floor of the lowest picture over the opening at the foot of the stairs, centimetres.
 const OVER_OPENING_CM: i32 = 236;
 
 /// Hangs columns of pictures on every wall.
@@ -60,6 +63,7 @@ fn lowest_picture_height(
     lower.contains(&area).then_some(OVER_OPENING_CM)
 }
 
+/// Hangs pictures one above the other, from the height `lowest` upwards, wherever the wall is bare.
 fn hang_column(room: &mut RoomFurnisher<'_>, wall: WallSide, [from, width]: [i32; 2], lowest: i32) {
     let mut base = lowest;
     while base + HEIGHT_CM / 2 <= TOP_CM {

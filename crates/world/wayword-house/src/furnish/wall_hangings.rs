@@ -16,8 +16,9 @@ const STRIP_CM: i32 = 5;
 /// The narrowest stretch of wall that gets a hanging, centimetres.
 const NARROWEST_CM: i32 = 36;
 
-/// So many things of a kind in a row differ in colour, and another colour is drawn at most so often to achieve this.
+/// A hanging thing gets a colour that this many things of its kind before it do not have.
 const LIKE_COLOURS_APART_PIECES: usize = 4;
+/// How often another colour is drawn to achieve this; the last colour then stays, even if it repeats.
 const MAX_COLOUR_DRAWS: usize = 8;
 
 /// The bands of height for hanging things, centimetres above the floor: over the bare floor, over low furniture, and over
@@ -25,6 +26,7 @@ const MAX_COLOUR_DRAWS: usize = 8;
 const WALL_BANDS: [WallBand; 3] =
     [WallBand { base: 58, top: 226 }, WallBand { base: 116, top: 226 }, WallBand { base: 160, top: 226 }];
 
+/// Lower and upper edge of a band of height.
 #[derive(Debug, Clone, Copy)]
 struct WallBand {
     base: i32,
@@ -97,20 +99,20 @@ impl RoomFurnisher<'_> {
     /// Hangs things side by side, at equal distances.
     fn fill_run(&mut self, wall: WallSide, band: WallBand, from: i32, to: i32) {
         let mut chosen: Vec<(K, i32)> = Vec::new();
-        let mut left = to - from;
-        while left >= NARROWEST_CM {
+        let mut free_cm = to - from;
+        while free_cm >= NARROWEST_CM {
             let last = chosen.last().map(|(kind, _)| *kind);
-            let (kind, width) = self.choose_hanging(left, last);
-            left -= width + GAP_CM;
+            let (kind, width) = self.choose_hanging(free_cm, last);
+            free_cm -= width + GAP_CM;
             chosen.push((kind, width));
         }
-        let gap = (left + GAP_CM) / (chosen.len() as i32 + 1);
+        let gap = (free_cm + GAP_CM) / (chosen.len() as i32 + 1);
         let mut at = from + gap;
         for (kind, width) in chosen {
-            let room = band.top - band.base;
-            let height = hanging_size(kind).1.min(room);
+            let band_height = band.top - band.base;
+            let height = hanging_size(kind).1.min(band_height);
             // Coats and cloths hang down from the top; pictures have their middle at the height of the eyes.
-            let spare = room - height;
+            let spare = band_height - height;
             let base =
                 band.base + if matches!(kind, K::CoatHooks | K::Tapestry | K::Towel) { spare } else { spare / 2 };
             let depth = kind.entry().size_cm[1];
@@ -133,9 +135,9 @@ impl RoomFurnisher<'_> {
         }
     }
 
-    /// Chooses a thing that fits into a width and differs from its neighbour, and the thing's own width.
-    fn choose_hanging(&mut self, left: i32, neighbour: Option<K>) -> (K, i32) {
-        let fits = |kind: K| hanging_size(kind).0[0] <= left && Some(kind) != neighbour;
+    /// Chooses a thing that fits into the free width and differs from its neighbour. Returns it with its width.
+    fn choose_hanging(&mut self, free_cm: i32, neighbour: Option<K>) -> (K, i32) {
+        let fits = |kind: K| hanging_size(kind).0[0] <= free_cm && Some(kind) != neighbour;
         let fitting: Vec<_> = usual_hangings(self.room.kind).iter().filter(|(kind, _)| fits(*kind)).collect();
         let mut drawn = self.dice.draw_between(1, fitting.iter().map(|(_, share)| share).sum());
         let mut is_drawn = |share: i32| {
@@ -145,9 +147,9 @@ impl RoomFurnisher<'_> {
         // A picture can be as narrow as the rest of the stretch.
         let kind = fitting.iter().find(|(_, share)| is_drawn(*share)).map_or(K::Painting, |(kind, _)| *kind);
         let [least, most] = hanging_size(kind).0;
-        let width = self.dice.draw_stepped(least.min(left), most.min(left), 2);
+        let width = self.dice.draw_stepped(least.min(free_cm), most.min(free_cm), 2);
         // If the rest would be too narrow for another thing, this one takes it too.
-        let rest = left - width - GAP_CM;
-        (kind, if rest < NARROWEST_CM && left <= most { left } else { width })
+        let rest = free_cm - width - GAP_CM;
+        (kind, if rest < NARROWEST_CM && free_cm <= most { free_cm } else { width })
     }
 }

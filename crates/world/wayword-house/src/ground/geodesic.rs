@@ -34,16 +34,17 @@ impl HouseGround {
     /// The shortest way from cell to cell, which still has the corners of the grid.
     fn over_cells(&self, start: GroundCell, goal: GroundCell) -> Option<Vec<GroundCell>> {
         let size = self.grid.len();
+        // The search numbers the cells of all layers one after another.
         let number = |cell: GroundCell| cell.layer * size + cell.index;
         let cell = |number: usize| GroundCell { layer: number / size, index: number % size };
         let (gx, gy) = self.grid.centre_m(goal.index);
-        let left = |at: usize| {
+        let least_left = |at: usize| {
             let (x, y) = self.grid.centre_m(cell(at).index);
             let cells = |d: f64| (d.abs() * 100.0 / f64::from(CELL_CM)) as u64;
             at_least(cells(x - gx), cells(y - gy))
         };
         let steps = |at: usize| self.neighbour_cells(cell(at)).map(|(next, step)| (number(next), step));
-        let way = find_shortest_way(size * self.grid.layer_count(), number(start), number(goal), left, steps)?;
+        let way = find_shortest_way(size * self.grid.layer_count(), number(start), number(goal), least_left, steps)?;
         Some(way.into_iter().map(cell).collect())
     }
 
@@ -64,7 +65,7 @@ impl HouseGround {
         walks.chain(layers.map(move |layer| (GroundCell { layer, ..cell }, 0)))
     }
 
-    /// Moves corners by up to eight cells to where the way is shorter and still free, until no move helps.
+    /// Moves corners by up to eight cells to where the way is shorter and still free, until no move helps (at most 40 rounds).
     fn pull_corners(&self, corners: &mut Vec<GroundCell>) {
         for _ in 0..40 {
             let mut changed = false;
@@ -95,11 +96,13 @@ impl HouseGround {
         }
     }
 
+    /// The distance between the middles of two cells, seen from above, metres.
     fn flat_m(&self, a: GroundCell, b: GroundCell) -> f64 {
         let ((ax, ay), (bx, by)) = (self.grid.centre_m(a.index), self.grid.centre_m(b.index));
         ((ax - bx) * (ax - bx) + (ay - by) * (ay - by)).sqrt()
     }
 
+    /// The route that goes straight from corner to corner.
     fn route_along(&self, corners: &[GroundCell]) -> HouseRoute {
         let mut places: Vec<DVec3> = Vec::new();
         for pair in corners.windows(2) {

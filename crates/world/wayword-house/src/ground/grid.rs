@@ -95,10 +95,12 @@ impl GroundGrid {
         self.free[cell.index] &= !(1 << cell.layer);
     }
 
+    /// The layers in which a cell is free, one bit for each.
     pub(super) fn free_layers(&self, index: usize) -> u8 {
         self.free[index]
     }
 
+    /// The storeys that are linked with the stairs at a cell, one bit for each.
     pub(super) fn linked_floors(&self, index: usize) -> u8 {
         self.linked[index]
     }
@@ -107,6 +109,7 @@ impl GroundGrid {
         self.linked[index] |= u8::from(linked) << floor;
     }
 
+    /// The index of the cell at a point of the world frame; `None` outside the raster.
     pub(super) fn index_at(&self, x_m: f64, y_m: f64) -> Option<usize> {
         let step = |place_m: f64, origin_cm: i32, count: i32| {
             let cell = ((place_m * 100.0 - f64::from(origin_cm)) / f64::from(CELL_CM)).floor();
@@ -116,6 +119,7 @@ impl GroundGrid {
         Some((row * self.columns + column) as usize)
     }
 
+    /// The middle of a cell, metres, world frame.
     pub(super) fn centre_m(&self, index: usize) -> (f64, f64) {
         let (column, row) = (index as i32 % self.columns, index as i32 / self.columns);
         let middle = |origin: i32, cell: i32| f64::from(2 * (origin + cell * CELL_CM) + CELL_CM) / 200.0;

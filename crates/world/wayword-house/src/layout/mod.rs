@@ -25,6 +25,7 @@ pub(super) use openings::floor_before_opening;
 struct FloorPlan {
     rooms: Vec<PlannedRoom>,
     links: Vec<RoomLink>,
+    /// The stairwell of a house with two storeys.
     well: Option<PlannedStairwell>,
 }
 
@@ -63,17 +64,24 @@ enum RoomPassage {
 #[derive(Debug, Clone, Copy)]
 struct PlannedStairwell {
     room: usize,
+    /// The side at which both flights begin and end.
     entry: WallSide,
+    /// Whether the lower flight fills the half with the lower coordinates.
     lower_flight_low: bool,
 }
 
 /// The outer dimensions that both storeys share, centimetres.
 #[derive(Debug, Clone, Copy)]
 struct OuterDimensions {
+    /// West to east, with the block.
     width: i32,
+    /// Width of the block at the western end.
     block: i32,
+    /// Depth of the southern strip of rooms.
     south: i32,
+    /// Depth of the hallway.
     hall: i32,
+    /// Depth of the northern strip of rooms.
     north: i32,
     /// West and east edge of the stairwell in the northern strip.
     well: Option<(i32, i32)>,
@@ -128,6 +136,7 @@ fn draw_dimensions(dice: &mut HouseDice, storeys: u32) -> OuterDimensions {
     let width = if storeys == 2 { block + dice.draw_stepped(800, 920, 10) } else { dice.draw_stepped(1240, 1520, 10) };
     let well = (storeys == 2).then(|| {
         let from = if dice.chance(50) { block } else { block + dice.draw_stepped(300, 360, 10) };
+        // The width of the stairwell between the middle lines of its walls.
         (from, from + 232)
     });
     OuterDimensions { width, block, south, hall, north, well }
@@ -143,6 +152,7 @@ impl FloorPlan {
         self.links.push(RoomLink { room, beyond: Some(beyond), how });
     }
 
+    /// Adds the rooms of a storey: hallway, block, both strips and perhaps a garage.
     fn add_storey(&mut self, dice: &mut HouseDice, shell: &OuterDimensions, floor: u32, program: &StoreyProgram) {
         let (south, hall_top) = (shell.south, shell.south + shell.hall);
         let top = hall_top + shell.north;
@@ -161,6 +171,7 @@ impl FloorPlan {
         }
     }
 
+    /// Adds the strip of rooms south of the hallway.
     fn add_south(
         &mut self,
         dice: &mut HouseDice,
@@ -176,6 +187,7 @@ impl FloorPlan {
         self.add_cells(dice, floor, &cells, hall, Some(main));
     }
 
+    /// Adds the strip of rooms north of the hallway, around the stairwell if there is one.
     fn add_north(
         &mut self,
         dice: &mut HouseDice,
@@ -205,6 +217,7 @@ impl FloorPlan {
         self.add_cells(dice, floor, &cells, hall, None);
     }
 
+    /// Adds the stairwell if it does not exist yet, and links it with the hallway of this storey.
     fn add_well(&mut self, dice: &mut HouseDice, floor: u32, outline: RectCm, hall: usize, upstairs: StairsAbove) {
         let how = RoomPassage::Flight { floor };
         match (upstairs, self.well) {
@@ -234,7 +247,7 @@ impl FloorPlan {
             match program::join_room(dice, *kind, neighbour.map(|(_, kind)| kind)) {
                 program::RoomJoin::Hall(how) => self.link_rooms(hall, room, how),
                 program::RoomJoin::Neighbour(how) => {
-                    self.link_rooms(neighbour.map_or(hall, |(index, _)| index), room, how)
+                    self.link_rooms(neighbour.map_or(hall, |(index, _)| index), room, how);
                 }
                 program::RoomJoin::Both(hall_how, how) => {
                     self.link_rooms(hall, room, hall_how);

@@ -8,13 +8,18 @@ use super::super::{
 };
 use super::{FloorPlan, ObjectIdCounter, PlannedStairwell, RoomLink, RoomPassage};
 
+/// Usual width of a door, centimetres.
 const DOOR_CM: i32 = 90;
+/// Least width of a door or doorway, centimetres; a shorter stretch of wall gets none.
 const NARROWEST_CM: i32 = 75;
+/// Clear height of an opening with a leaf, centimetres.
 const DOOR_HEIGHT_CM: i32 = 205;
+/// Clear height of an opening without a leaf, centimetres.
 const DOORWAY_HEIGHT_CM: i32 = 220;
 /// Least length of wall between an opening and the corner, centimetres: half the crossing wall, and the frame.
 const CORNER_CM: i32 = 16;
 
+/// The openings for all links of a plan. Doors get their places after all other openings.
 pub(super) fn cut_openings(
     dice: &mut HouseDice,
     plan: &FloorPlan,

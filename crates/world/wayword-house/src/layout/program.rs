@@ -34,7 +34,9 @@ pub(super) struct StoreyProgram {
 /// Whether stairs lead up from a storey.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum StairsAbove {
+    /// The stairwell begins on this storey.
     Above,
+    /// This storey adds no stairwell.
     None,
 }
 
@@ -91,8 +93,11 @@ pub(super) fn usual_widths(kind: RoomKind) -> (i32, i32) {
 
 /// What a room of a strip is joined to.
 pub(super) enum RoomJoin {
+    /// To the hallway alone.
     Hall(RoomPassage),
+    /// To the neighbour towards the block alone.
     Neighbour(RoomPassage),
+    /// To the hallway, by the first passage, and to the neighbour, by the second.
     Both(RoomPassage, RoomPassage),
 }
 

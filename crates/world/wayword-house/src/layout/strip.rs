@@ -6,7 +6,7 @@ use super::{
 };
 
 /// Divides `range` (centimetres) among rooms: `first` as far as they fit, then some of `more`. All rooms then share the
-/// width that is left.
+/// width that is left. Returns each room with its two ends along the strip.
 pub(super) fn fill_strip(
     dice: &mut HouseDice,
     range: (i32, i32),

@@ -6,7 +6,7 @@ use super::super::{
 };
 use super::{FloorPlan, ObjectIdCounter};
 
-/// Width, sill and head of a room's windows, centimetres.
+/// Width, sill and head of the windows of a kind of room, centimetres; `None` if it has none.
 fn window_size(kind: RoomKind) -> Option<(i32, i32, i32)> {
     match kind {
         RoomKind::Closet | RoomKind::Garage => None,
@@ -19,6 +19,7 @@ fn window_size(kind: RoomKind) -> Option<(i32, i32, i32)> {
     }
 }
 
+/// The windows of all rooms, without those that would lie in an opening.
 pub(super) fn cut_windows(
     plan: &FloorPlan,
     rooms: &[HouseRoom],
@@ -68,6 +69,7 @@ fn window_spans(plan: &FloorPlan, rooms: &[HouseRoom], index: usize, wall: WallS
         from = from.max(end);
     }
     free.push((from, edge.to));
+    // Each window needs 90 cm of wall beside it, and a stretch of wall gets three windows at most.
     let per_window = width + 90;
     free.into_iter()
         .flat_map(|(from, to)| {

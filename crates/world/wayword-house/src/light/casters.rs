@@ -99,9 +99,9 @@ pub(super) fn blocked_share(blocks: &[ShadowBlock], own: Option<u32>, from: Vec3
     let per_step = way.recip();
     let mut passes = 1.0;
     let (low, high) = (from.min(from + way), from.max(from + way));
-    let may_hold =
+    let may_block =
         |block: &&ShadowBlock| low.cmplt(block.high).all() && high.cmpgt(block.low).all() && own != Some(block.owner);
-    for block in blocks.iter().filter(may_hold) {
+    for block in blocks.iter().filter(may_block) {
         let (a, b) = ((block.low - from) * per_step, (block.high - from) * per_step);
         let enters = a.min(b).max_element().max(0.0);
         let leaves = a.max(b).min_element().min(1.0);

@@ -152,8 +152,8 @@ impl<L: Fn(Vec3, Vec3) -> LightFactors> SurfaceCutter<'_, L> {
 
     /// How much the light at a point of an edge differs from the value interpolated between its ends.
     fn interpolation_error(&self, a: usize, b: usize, share: f32, colour: LightFactors) -> f32 {
-        let told = |channel: usize| self.colours[a][channel] * (1.0 - share) + self.colours[b][channel] * share;
-        (0..3).map(|channel| (colour[channel] - told(channel)).abs()).fold(0.0, f32::max)
+        let interpolated = |channel: usize| self.colours[a][channel] * (1.0 - share) + self.colours[b][channel] * share;
+        (0..3).map(|channel| (colour[channel] - interpolated(channel)).abs()).fold(0.0, f32::max)
     }
 }
 

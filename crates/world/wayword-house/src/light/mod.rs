@@ -14,7 +14,7 @@ pub(super) use cut::{LightFactors, SurfaceGrain, cut_part};
 use glam::Vec3;
 use sun::{SunAperture, build_wings, is_free, towards_sun};
 
-/// The light that reaches every surface, also without lamps and windows.
+/// The light that reaches every surface, also without lamps and windows. Light of 1 shows a surface in its own colour.
 const AMBIENT_LIGHT: f32 = 0.30;
 /// How far the shadow of an inner edge reaches, metres.
 const EDGE_M: f32 = 0.55;
@@ -35,15 +35,19 @@ const SOFT_M: f32 = 0.12;
 /// The light of one room.
 #[derive(Debug)]
 pub(super) struct RoomLight {
+    /// Lower and upper corner of the space between the walls, metres, world frame.
     low: Vec3,
     high: Vec3,
+    /// Where the lamps are.
     lamps: Vec<Vec3>,
     windows: Vec<WindowLight>,
     /// The boxes that cast shadows.
     blocks: Vec<ShadowBlock>,
     /// Unit vector towards the sun.
     sun: Vec3,
+    /// The windows through which the sun shines.
     apertures: Vec<SunAperture>,
+    /// The other rooms of the house, which can lie between a window and the sun.
     wings: Vec<ShadowBlock>,
 }
 
@@ -118,7 +122,7 @@ impl RoomLight {
 
     /// All light at a place with a normal, per channel, encoded for storage. `shade` dims everything but the sun.
     fn light_factors(&self, at: Vec3, normal: Vec3, own: Option<u32>, shade: f32) -> LightFactors {
-        let toned = AMBIENT_LIGHT * (0.8 + 0.12 * normal.z + 0.1 * normal.x.abs());
+        let ambient = AMBIENT_LIGHT * (0.8 + 0.12 * normal.z + 0.1 * normal.x.abs());
         let strength = if self.windows.is_empty() { 1.0 } else { LAMPS_BY_DAY };
         let lamps: f32 = self.lamps.iter().map(|lamp| self.lamplight(at, normal, own, *lamp) * strength).sum();
         let windows: f32 = self.windows.iter().map(|window| self.daylight(at, normal, own, window)).sum();
@@ -126,7 +130,7 @@ impl RoomLight {
         let dim = shade * self.edge_shadow(at, normal);
         // Sun and lamps are warm, windows cool.
         let channel = |warm: f32, cool: f32, sunny: f32| {
-            ((toned + lamps * warm + windows * cool) * dim + sun * sunny).clamp(0.02, MAX_LIGHT).sqrt()
+            ((ambient + lamps * warm + windows * cool) * dim + sun * sunny).clamp(0.02, MAX_LIGHT).sqrt()
         };
         [channel(1.03, 0.97, 1.06), channel(1.0, 1.0, 1.0), channel(0.93, 1.05, 0.84)]
     }
@@ -156,8 +160,8 @@ impl RoomLight {
         if full <= MIN_SHADOWED_LIGHT {
             return full;
         }
-        let held = window.places.map(|place| blocked_share(&self.blocks, own, at, place - at, SOFT_M));
-        full * (1.0 - 0.9 * held.iter().sum::<f32>() / 3.0)
+        let blocked = window.places.map(|place| blocked_share(&self.blocks, own, at, place - at, SOFT_M));
+        full * (1.0 - 0.9 * blocked.iter().sum::<f32>() / 3.0)
     }
 
     fn lamplight(&self, at: Vec3, normal: Vec3, own: Option<u32>, lamp: Vec3) -> f32 {
@@ -172,8 +176,8 @@ impl RoomLight {
     /// Shadow near the shell's inner edges, except at the face on which the corner itself lies.
     fn edge_shadow(&self, at: Vec3, normal: Vec3) -> f32 {
         let near = |distance: f32, facing: f32| {
-            let own = facing > 0.5 && distance < 0.02;
-            if own { 1.0 } else { 1.0 - 0.26 * fade_out(distance.max(0.0), EDGE_M) }
+            let is_own_face = facing > 0.5 && distance < 0.02;
+            if is_own_face { 1.0 } else { 1.0 - 0.26 * fade_out(distance.max(0.0), EDGE_M) }
         };
         near(at.x - self.low.x, normal.x)
             * near(self.high.x - at.x, -normal.x)
@@ -186,8 +190,8 @@ impl RoomLight {
 
 /// From 1 at distance 0 to 0 at `reach`.
 fn fade_out(distance: f32, reach: f32) -> f32 {
-    let left = (1.0 - distance / reach).max(0.0);
-    left * left
+    let remaining = (1.0 - distance / reach).max(0.0);
+    remaining * remaining
 }
 
 /// The light of a lamp at a place with a normal, without shadows.

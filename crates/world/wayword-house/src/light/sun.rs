@@ -86,6 +86,7 @@ impl SunAperture {
         (share > 0.0).then_some((pane, share))
     }
 
+    /// Where the line from a place to the sun crosses a plane along the wall; `None` if the plane lies behind the place.
     fn plane_crossing(&self, at: Vec3, sun: Vec3, plane: f32) -> Option<Vec3> {
         let (from, speed) = if self.along_x { (at.y, sun.y) } else { (at.x, sun.x) };
         let steps = (plane - from) / speed;
@@ -96,12 +97,14 @@ impl SunAperture {
         if self.along_x { at.x } else { at.y }
     }
 
+    /// How much of the sun passes the window's frame at this point, 0..=1.
     fn inside_share(&self, at: Vec3) -> f32 {
         let within =
             |value: f32, [low, high]: [f32; 2]| (((value - low).min(high - value)) / SOFT_M + 0.5).clamp(0.0, 1.0);
         within(self.place_along_wall(at), self.along) * within(at.z, self.z)
     }
 
+    /// How much of the sun passes the window's two bars: 0.15 behind a bar, 1 beside it, and a soft edge between.
     fn between_bars(&self, pane: Vec3) -> f32 {
         let middle = (self.along[0] + self.along[1]) / 2.0;
         let past = |distance: f32| (0.15 + (distance.abs() - HALF_BAR_M) / SOFT_M).clamp(0.15, 1.0);

@@ -35,7 +35,7 @@ fn paths_keep_to_their_length_end_at_their_target_and_repeat() {
             let last = path.frames.last().unwrap();
             let home = platform.ready_house(&scene).unwrap();
             assert!(home.labels_around(last.pose).unwrap().iter().any(|label| label.object == target.object));
-            assert_eq!(platform.object_name(&scene, last, &target.object).unwrap(), Some(target.name));
+            assert_eq!(platform.catalogue().object_name(&scene, last, &target.object).unwrap(), Some(target.name));
             assert_eq!(platform.sample_path(&scene, &request, seed).unwrap(), path);
         }
     }

@@ -1,15 +1,15 @@
-//! The binary part of a GLB, and the accessors into it.
+//! The binary part of a GLB file (binary glTF), and the accessors into it: descriptions of the arrays in its bytes.
 
 use glam::Vec3;
 use serde_json::{Value, json};
 
-/// Component type "float".
+/// glTF's number for components of type float.
 const COMPONENT_FLOAT: u32 = 5126;
-/// Component type "unsigned int".
+/// glTF's number for components of type unsigned int.
 const UNSIGNED_INT: u32 = 5125;
-/// Buffer target for vertices.
+/// glTF's number for buffer views with vertices.
 const ARRAY_BUFFER: u32 = 34962;
-/// Buffer target for indices.
+/// glTF's number for buffer views with indices.
 const ELEMENT_ARRAY_BUFFER: u32 = 34963;
 
 /// From the world frame (z up, y north) to glTF's (y up, -z north).

@@ -37,6 +37,7 @@ pub fn encode_glb(house: &House) -> Result<Vec<u8>, SaveError> {
     let textures: Vec<_> = (0..images.len()).map(|image| json!({ "source": image, "sampler": 0 })).collect();
     let materials: Vec<_> = drawing.materials.iter().map(|each| material_json(each, &used)).collect();
     buffer.bytes.resize(buffer.bytes.len().next_multiple_of(4), 0);
+    // The sampler is linear near by (9729), trilinear far away (9987), and repeats in both directions (10497).
     let document = json!({
         "asset": { "version": "2.0", "generator": "wayword" },
         "extensionsUsed": ["KHR_materials_unlit"],

@@ -3,7 +3,7 @@
 use super::super::surface::HouseSurface;
 use glam::{Vec2, Vec3};
 
-/// Corners around a turned part.
+/// Corners around the axis of a turned part (a part that is round like one made on a lathe).
 const ROUND_SIDES: usize = 16;
 
 /// Triangles of one surface, with normals for the light.
@@ -118,6 +118,7 @@ impl HouseShape {
         }
     }
 
+    /// One of the six faces of a box with rounded edges: `axis` and `sign` choose it.
     fn soft_face(&mut self, surface: HouseSurface, centre: Vec3, half: Vec3, radius: f32, axis: usize, sign: f32) {
         let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
         // Small roundings get one bevel; large ones get one more corner.
@@ -152,7 +153,8 @@ impl HouseShape {
         }
     }
 
-    /// A turned part around a vertical axis: radius and height from bottom to top, `squeeze` scales it along y.
+    /// A turned part around a vertical axis at `at`. `profile` has its radius and height at each edge, from bottom to top;
+    /// `squeeze` scales it along y.
     pub(crate) fn add_turned(&mut self, surface: HouseSurface, at: (f32, f32), squeeze: f32, profile: &[(f32, f32)]) {
         let scale = surface.pattern.repeat_m();
         let sides = sides_for_radius(profile.iter().map(|(radius, _)| *radius).fold(0.0, f32::max));

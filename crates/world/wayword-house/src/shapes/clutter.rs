@@ -10,6 +10,7 @@ use super::{
 };
 use glam::Vec3;
 
+/// Colours of book covers and of china.
 const SPINE_RGBS: [[u8; 3]; 6] =
     [[170, 50, 44], [44, 84, 140], [226, 196, 110], [60, 110, 74], [236, 232, 222], [96, 66, 110]];
 
@@ -39,30 +40,30 @@ pub(super) fn scatter_items(
     z: f32,
     variant: u32,
 ) {
-    let mixed = variant as usize;
+    let seed = variant as usize;
     let places = ((to - from) / 0.34) as usize;
     for place in 0..places {
         let x = from + (to - from) * (place as f32 + 0.5) / places as f32;
         // A third of the places stay free, and the middle: a vase or a lamp may stand there.
-        if (mixed / 3 + place * 5).is_multiple_of(3) || x.abs() < 0.16 {
+        if (seed / 3 + place * 5).is_multiple_of(3) || x.abs() < 0.16 {
             continue;
         }
-        let thing = things[(mixed + place) % things.len()];
-        put_item(shape, thing, Vec3::new(x, y, z), mixed + place * 11);
+        let thing = things[(seed + place) % things.len()];
+        put_item(shape, thing, Vec3::new(x, y, z), seed + place * 11);
     }
 }
 
-/// One thing at a place.
-pub(super) fn put_item(shape: &mut HouseShape, thing: ClutterItem, at: Vec3, mixed: usize) {
-    let spine = |shift: usize| HouseSurface::from_rgb(SPINE_RGBS[(mixed + shift) % SPINE_RGBS.len()]);
+/// One thing at a place. Its colours and details follow from `seed`.
+pub(super) fn put_item(shape: &mut HouseShape, thing: ClutterItem, at: Vec3, seed: usize) {
+    let spine = |shift: usize| HouseSurface::from_rgb(SPINE_RGBS[(seed + shift) % SPINE_RGBS.len()]);
     match thing {
-        ClutterItem::Books => add_books(shape, at, mixed),
+        ClutterItem::Books => add_books(shape, at, seed),
         ClutterItem::Cup => add_cup(shape, at, spine(0)),
         ClutterItem::Bowl => add_bowl(shape, at, spine(2)),
         ClutterItem::Laptop => add_laptop(shape, at),
-        ClutterItem::Tray => add_tray(shape, at, mixed),
-        ClutterItem::Towels => add_towels(shape, at, mixed),
-        ClutterItem::Bottles => add_bottles(shape, at, mixed),
+        ClutterItem::Tray => add_tray(shape, at, seed),
+        ClutterItem::Towels => add_towels(shape, at, seed),
+        ClutterItem::Bottles => add_bottles(shape, at, seed),
         ClutterItem::Remote => {
             add_slab(shape, HouseSurface::from_rgb([30, 30, 34]), at, [0.025, 0.085, 0.02]);
             add_slab(
@@ -73,7 +74,7 @@ pub(super) fn put_item(shape: &mut HouseShape, thing: ClutterItem, at: Vec3, mix
             );
         }
         ClutterItem::Candles => add_candles(shape, at),
-        ClutterItem::Photo => add_photo(shape, at, mixed),
+        ClutterItem::Photo => add_photo(shape, at, seed),
         ClutterItem::Box => {
             add_slab(shape, HouseSurface::new(SurfacePattern::Wicker, [196, 156, 108]), at, [0.12, 0.09, 0.13]);
         }
@@ -97,20 +98,20 @@ fn add_slab(shape: &mut HouseShape, surface: HouseSurface, at: Vec3, [w, d, h]: 
 }
 
 /// A pile, or a row between two ends.
-fn add_books(shape: &mut HouseShape, at: Vec3, mixed: usize) {
+fn add_books(shape: &mut HouseShape, at: Vec3, seed: usize) {
     let paper = HouseSurface::from_rgb([240, 236, 222]);
-    if mixed.is_multiple_of(2) {
+    if seed.is_multiple_of(2) {
         for book in 0..3 {
             let (z, shrink) = (0.032 * book as f32, 0.012 * book as f32);
-            let cover = HouseSurface::from_rgb(SPINE_RGBS[(mixed + book * 2) % SPINE_RGBS.len()]);
+            let cover = HouseSurface::from_rgb(SPINE_RGBS[(seed + book * 2) % SPINE_RGBS.len()]);
             add_slab(shape, cover, at + Vec3::Z * z, [0.115 - shrink, 0.085 - shrink, 0.03]);
             add_slab(shape, paper, at + Vec3::new(0.004, 0.0, z + 0.004), [0.113 - shrink, 0.087 - shrink, 0.022]);
         }
         return;
     }
     for book in 0..6 {
-        let cover = HouseSurface::from_rgb(SPINE_RGBS[(mixed + book) % SPINE_RGBS.len()]);
-        let height = [0.21, 0.24, 0.19, 0.23, 0.2, 0.22][(mixed + book) % 6];
+        let cover = HouseSurface::from_rgb(SPINE_RGBS[(seed + book) % SPINE_RGBS.len()]);
+        let height = [0.21, 0.24, 0.19, 0.23, 0.2, 0.22][(seed + book) % 6];
         add_slab(shape, cover, at + Vec3::X * (0.033 * book as f32 - 0.08), [0.015, 0.075, height]);
     }
 }
@@ -151,9 +152,9 @@ fn add_laptop(shape: &mut HouseShape, at: Vec3) {
 }
 
 /// A tray with a pot and two cups.
-fn add_tray(shape: &mut HouseShape, at: Vec3, mixed: usize) {
+fn add_tray(shape: &mut HouseShape, at: Vec3, seed: usize) {
     add_slab(shape, HouseSurface::for_wood(Colour::Brown), at, [0.19, 0.13, 0.016]);
-    let china = HouseSurface::from_rgb(SPINE_RGBS[(mixed + 4) % SPINE_RGBS.len()]);
+    let china = HouseSurface::from_rgb(SPINE_RGBS[(seed + 4) % SPINE_RGBS.len()]);
     let top = at + Vec3::Z * 0.016;
     let pot = [(0.0, top.z), (0.05, top.z), (0.07, top.z + 0.06), (0.045, top.z + 0.12), (0.0, top.z + 0.14)];
     shape.add_turned(china, (top.x - 0.07, top.y + 0.02), 1.0, &pot);
@@ -162,19 +163,19 @@ fn add_tray(shape: &mut HouseShape, at: Vec3, mixed: usize) {
 }
 
 /// Folded, one on the other.
-fn add_towels(shape: &mut HouseShape, at: Vec3, mixed: usize) {
+fn add_towels(shape: &mut HouseShape, at: Vec3, seed: usize) {
     let cloth = [Colour::White, Colour::Blue, Colour::Teal, Colour::Pink, Colour::Beige];
     for fold in 0..3 {
-        let (z, surface) = (at.z + 0.06 * fold as f32, HouseSurface::for_fabric(cloth[(mixed + fold) % cloth.len()]));
+        let (z, surface) = (at.z + 0.06 * fold as f32, HouseSurface::for_fabric(cloth[(seed + fold) % cloth.len()]));
         shape.add_soft_box(surface, [at.x - 0.15, at.x + 0.15], [at.y - 0.1, at.y + 0.1], [z, z + 0.062], 0.028);
     }
 }
 
-fn add_bottles(shape: &mut HouseShape, at: Vec3, mixed: usize) {
+fn add_bottles(shape: &mut HouseShape, at: Vec3, seed: usize) {
     let glass = [[64, 110, 70], [150, 84, 40], [214, 226, 232], [196, 70, 90]];
     for bottle in 0..3 {
-        let surface = HouseSurface::from_rgb(glass[(mixed + bottle) % glass.len()]);
-        let (x, z, tall) = (at.x - 0.08 + 0.08 * bottle as f32, at.z, 0.17 + 0.04 * ((mixed + bottle) % 3) as f32);
+        let surface = HouseSurface::from_rgb(glass[(seed + bottle) % glass.len()]);
+        let (x, z, tall) = (at.x - 0.08 + 0.08 * bottle as f32, at.z, 0.17 + 0.04 * ((seed + bottle) % 3) as f32);
         let profile = [
             (0.0, z),
             (0.032, z),
@@ -198,10 +199,10 @@ fn add_candles(shape: &mut HouseShape, at: Vec3) {
 }
 
 /// A photograph in a standing frame.
-fn add_photo(shape: &mut HouseShape, at: Vec3, mixed: usize) {
-    let frame = HouseSurface::for_wood([Colour::Black, Colour::White, Colour::Gold, Colour::Wooden][mixed % 4]);
+fn add_photo(shape: &mut HouseShape, at: Vec3, seed: usize) {
+    let frame = HouseSurface::for_wood([Colour::Black, Colour::White, Colour::Gold, Colour::Wooden][seed % 4]);
     shape.add_block(frame, [at.x - 0.075, at.x + 0.075], [at.y, at.y + 0.014], [at.z, at.z + 0.2]);
-    let picture = HouseSurface::for_picture(SurfacePattern::Art(mixed as u8 % ART_COUNT));
+    let picture = HouseSurface::for_picture(SurfacePattern::Art(seed as u8 % ART_COUNT));
     shape.add_picture(picture, at + Vec3::new(-0.06, -0.002, 0.016), Vec3::X * 0.12, Vec3::Z * 0.168);
 }
 

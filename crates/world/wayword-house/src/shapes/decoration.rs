@@ -1,4 +1,5 @@
-//! Decoration: things that hang on walls or lie on floors.
+//! Builds decoration: things that hang on walls or lie on floors. Lengths are metres; `hw` and `hd` are half
+//! the width and half the depth of a piece, `look.h` its height.
 
 use super::{
     super::{
@@ -20,6 +21,7 @@ fn add_framed(shape: &mut HouseShape, look: &FurnitureLook, frame: HouseSurface,
     shape.add_picture(inside, corner, Vec3::X * (look.w - 2.0 * bar), Vec3::Z * (look.h - 2.0 * bar));
 }
 
+/// A framed painting; the piece's colour is the main colour of the painting.
 pub(super) fn build_painting(look: &FurnitureLook) -> HouseShape {
     let mut shape = HouseShape::default();
     let frame =

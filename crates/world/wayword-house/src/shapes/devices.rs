@@ -1,4 +1,4 @@
-//! Screens, and a globe.
+//! Builds screens, and a globe. Lengths are metres; `hw` is half the width of a piece, `look.h` its height.
 
 use super::{
     super::{

@@ -1,4 +1,5 @@
-//! The furniture of a garage, without the car.
+//! Builds the furniture of a garage, without the car. Lengths are metres; `hw` and `hd` are half
+//! the width and half the depth of a piece, `look.h` its height.
 
 use super::{
     super::{colour::Colour, surface::HouseSurface},

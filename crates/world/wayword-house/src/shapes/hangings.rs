@@ -1,4 +1,5 @@
-//! Builds things on walls other than paintings and mirrors: photographs, cloths, coats, boards.
+//! Builds things on walls other than paintings and mirrors: photographs, cloths, coats, boards. Lengths are metres; `hw`
+//! and `hd` are half the width and half the depth of a piece, `look.h` its height. Colours and sizes vary with a `seed`.
 
 use super::{
     super::{
@@ -37,10 +38,10 @@ pub(super) fn build_photos(look: &FurnitureLook) -> HouseShape {
     let mats = HouseSurface::from_rgb([250, 249, 244]);
     for cell in 0..rows * columns {
         let (column, row) = (cell % columns, cell / columns);
-        let mixed = cell * 7 + look.variant as usize;
-        let frame = HouseSurface::for_wood(FRAME_COLOURS[(mixed / 3) % FRAME_COLOURS.len()]);
+        let seed = cell * 7 + look.variant as usize;
+        let frame = HouseSurface::for_wood(FRAME_COLOURS[(seed / 3) % FRAME_COLOURS.len()]);
         // Every second frame is a little smaller, as on a wall that was filled over the years.
-        let (inset, bar) = (if mixed.is_multiple_of(2) { 0.012 } else { 0.024 }, 0.022);
+        let (inset, bar) = (if seed.is_multiple_of(2) { 0.012 } else { 0.024 }, 0.022);
         let (x0, z0) = (-hw + w * column as f32 + inset, h * row as f32 + inset);
         let (x1, z1) = (x0 + w - 2.0 * inset, z0 + h - 2.0 * inset);
         shape.add_block(frame, [x0, x1], [-hd, hd], [z0, z1]);
@@ -48,8 +49,7 @@ pub(super) fn build_photos(look: &FurnitureLook) -> HouseShape {
         let (corner, u, v) = (Vec3::new(x0 + bar, -hd - 0.002, z0 + bar), x1 - x0 - 2.0 * bar, z1 - z0 - 2.0 * bar);
         shape.add_picture(mats, corner, Vec3::X * u, Vec3::Z * v);
         let corner = Vec3::new(x0 + rim, -hd - 0.004, z0 + rim);
-        let art =
-            HouseSurface::for_picture(SurfacePattern::Art((mixed % usize::from(ART_COUNT)) as u8)).shaded_by(0.94);
+        let art = HouseSurface::for_picture(SurfacePattern::Art((seed % usize::from(ART_COUNT)) as u8)).shaded_by(0.94);
         shape.add_picture(art, corner, Vec3::X * (x1 - x0 - 2.0 * rim), Vec3::Z * (z1 - z0 - 2.0 * rim));
     }
     shape
@@ -96,10 +96,10 @@ pub(super) fn coat_hooks(look: &FurnitureLook) -> HouseShape {
         let x = -hw + width * (hook as f32 + 0.5);
         let peg = Vec3::new(x, hd - 0.03, look.h - 0.18);
         shape.add_rod(steel, peg, peg + Vec3::new(0.0, -0.06, 0.02), 0.012);
-        let mixed = hook * 3 + look.variant as usize;
-        let cloth = HouseSurface::for_fabric(CLOTHES_COLOURS[mixed % CLOTHES_COLOURS.len()]);
+        let seed = hook * 3 + look.variant as usize;
+        let cloth = HouseSurface::for_fabric(CLOTHES_COLOURS[seed % CLOTHES_COLOURS.len()]);
         // Coats reach further down than jackets.
-        let bottom = [0.0, 0.22, 0.1, 0.36][mixed % 4] * look.h;
+        let bottom = [0.0, 0.22, 0.1, 0.36][seed % 4] * look.h;
         add_coat(&mut shape, cloth, [x, width * 0.46], [bottom, look.h - 0.17]);
     }
     let hat = HouseSurface::for_fabric(CLOTHES_COLOURS[(look.variant as usize + 4) % CLOTHES_COLOURS.len()]);
@@ -157,15 +157,15 @@ pub(super) fn bulletin_board(look: &FurnitureLook) -> HouseShape {
     let papers = [[250, 250, 246], [250, 232, 120], [190, 224, 246], [246, 190, 190], [214, 240, 196]];
     let (columns, rows) = (((look.w / 0.22) as usize).max(2), ((look.h / 0.28) as usize).max(2));
     for note in 0..columns * rows {
-        let mixed = note * 5 + look.variant as usize;
-        if mixed.is_multiple_of(4) {
+        let seed = note * 5 + look.variant as usize;
+        if seed.is_multiple_of(4) {
             continue;
         }
         let (column, row) = ((note % columns) as f32, (note / columns) as f32);
         let (w, h) = ((look.w - 0.1) / columns as f32, (look.h - 0.1) / rows as f32);
-        let (x, z) = (-hw + 0.05 + w * column, 0.05 + h * row + 0.02 * (mixed % 3) as f32);
-        let (wide, high) = (w * [0.62, 0.8, 0.7][mixed % 3], h * [0.7, 0.55, 0.8][(mixed / 2) % 3]);
-        let paper = HouseSurface::from_rgb(papers[mixed % papers.len()]);
+        let (x, z) = (-hw + 0.05 + w * column, 0.05 + h * row + 0.02 * (seed % 3) as f32);
+        let (wide, high) = (w * [0.62, 0.8, 0.7][seed % 3], h * [0.7, 0.55, 0.8][(seed / 2) % 3]);
+        let paper = HouseSurface::from_rgb(papers[seed % papers.len()]);
         shape.add_picture(paper, Vec3::new(x, -hd - 0.004, z), Vec3::X * wide, Vec3::Z * high);
         for line in 0..3 {
             let z = z + high * (0.3 + 0.2 * line as f32);
@@ -198,21 +198,21 @@ pub(super) fn tool_board(look: &FurnitureLook) -> HouseShape {
     for place in 0..places {
         let x = -hw + look.w * (place as f32 + 0.5) / places as f32;
         let y = [-hd, -hd + 0.02];
-        let mixed = place + look.variant as usize;
+        let seed = place + look.variant as usize;
         let (high, low) = (look.h * 0.62, look.h * 0.12);
-        if mixed.is_multiple_of(2) {
+        if seed.is_multiple_of(2) {
             shape.add_block(wood, [x - 0.016, x + 0.016], y, [high, high + 0.28]);
             shape.add_block(steel, [x - 0.07, x + 0.07], y, [high + 0.26, high + 0.32]);
         } else {
-            shape.add_block(grips[mixed % 3], [x - 0.02, x + 0.02], y, [high, high + 0.12]);
+            shape.add_block(grips[seed % 3], [x - 0.02, x + 0.02], y, [high, high + 0.12]);
             shape.add_block(steel, [x - 0.01, x + 0.01], y, [high + 0.12, high + 0.32]);
         }
-        if mixed.is_multiple_of(3) {
+        if seed.is_multiple_of(3) {
             let centre = Vec3::new(x, -hd, low + 0.16);
             shape.add_hoop(HouseSurface::from_rgb([50, 120, 70]), centre, Vec3::Y, 0.08, 0.02);
         } else {
             shape.add_block(steel, [x - 0.025, x + 0.025], y, [low, low + 0.26]);
-            shape.add_block(grips[(mixed + 1) % 3], [x - 0.04, x + 0.04], y, [low + 0.24, low + 0.36]);
+            shape.add_block(grips[(seed + 1) % 3], [x - 0.04, x + 0.04], y, [low + 0.24, low + 0.36]);
         }
     }
     shape

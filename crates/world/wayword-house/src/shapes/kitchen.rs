@@ -1,4 +1,5 @@
-//! Kitchen furniture.
+//! Builds kitchen furniture. Lengths are metres; `hw` and `hd` are half
+//! the width and half the depth of a piece, `look.h` its height.
 
 use super::{
     super::{

@@ -1,4 +1,4 @@
-//! Lamps. Their shades and bulbs shine in the picture too.
+//! Builds lamps. Their shades and bulbs shine in the picture too. Lengths are metres; `r` is a radius.
 
 use super::{
     super::{colour::Colour, surface::HouseSurface},

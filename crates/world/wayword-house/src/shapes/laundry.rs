@@ -1,4 +1,5 @@
-//! Laundry room furniture.
+//! Builds the furniture of a laundry room. Lengths are metres; `hw` and `hd` are half
+//! the width and half the depth of a piece, `look.h` its height.
 
 use super::{
     super::{
@@ -10,6 +11,7 @@ use super::{
 };
 use glam::Vec3;
 
+/// A washing machine or dryer with a round door; `glass` is the colour of its window.
 fn build_machine(look: &FurnitureLook, glass: [u8; 3]) -> HouseShape {
     let mut shape = HouseShape::default();
     let ((hw, hd), body) = (look.half_size(), HouseSurface::from_rgb(look.colour.rgb()));

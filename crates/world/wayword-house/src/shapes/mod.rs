@@ -1,4 +1,7 @@
 //! Builds the shape of every kind of furniture from simple parts: boxes, cushions, turned and bent pieces.
+//!
+//! A piece is built in its own frame: centred on the origin, with its foot at z = 0, with its front towards -y. There is one file
+//! for each group of furniture; `builder.rs` has the simple parts.
 
 mod bathroom;
 mod beds;
@@ -31,6 +34,7 @@ pub(crate) struct FurnitureLook {
     /// Height, metres.
     h: f32,
     colour: Colour,
+    /// Number that chooses details, such as the colour of a frame or the things on a table.
     variant: u32,
 }
 

@@ -1,4 +1,4 @@
-//! Plants and vases.
+//! Builds plants and vases. Lengths are metres.
 
 use super::{
     super::{

@@ -1,4 +1,5 @@
-//! Seats.
+//! Builds seats. Lengths are metres; `hw` and `hd` are half
+//! the width and half the depth of a piece, `look.h` its height.
 
 use super::{
     super::{colour::Colour, surface::HouseSurface},

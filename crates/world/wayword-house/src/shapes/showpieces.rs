@@ -1,4 +1,5 @@
-//! Showpieces: fireplace, piano, grandfather clock.
+//! Builds showpieces: fireplace, piano, grandfather clock. Lengths are metres; `hw` and `hd` are half
+//! the width and half the depth of a piece, `look.h` its height.
 
 use super::{
     super::{

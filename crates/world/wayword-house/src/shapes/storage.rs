@@ -1,4 +1,5 @@
-//! Storage furniture.
+//! Builds storage furniture: cabinets, shelves, racks. Lengths are metres; `hw` and `hd` are half
+//! the width and half the depth of a piece, `look.h` its height.
 
 use super::{
     super::{
@@ -10,10 +11,12 @@ use super::{
 };
 use glam::{Vec2, Vec3};
 
+/// Colours of clothes, shoes and boxes.
 const COAT_COLOURS: [Colour; 7] =
     [Colour::Red, Colour::Blue, Colour::White, Colour::Green, Colour::Purple, Colour::DarkGrey, Colour::Yellow];
 
-/// A carcass with door or drawer fronts in a grid, each with a handle.
+/// Door or drawer fronts in a grid of columns and rows between the heights `z0` and `z1`, each with a handle: upright for
+/// doors, level for drawers.
 fn add_fronts(
     shape: &mut HouseShape,
     look: &FurnitureLook,

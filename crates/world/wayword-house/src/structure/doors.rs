@@ -29,6 +29,7 @@ pub(in super::super) fn build_opening(house: &House, opening: &WallOpening) -> H
     shape
 }
 
+/// The white frame around an opening: two posts and a lintel.
 fn add_frame(shape: &mut HouseShape, opening: &WallOpening) {
     let white = HouseSurface::from_rgb([242, 241, 238]);
     let SpanCm { from, to, .. } = opening.span;
@@ -68,7 +69,7 @@ fn open_leaf(shape: &mut HouseShape, house: &House, opening: &WallOpening) {
     shape.parts.append(&mut standing.parts);
 }
 
-/// A leaf in its own frame: x from the hinge along it, y through it, metres.
+/// A leaf in its own frame: x from the hinge along the leaf, y through its thickness, metres.
 fn own_leaf(opening: &WallOpening, length: f32) -> HouseShape {
     let mut shape = HouseShape::default();
     let paint = HouseSurface::for_wood(opening.colour);
@@ -83,6 +84,7 @@ fn own_leaf(opening: &WallOpening, length: f32) -> HouseShape {
     shape
 }
 
+/// A closed front door with four panels, two small windows and a letter slot.
 fn front_door(shape: &mut HouseShape, opening: &WallOpening, wall: WallSide) {
     let paint = HouseSurface::for_wood(opening.colour);
     let SpanCm { from, to, .. } = opening.span;
@@ -109,6 +111,7 @@ fn front_door(shape: &mut HouseShape, opening: &WallOpening, wall: WallSide) {
     );
 }
 
+/// A closed garage door of five level panels.
 fn garage_door(shape: &mut HouseShape, opening: &WallOpening, wall: WallSide) {
     let SpanCm { from, to, .. } = opening.span;
     let white = HouseSurface::for_metal(Colour::White);

@@ -42,6 +42,7 @@ pub(in super::super) fn build_walls(house: &House, index: usize) -> HouseShape {
     shape
 }
 
+/// Builds one wall, in rectangles around its holes: tiles or skirting below, paint above.
 fn one_wall(shape: &mut HouseShape, house: &House, index: usize, wall: WallSide) {
     let room = &house.rooms[index];
     let edge = room.inner_area().edge_at(wall);
@@ -77,6 +78,7 @@ fn one_wall(shape: &mut HouseShape, house: &House, index: usize, wall: WallSide)
     }
 }
 
+/// Adds a rectangle of a wall; the array has its ends along the wall and its lower and upper edge, centimetres.
 fn wall_piece(
     shape: &mut HouseShape,
     surface: HouseSurface,
@@ -94,6 +96,7 @@ fn wall_piece(
     shape.add_quad(surface, corner, u, Vec3::Z * to_metres(high - low), uv0, uv1);
 }
 
+/// The openings and windows in one wall of a room.
 fn wall_holes(house: &House, index: usize, wall: WallSide) -> Vec<WallHole> {
     let outline = house.rooms[index].outline;
     let on_this = |span: &SpanCm| outline.wall_of(span) == Some(wall);

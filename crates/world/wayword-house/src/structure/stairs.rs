@@ -32,6 +32,7 @@ pub(in super::super) fn build_steps(stairs: &HouseStairs) -> HouseShape {
     shape
 }
 
+/// A step of a flight: its top `top` centimetres above the ground floor, between two depths from the entry.
 fn add_step(
     shape: &mut HouseShape,
     stairs: &HouseStairs,

@@ -50,8 +50,9 @@ fn add_view(shape: &mut HouseShape, house: &House, window: &HouseWindow, wall: W
     let floor_cm = if is_well { sill - 90 } else { house.rooms[window.room].base_cm() };
     let upstairs = floor_cm >= STOREY_CM / 2;
     let pattern = if upstairs { SurfacePattern::FromAbove(outlook) } else { SurfacePattern::Outside(outlook) };
-    let is_westward = matches!(wall, WallSide::North | WallSide::West);
-    let (left, right, across) = if is_westward { (from, to, from) } else { (to, from, -to) };
+    // Seen from inside, the lower end of a north or west wall is on the left.
+    let is_low_end_left = matches!(wall, WallSide::North | WallSide::West);
+    let (left, right, across) = if is_low_end_left { (from, to, from) } else { (to, from, -to) };
     let corner = on_wall(&window.span, wall, left, 0, sill);
     let u = on_wall(&window.span, wall, right, 0, sill) - corner;
     let uv = |along: i32, z: i32| Vec2::new(to_metres(along) / WIDE_M, (TOP_M - to_metres(z - floor_cm)) / TALL_M);

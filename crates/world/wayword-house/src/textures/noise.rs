@@ -1,7 +1,9 @@
 //! Noise for textures. It repeats at the texture's edges, so that tiled textures show no seams.
 
-/// A number in 0..1 that depends only on its place (and on `salt`).
+/// A number in 0..1 that depends only on its place and on `salt`. Each use of noise has a `salt` of its own, so that
+/// two patterns do not follow each other.
 pub(super) fn hash_noise(x: i32, y: i32, salt: u32) -> f32 {
+    // Multiplications and shifts mix the bits, so that neighbouring places get unlike numbers.
     let mut n =
         (x as u32).wrapping_mul(0x9e37_79b1) ^ (y as u32).wrapping_mul(0x85eb_ca77) ^ salt.wrapping_mul(0xc2b2_ae3d);
     n ^= n >> 15;
@@ -40,12 +42,12 @@ pub(super) fn mix_rgb(a: super::TextureRgb, b: super::TextureRgb, t: f32) -> sup
     std::array::from_fn(|channel| a[channel] + (b[channel] - a[channel]) * t)
 }
 
-/// A grey.
+/// The grey with this value in every channel, 0..=255.
 pub(super) fn grey_rgb(value: f32) -> super::TextureRgb {
     [value; 3]
 }
 
-/// Distance from a place.
+/// Distance between the place (u, v) and `from`.
 pub(super) fn distance_from(u: f32, v: f32, from: (f32, f32)) -> f32 {
     let (du, dv) = (u - from.0, v - from.1);
     (du * du + dv * dv).sqrt()

@@ -11,7 +11,7 @@ use super::{
 /// The horizon, as a share of the picture's height from the top.
 const HORIZON_SHARE: f32 = 0.43;
 
-/// The colour at a place of the view.
+/// The colour at a place of the view: `u` runs to the right and `v` down, each from 0 to 1 over the picture.
 pub(super) fn outlook_texel(outlook: WindowOutlook, above: bool, u: f32, v: f32) -> TextureRgb {
     // How much lower near things lie.
     let drop = if above { 0.2 } else { 0.0 };
@@ -96,7 +96,7 @@ fn street_texel(u: f32, v: f32, drop: f32) -> TextureRgb {
     opposite_house_texel(which, (u * 2.0).fract(), v - drop).unwrap_or_else(|| sky_texel(u, v))
 }
 
-/// A house across the street: `x` runs over its plot, and the ground lies at 0.6.
+/// A house across the street, one of two by `which`: `x` runs over its plot, and the ground lies at 0.6. `None` beside it.
 fn opposite_house_texel(which: i32, x: f32, v: f32) -> Option<TextureRgb> {
     let walls = [[206.0, 186.0, 150.0], [164.0, 92.0, 72.0]][(which & 1) as usize];
     let roof = [[122.0, 66.0, 52.0], [78.0, 80.0, 90.0]][(which & 1) as usize];
@@ -120,7 +120,7 @@ fn opposite_house_texel(which: i32, x: f32, v: f32) -> Option<TextureRgb> {
     Some(mix_rgb(walls, [0.0; 3], (v * 40.0).fract() * 0.1))
 }
 
-/// `du` from the car's middle, `dv` down from the edge of the pavement.
+/// The parked car: `du` is measured from its middle, `dv` down from the edge of the pavement. `None` beside the car.
 fn parked_car(du: f32, dv: f32) -> Option<TextureRgb> {
     let wheel = |x: f32| distance_from(du, dv, (x, 0.1));
     let near = wheel(-0.13).min(wheel(0.13));

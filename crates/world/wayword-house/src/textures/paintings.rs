@@ -1,4 +1,4 @@
-//! Paintings, each with its own main colour.
+//! Paints the paintings, each with its own main colour. `u` runs to the right and `v` down, each from 0 to 1.
 
 use super::{
     TextureRgb,

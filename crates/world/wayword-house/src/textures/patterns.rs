@@ -1,4 +1,4 @@
-//! Paints the patterns of materials, which repeat over a surface.
+//! Paints the patterns of materials, which repeat over a surface. `u` runs to the right and `v` down, each from 0 to 1.
 
 use super::{
     TextureRgb,

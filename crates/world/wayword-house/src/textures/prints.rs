@@ -1,4 +1,4 @@
-//! Four more pictures for walls: flat shapes, a plant, a skyline, a still life.
+//! Paints four pictures for walls in addition to those of `paintings.rs`: flat shapes, a plant, a skyline, a still life.
 
 use super::{
     TextureRgb,

@@ -1,4 +1,4 @@
-//! Paints pictures of things: books, glass, fire, screens.
+//! Paints pictures of things: books, glass, fire, screens. `u` runs to the right and `v` down, each from 0 to 1.
 
 use super::{
     TextureRgb,

@@ -16,6 +16,7 @@ pub(crate) const MAX_CELLS: usize = 4_000_000;
 const APART_M: f64 = 1.5;
 /// Longest edge of the viewpoint graph, metres.
 const REACH_M: f64 = 3.0;
+/// Offsets in columns and rows from a cell to the four beside it.
 const STRAIGHT_STEPS: [(i32, i32); 4] = [(1, 0), (0, 1), (-1, 0), (0, -1)];
 
 /// Cells over a floor. Cell 0 is the south-western one; rows are counted from south to north.
@@ -86,6 +87,7 @@ impl FloorRaster {
         self.cell_at(point).is_some_and(|cell| self.free[cell])
     }
 
+    /// The cell at an offset in columns and rows; `None` outside the raster.
     fn neighbour_cell(&self, cell: usize, (dx, dy): (i32, i32)) -> Option<usize> {
         let (column, row) =
             ((cell % self.columns) as i64 + i64::from(dx), (cell / self.columns) as i64 + i64::from(dy));
@@ -103,20 +105,20 @@ impl FloorRaster {
                 continue;
             }
             sizes.push(0);
-            let (name, mut open) = (sizes.len() - 1, vec![start]);
-            part[start] = name;
+            let (part_number, mut open) = (sizes.len() - 1, vec![start]);
+            part[start] = part_number;
             while let Some(cell) = open.pop() {
-                sizes[name] += 1;
+                sizes[part_number] += 1;
                 for next in STRAIGHT_STEPS.into_iter().filter_map(|step| self.neighbour_cell(cell, step)) {
                     if self.free[next] && part[next] == 0 {
-                        part[next] = name;
+                        part[next] = part_number;
                         open.push(next);
                     }
                 }
             }
         }
-        let largest = (1..sizes.len()).rev().max_by_key(|name| sizes[*name]).unwrap_or(0);
-        self.free.iter_mut().zip(part).for_each(|(free, name)| *free = *free && name == largest);
+        let largest = (1..sizes.len()).rev().max_by_key(|part_number| sizes[*part_number]).unwrap_or(0);
+        self.free.iter_mut().zip(part).for_each(|(free, part_number)| *free = *free && part_number == largest);
     }
 
     /// Steps from each cell to the nearest one that is not free. Everything outside the raster counts as not free.
@@ -170,14 +172,15 @@ impl FloorRaster {
         let start = self.cell_at(from).filter(|cell| self.free[*cell])?;
         let goal = self.cell_at(to).filter(|cell| self.free[*cell])?;
         let place = |cell: usize| ((cell % self.columns) as u64, (cell / self.columns) as u64);
-        let left = |cell: usize| {
+        // The least cost from a cell to the goal. With it the search tries the most promising cells first.
+        let least_left = |cell: usize| {
             let ((x, y), (gx, gy)) = (place(cell), place(goal));
             at_least(x.abs_diff(gx), y.abs_diff(gy))
         };
         let steps = |cell: usize| {
             free_steps_around(move |step| self.neighbour_cell(cell, step).filter(|next| self.free[*next]))
         };
-        let cells = find_shortest_way(self.free.len(), start, goal, left, steps)?;
+        let cells = find_shortest_way(self.free.len(), start, goal, least_left, steps)?;
         // The way begins and ends at the points that were asked for, and not in the middles of their cells.
         let middles = cells.into_iter().map(|cell| self.cell_middle(cell));
         let points: Vec<[f64; 2]> = [from].into_iter().chain(middles).chain([to]).collect();
@@ -201,6 +204,7 @@ impl FloorRaster {
         Ok(graph)
     }
 
+    /// Adds a viewpoint with edges to all near viewpoints to which one can walk straight.
     fn add_viewpoint(
         &self,
         graph: &mut ViewpointGraph,
@@ -219,7 +223,8 @@ impl FloorRaster {
         Ok(())
     }
 
-    /// Adds the corners of the shortest way between the first part and the nearest node outside it.
+    /// Joins the first part to the nearest node outside it: the corners of the shortest way between them become
+    /// viewpoints. Returns whether there is such a way.
     fn join_parts(
         &self,
         graph: &mut ViewpointGraph,
@@ -250,6 +255,7 @@ fn floor_point(place: DVec3) -> [f64; 2] {
     [place.x, place.y]
 }
 
+/// The distance between two points of the floor, metres.
 fn floor_distance(a: [f64; 2], b: [f64; 2]) -> f64 {
     let (dx, dy) = (a[0] - b[0], a[1] - b[1]);
     (dx * dx + dy * dy).sqrt()

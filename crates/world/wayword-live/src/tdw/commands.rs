@@ -1,4 +1,5 @@
-//! Commands to the build, and their JSON as TDW's `command_api.md` documents it.
+//! Commands to the build, and their JSON as TDW's `command_api.md` documents it. Four-letter words such as `vers` are ids of
+//! the build's output data (`output/mod.rs`).
 
 use serde::Serialize;
 

@@ -45,7 +45,7 @@ impl Default for ControllerOptions {
 /// A controller: at most one build at a time.
 ///
 /// After an error on the wire the controller drops the build, because it is then unknown which side has to send next.
-/// [`TdwController::connect_build`] takes the next build.
+/// [`TdwController::connect`] takes the next build.
 #[derive(Debug)]
 pub struct TdwController {
     listener: TcpListener,
@@ -53,6 +53,7 @@ pub struct TdwController {
     build: Option<ConnectedBuild>,
 }
 
+/// The connected build.
 #[derive(Debug)]
 struct ConnectedBuild {
     peer: ZmtpPeer,
@@ -64,7 +65,7 @@ struct ConnectedBuild {
 pub struct BuildVersion {
     /// TDW's own version.
     pub tdw: String,
-    /// Unity's.
+    /// Unity's version.
     pub unity: String,
 }
 
@@ -77,6 +78,7 @@ impl From<VersionOutput<'_>> for BuildVersion {
 /// A build's answer: frames of output data, and the number of the build's own frame.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct BuildResponse {
+    /// The output data, one frame for each kind.
     frames: Vec<Vec<u8>>,
     /// The build's own count of frames.
     pub frame_number: u32,
@@ -187,6 +189,7 @@ impl TdwController {
         Err(self.no_build(last))
     }
 
+    /// The error that no build connected; `last` is the error of the last connection that was tried.
     fn no_build(&self, last: Option<WireError>) -> TdwError {
         TdwError::NoBuild { address: self.address(), seconds: self.options.connect_timeout.as_secs(), last }
     }
@@ -196,11 +199,11 @@ impl TdwController {
     /// # Errors
     /// When no build is connected; when it is gone, is late or quits with an error; or when its answer is not valid.
     pub fn communicate(&mut self, commands: &[BuildCommand]) -> Result<BuildResponse, TdwError> {
-        let told = self.send_commands(commands);
-        if told.as_ref().is_err_and(TdwError::is_loss) {
+        let outcome = self.send_commands(commands);
+        if outcome.as_ref().is_err_and(TdwError::is_loss) {
             self.build = None;
         }
-        told
+        outcome
     }
 
     fn send_commands(&mut self, commands: &[BuildCommand]) -> Result<BuildResponse, TdwError> {
@@ -213,11 +216,12 @@ impl TdwController {
         for _ in 0..=MAX_RESENDS {
             let answer = build.peer.send(&[&text]).and_then(|()| build.peer.receive());
             let response = response_from_frames(answer.map_err(|source| TdwError::Wire { address, source })?)?;
-            let holds = |id: &[u8; 4]| response.frames.iter().find(|frame| id_of(frame).is_some_and(|its| its == *id));
-            if holds(b"ftre").is_some() {
+            let frame_with_id =
+                |id: &[u8; 4]| response.frames.iter().find(|frame| id_of(frame).is_some_and(|its| its == *id));
+            if frame_with_id(b"ftre").is_some() {
                 continue;
             }
-            return match holds(b"quit").map(|frame| BuildOutput::read(frame)).transpose()? {
+            return match frame_with_id(b"quit").map(|frame| BuildOutput::read(frame)).transpose()? {
                 Some(BuildOutput::Quit(false)) => Err(TdwError::Quit),
                 Some(_) => {
                     self.build = None;
@@ -235,9 +239,9 @@ impl TdwController {
     /// When it does not answer. The controller drops it in any case.
     pub fn terminate(&mut self) -> Result<(), TdwError> {
         if self.is_connected() {
-            let told = self.communicate(&[BuildCommand::Terminate]);
+            let outcome = self.communicate(&[BuildCommand::Terminate]);
             self.build = None;
-            told?;
+            outcome?;
         }
         Ok(())
     }
@@ -251,6 +255,7 @@ fn greet_build(stream: TcpStream, deadline: Instant) -> Result<ZmtpPeer, WireErr
     Ok(peer)
 }
 
+/// Splits off the last frame, which is the frame number.
 fn response_from_frames(mut frames: Vec<Vec<u8>>) -> Result<BuildResponse, TdwError> {
     let last = frames.pop().unwrap_or_default();
     let number = last.as_slice().try_into().map_err(|_| TdwError::NoFrameNumber { length: last.len() })?;

@@ -21,7 +21,9 @@ pub struct FlatBufferError {
 /// A table of a buffer.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct FlatBufferTable<'a> {
+    /// The whole frame.
     bytes: &'a [u8],
+    /// Where the table starts in it.
     at: usize,
     vtable: &'a [u8],
     /// Where the table's own fields end.
@@ -31,8 +33,11 @@ pub(super) struct FlatBufferTable<'a> {
 /// A vector's elements: all of one size, and all within the input.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct FlatBufferVector<'a> {
+    /// The whole frame.
     bytes: &'a [u8],
+    /// Where the first element starts in it.
     from: usize,
+    /// Bytes of an element.
     size: usize,
     count: usize,
 }

@@ -10,7 +10,9 @@ const PLANES_M: [f32; 2] = [0.1, 100.0];
 /// The passes that Wayword asks for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum PassKind {
+    /// Colours as an eye sees them.
     Img,
+    /// The colour of the object at each pixel.
     Id,
 }
 

@@ -71,6 +71,7 @@ impl TdwPlatform {
 }
 
 impl TdwSimulator {
+    /// Waits for a build and reports that to the user, also which version has connected.
     fn connect_build(&mut self) -> Result<(), TdwError> {
         let (address, seconds) = (self.controller.address(), self.controller.connect_timeout().as_secs());
         self.ear.report_line(&format!(
@@ -146,9 +147,9 @@ impl Simulator for TdwSimulator {
     }
 
     fn take_picture(&mut self, camera: &PinholeCamera, wanted: SimulatorShotKind) -> Result<SimulatorShot, TdwError> {
-        let is_told = self.sends == Some(wanted);
+        let is_camera_set = self.sends == Some(wanted);
         self.sends = None;
-        let shot = session::take_picture(&mut self.controller, camera, (wanted, is_told))?;
+        let shot = session::take_picture(&mut self.controller, camera, (wanted, is_camera_set))?;
         self.sends = Some(wanted);
         Ok(shot)
     }

@@ -51,6 +51,7 @@ pub(super) fn scene_names(package: Option<&Path>) -> Vec<String> {
 }
 
 impl TdwScenePlan {
+    /// The plan for a scene's name; `None` if no scene is called so.
     pub(super) fn for_scene(scene: &SceneId) -> Option<Self> {
         if let Some(rest) = scene.as_str().strip_prefix("floorplan_") {
             let (plan, layout) = rest.split_once('_').map_or((rest, None), |(plan, layout)| (plan, Some(layout)));
@@ -124,6 +125,7 @@ struct FurniturePackage {
     package: PathBuf,
 }
 
+/// A piece of a layout, as the package lists it.
 #[derive(Debug, Clone, Deserialize)]
 struct PlacedFurniture {
     name: String,
@@ -133,6 +135,7 @@ struct PlacedFurniture {
     scale_factor: LayoutVector,
 }
 
+/// A vector as the package writes it.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 struct LayoutVector {
     x: f64,
@@ -140,11 +143,13 @@ struct LayoutVector {
     z: f64,
 }
 
+/// A list of 3D models, as the package has it.
 #[derive(Deserialize)]
 struct TdwModelLibrary {
     records: BTreeMap<String, TdwModelRecord>,
 }
 
+/// A 3D model: its address by operating system, its scale and its category.
 #[derive(Deserialize)]
 struct TdwModelRecord {
     urls: BTreeMap<String, String>,
@@ -158,6 +163,7 @@ impl From<LayoutVector> for TdwVector3 {
     }
 }
 
+/// Reads a JSON file of the package.
 fn read_json<T: for<'de> Deserialize<'de>>(file: &Path) -> Result<T, TdwError> {
     let refused = |reason: String| TdwError::Package(format!("{}: {reason}", file.display()));
     let mut text = String::new();

@@ -24,7 +24,7 @@ const AVATAR_ID: &str = "a";
 const CELL_M: f64 = 0.25;
 /// Height from which the map looks down for obstacles, metres: below ceilings.
 const RAYCAST_M: f64 = 2.5;
-/// How far a place may be from the navmesh, metres.
+/// How far a place may be from the navmesh to count as on it, metres.
 const SNAP_M: f64 = 0.5;
 /// Most commands in one list.
 const MAX_BATCH_COMMANDS: usize = 256;
@@ -72,6 +72,7 @@ pub(super) fn survey_scene(controller: &mut TdwController) -> Result<SimulatorSu
     })
 }
 
+/// The floor raster of an occupancy map; `None` if the map has no usable cells.
 fn raster_from_map(map: &TdwOccupancyMap) -> Option<FloorRaster> {
     let floor = |[x, z]: [f32; 2]| [f64::from(x), f64::from(z)];
     let cells: Vec<_> = map.positions.iter().zip(&map.cells).map(|(at, cell)| (floor(*at), *cell == 0)).collect();
@@ -143,12 +144,12 @@ pub(super) fn navmesh_way(
     Ok(Some(way).filter(|way| way.len() >= 2 && way.iter().all(|corner| corner.is_finite())))
 }
 
-/// Takes a picture through a camera of the size that the scene was loaded with. If `is_told` is true, the camera is
+/// Takes a picture through a camera of the size that the scene was loaded with. If `is_camera_set` is true, the camera is
 /// already set to send exactly the `wanted` passes.
 pub(super) fn take_picture(
     controller: &mut TdwController,
     camera: &PinholeCamera,
-    (wanted, is_told): (SimulatorShotKind, bool),
+    (wanted, is_camera_set): (SimulatorShotKind, bool),
 ) -> Result<SimulatorShot, TdwError> {
     let size = (camera.width, camera.height);
     let avatar_id = || AVATAR_ID.to_owned();
@@ -160,14 +161,14 @@ pub(super) fn take_picture(
         SimulatorShotKind::Ids => &[PassKind::Id],
     };
     let pass_masks = passes.iter().map(|pass| pass.name()).collect();
-    let told = (!is_told).then(|| BuildCommand::SetPassMasks { pass_masks, avatar_id: avatar_id() });
-    let looking = [
+    let set_passes = (!is_camera_set).then(|| BuildCommand::SetPassMasks { pass_masks, avatar_id: avatar_id() });
+    let look_commands = [
         BuildCommand::TeleportAvatarTo { position: unity_vector(camera.position), avatar_id: avatar_id() },
         BuildCommand::RotateAvatarTo { rotation: TdwQuaternion { w, x, y, z }, avatar_id: avatar_id() },
         BuildCommand::SetFieldOfView { field_of_view, avatar_id: avatar_id() },
         BuildCommand::SendImages { ids: vec![avatar_id()], frequency: SendFrequency::Once },
     ];
-    let answer = controller.communicate(&told.into_iter().chain(looking).collect::<Vec<_>>())?;
+    let answer = controller.communicate(&set_passes.into_iter().chain(look_commands).collect::<Vec<_>>())?;
     let images = answer.first_output("imag", "send_images", |output| match output {
         BuildOutput::Images(images) if images.avatar == AVATAR_ID => Some(images),
         _ => None,

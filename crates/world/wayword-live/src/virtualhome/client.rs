@@ -11,7 +11,7 @@ use ureq::Agent;
 
 /// Largest answer that is read, bytes: a picture of 8192 x 4096 pixels in base64.
 const LARGEST_ANSWER: u64 = 128 << 20;
-/// How much of the simulator's message an error quotes.
+/// Length of the part of the simulator's message that an error quotes, characters.
 const QUOTED_CHARS: usize = 200;
 
 /// A simulator at an address.
@@ -19,6 +19,7 @@ const QUOTED_CHARS: usize = 200;
 pub struct VirtualHomeClient {
     agent: Agent,
     url: String,
+    /// Number of requests so far, and the id of the last one.
     asked: u64,
 }
 
@@ -40,6 +41,7 @@ pub enum CameraMode {
     Instances,
 }
 
+/// An answer of the simulator. The action decides which field has the result.
 #[derive(Debug, Deserialize)]
 struct VirtualHomeAnswer {
     success: bool,
@@ -79,6 +81,7 @@ impl VirtualHomeClient {
         &self.url
     }
 
+    /// Posts an action with its whole numbers and texts, and returns the answer if it reports success.
     fn post_action(
         &mut self,
         action: &'static str,

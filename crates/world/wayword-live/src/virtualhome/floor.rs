@@ -20,8 +20,9 @@ const THRESHOLD_M: f64 = 0.25;
 /// Heights above the floor between which objects are in the way, metres: the agent steps over lower ones and walks
 /// under higher ones.
 const IN_WAY_M: [f64; 2] = [0.1, 1.7];
-/// Largest home, metres, and most nodes in it, so that a hostile graph costs seconds at most.
+/// Longest side of a home, metres. This limit and the next keep the work for a hostile graph to seconds.
 const MAX_SIDE_M: f64 = 80.0;
+/// Most nodes of a graph; one with more is refused.
 const MAX_NODES: usize = 5000;
 
 fn rectangle_contains((low, high): &FloorRectangle, at: [f64; 2]) -> bool {

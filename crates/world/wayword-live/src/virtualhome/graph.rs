@@ -18,7 +18,7 @@ pub struct EnvironmentNode {
     pub id: i64,
     /// Its class, with the words run together: `coffeetable`.
     pub class_name: String,
-    /// Its category, such as `Rooms`, `Doors`, `Walls` or `FurniturePackage`.
+    /// Its category, such as `Rooms`, `Doors`, `Walls` or `Furniture`.
     #[serde(default)]
     pub category: String,
     /// Its box, where it has one.

@@ -5,6 +5,7 @@ use std::{collections::BTreeMap, sync::LazyLock};
 /// The classes that VirtualHome has.
 const CLASS_LIST: &str = include_str!("classes.txt");
 
+/// The words for each class of the list: a line is `class: words`, or several classes that are words themselves.
 static CLASS_WORDS: LazyLock<BTreeMap<&str, &str>> = LazyLock::new(|| {
     let lines = CLASS_LIST.lines().filter(|line| !line.starts_with('#'));
     let named = |line: &'static str| match line.split_once(": ") {

@@ -83,6 +83,7 @@ fn home_of(scene: &SceneId) -> Option<u32> {
     (HOME_NUMBERS.contains(&number) && scene.as_str() == format!("home_{number}")).then_some(number)
 }
 
+/// The camera in the terms of VirtualHome.
 fn home_camera(camera: &PinholeCamera) -> HomeCamera {
     HomeCamera {
         position: unity_from_wayword(camera.position),
@@ -92,6 +93,7 @@ fn home_camera(camera: &PinholeCamera) -> HomeCamera {
     }
 }
 
+/// The object of a node; `None` for a part of the building, or a node without a usable box.
 fn object_from_node(node: &EnvironmentNode) -> Option<SimulatorObject> {
     let (low, high) = node.bounding_box?.bounds_m()?;
     let half = (high - low) / 2.0;
@@ -100,6 +102,7 @@ fn object_from_node(node: &EnvironmentNode) -> Option<SimulatorObject> {
         .then(|| SimulatorObject::new(node.id, &names::split_class_name(&node.class_name), (low + high) / 2.0, sides))?
 }
 
+/// The objects of a home by their colours in pictures of instances.
 fn palette_from_graph(graph: &EnvironmentGraph, colours: &BTreeMap<i64, [u8; 3]>) -> ObjectPalette {
     let coloured = |node: &EnvironmentNode| Some((colour_id(*colours.get(&node.id)?), object_from_node(node)?));
     graph.nodes.iter().filter_map(coloured).collect()

@@ -1,5 +1,7 @@
 //! The integration tests of `wayword-live`, one program: a module for each topic.
 
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 mod controller;
 mod genuine_tdw;
 mod genuine_virtualhome;

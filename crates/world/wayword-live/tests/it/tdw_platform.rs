@@ -69,7 +69,7 @@ fn paths_keep_to_their_length_and_end_at_their_target_and_repeat() {
         assert!(request.allows_length_of(&path));
         assert!(path.moves().iter().all(|step| step.distance_m < 1.01));
         let (target, last) = (path.target.clone().unwrap(), path.frames.last().unwrap());
-        assert_eq!(platform.object_name(&scene(), last, &target.object).unwrap(), Some(target.name));
+        assert_eq!(platform.catalogue().object_name(&scene(), last, &target.object).unwrap(), Some(target.name));
         assert_eq!(platform.sample_path(&scene(), &request, seed).unwrap(), path);
     }
 }
@@ -147,7 +147,8 @@ fn several_houses_are_floor_plans_of_their_own() {
         let frame = graph.path_frames(&[graph.viewpoints().next().unwrap().clone()], None).unwrap().remove(0);
         let house = HouseScene::new(generate_house(shown.seed)).unwrap();
         for (id, object) in &house.objects {
-            let told = platform.object_name(&scene, &frame, &ObjectId::new(id.to_string()).unwrap()).unwrap();
+            let told =
+                platform.catalogue().object_name(&scene, &frame, &ObjectId::new(id.to_string()).unwrap()).unwrap();
             let expected = (object.role == ObjectRole::Furniture).then_some(object.name.as_str());
             assert_eq!(told.as_deref(), expected, "{shown}");
         }

@@ -59,7 +59,7 @@ fn paths_keep_to_their_length_and_end_at_their_target_and_repeat() {
         assert!(request.allows_length_of(&path));
         assert!(path.moves().iter().all(|step| step.distance_m < 1.01));
         let (target, last) = (path.target.clone().unwrap(), path.frames.last().unwrap());
-        assert_eq!(platform.object_name(&scene(), last, &target.object).unwrap(), Some(target.name));
+        assert_eq!(platform.catalogue().object_name(&scene(), last, &target.object).unwrap(), Some(target.name));
         assert_eq!(platform.sample_path(&scene(), &request, seed).unwrap(), path);
     }
 }
@@ -147,7 +147,7 @@ fn several_houses_are_homes_of_their_own() {
                 viewpoint: None,
                 level: None,
             };
-            let name = platform.object_name(&scene, &frame, &object).unwrap();
+            let name = platform.catalogue().object_name(&scene, &frame, &object).unwrap();
             assert_eq!(name.as_deref(), Some(&*piece.name), "{shown}");
         }
     }

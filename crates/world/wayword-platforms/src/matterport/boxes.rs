@@ -12,7 +12,9 @@ use wayword_world::object_names;
 
 /// Number of the simulator's views at a viewpoint.
 pub(crate) const SIMULATOR_VIEW_COUNT: usize = 36;
+/// Width of the simulator's pictures, pixels.
 pub(crate) const WIDTH_PX: f64 = 640.0;
+/// Height of the simulator's pictures, pixels.
 pub(crate) const HEIGHT_PX: f64 = 480.0;
 /// Pixels per unit of the image plane: 240 / tan(30 degrees).
 pub(crate) const FOCAL_PX: f64 = 415.692_193_816_530_5;
@@ -21,6 +23,7 @@ pub(crate) const FOCAL_PX: f64 = 415.692_193_816_530_5;
 const MAX_OBJECTS: usize = 10_000;
 /// Largest file, bytes; the largest real one has 40 kB.
 const MAX_BYTES: u64 = 1 << 20;
+/// The advice in errors about such a file.
 const BOXES_HINT: &str = "extract the file again from REVERIE's BBox.zip";
 
 /// An object that REVERIE lists at a viewpoint.
@@ -68,6 +71,7 @@ impl SeenBox {
         (x + width / 2.0, y + height / 2.0)
     }
 
+    /// Squared distance of its centre from the centre of the picture, square pixels.
     fn off_centre_px2(&self) -> f64 {
         let (x, y) = self.centre_px();
         (x - WIDTH_PX / 2.0).powi(2) + (y - HEIGHT_PX / 2.0).powi(2)

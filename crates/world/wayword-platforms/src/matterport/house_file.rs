@@ -10,9 +10,11 @@ use std::{collections::BTreeMap, path::Path};
 use wayword_core::{ObjectId, PlatformError, ViewpointId};
 use wayword_world::object_names;
 
+/// Largest file, bytes; a larger one is refused.
 const MAX_BYTES: u64 = 64 << 20;
 /// Most words of a line that are read; the records have fewer than 40.
 const MAX_WORDS: usize = 64;
+/// The advice in errors about such a file.
 const HOUSE_FILE_HINT: &str = "get the file again from Matterport3D's house_segmentations";
 
 /// The contents of a `.house` file.
@@ -20,7 +22,9 @@ const HOUSE_FILE_HINT: &str = "get the file again from Matterport3D's house_segm
 pub(crate) struct MatterportHouseFile {
     /// Height of each level, metres, by its index in the file.
     levels_m: BTreeMap<i64, f64>,
+    /// Regions by their index in the file.
     regions: BTreeMap<i64, HouseFileRegion>,
+    /// The index of the region of each viewpoint.
     panoramas: BTreeMap<ViewpointId, i64>,
     pub(crate) objects: Vec<HouseObject>,
 }

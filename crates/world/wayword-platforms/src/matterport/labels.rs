@@ -21,10 +21,11 @@ pub(crate) fn from_boxes(listed: &[ListedObject], eye: DVec3, centres: &BTreeMap
     let mut labels: Vec<ObjectLabel> = listed
         .iter()
         .filter_map(|entry| {
-            let seen = entry.best_box()?;
+            let object_box = entry.best_box()?;
             let centre = centres.get(entry.object.as_str()).copied();
             let by_centre = centre.and_then(|centre| ray_to(eye, centre));
-            let ray = if seen.is_cut() { by_centre.or(seen.centre_ray()) } else { seen.centre_ray() }?;
+            let ray =
+                if object_box.is_cut() { by_centre.or(object_box.centre_ray()) } else { object_box.centre_ray() }?;
             Some(ObjectLabel {
                 object: entry.object.clone(),
                 name: entry.name.clone()?,

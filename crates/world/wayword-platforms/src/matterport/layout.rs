@@ -17,7 +17,9 @@ pub(crate) struct MatterportLayout {
     connectivity: PathBuf,
     /// Folders with one folder per scan.
     scans: Vec<PathBuf>,
+    /// The folder of REVERIE's boxes.
     boxes: Option<PathBuf>,
+    /// REVERIE's file of object centres.
     pub(crate) object_positions: Option<PathBuf>,
     /// Folders with files `SCAN/VIEWPOINT/N.jpg`.
     views: Vec<PathBuf>,

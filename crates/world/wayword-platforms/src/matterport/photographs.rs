@@ -10,14 +10,18 @@ use wayword_core::{Image, PlatformError, SceneId, ViewGaze};
 use wayword_render::{CubeFace, CubeMap, sample_view};
 use wayword_world::connectivity::PanoramaViewpoint;
 
+/// Width of a view, pixels.
 const WIDTH_PX: u32 = 640;
+/// Height of a view, pixels.
 const HEIGHT_PX: u32 = 480;
 /// Widest field of view of a flat picture, radians.
 const MAX_FOV_RAD: f64 = 2.8;
 
 /// The photographs of a viewpoint, in one of two forms.
 pub(crate) enum ViewpointPhotographs {
+    /// Six pictures around the viewpoint, and the rotation from their axes to the world frame.
     Skybox { cube: Box<CubeMap>, world_from_skybox: DMat3 },
+    /// The simulator's 36 views.
     Views(ThirtySix),
 }
 

@@ -16,7 +16,7 @@ use std::{
 };
 use wayword_core::{
     Frame, GroundTruth, Image, ObjectId, ObjectLabel, Path, PathRequest, PlacedObject, Platform, PlatformError, Pose,
-    RecentCache, SceneId, View, ViewGaze, ViewpointGraph, ViewpointId,
+    RecentCache, SceneCatalogue, SceneFiles, SceneId, View, ViewGaze, ViewpointGraph, ViewpointId,
 };
 use wayword_world::{connectivity::PanoramaViewpoint, graph_walk};
 
@@ -33,6 +33,7 @@ const PHOTOGRAPHS_KEPT: usize = 8;
 /// other views.
 pub struct MatterportPlatform {
     layout: MatterportLayout,
+    /// The centres of objects, from REVERIE's file.
     centres: ObjectPositions,
     scenes: Mutex<BTreeMap<SceneId, Arc<MatterportScene>>>,
     boxes: RecentCache<(SceneId, ViewpointId), Option<Vec<ListedObject>>>,
@@ -69,6 +70,7 @@ impl MatterportPlatform {
         MatterportLayout::find_data(data).ok()?.lack_of_objects(data)
     }
 
+    /// The scene, which is read from its files on first use.
     fn loaded_scene(&self, scene: &SceneId) -> Result<Arc<MatterportScene>, PlatformError> {
         if let Some(loaded) = self.scenes.lock().unwrap_or_else(PoisonError::into_inner).get(scene) {
             return Ok(Arc::clone(loaded));
@@ -80,6 +82,7 @@ impl MatterportPlatform {
         Ok(Arc::clone(scenes.entry(scene.clone()).or_insert(loaded)))
     }
 
+    /// The objects that REVERIE lists at a viewpoint; `None` if there is no file for it.
     fn objects_listed_at(
         &self,
         scene: &SceneId,
@@ -99,8 +102,8 @@ impl MatterportPlatform {
         viewpoint: &ViewpointId,
     ) -> Result<Option<Vec<ObjectLabel>>, PlatformError> {
         let eye = known_viewpoint(id, scene, viewpoint)?.position;
-        let nowhere = BTreeMap::new();
-        let centres = self.centres.get(id.as_str()).unwrap_or(&nowhere);
+        let no_centres = BTreeMap::new();
+        let centres = self.centres.get(id.as_str()).unwrap_or(&no_centres);
         if let Some(listed) = self.objects_listed_at(id, viewpoint)?.as_ref() {
             return Ok(Some(labels::from_boxes(listed, eye, centres)));
         }
@@ -156,6 +159,7 @@ fn known_viewpoint<'a>(
     found.ok_or_else(|| PlatformError::UnknownViewpoint { scene: id.clone(), viewpoint: viewpoint.clone() })
 }
 
+/// The viewpoint of a frame; an error if the frame is at none, because views exist only at viewpoints.
 fn viewpoint_of<'a>(id: &SceneId, frame: &'a Frame) -> Result<&'a ViewpointId, PlatformError> {
     frame.viewpoint.as_ref().ok_or_else(|| PlatformError::NotAViewpoint { scene: id.clone() })
 }
@@ -200,6 +204,16 @@ impl Platform for MatterportPlatform {
         Ok(View::new(Pose::looking_level(here.position, gaze.heading), gaze.horizontal_fov_rad, None, truth))
     }
 
+    fn catalogue(&self) -> &dyn SceneCatalogue {
+        self
+    }
+
+    fn files(&self) -> &dyn SceneFiles {
+        self
+    }
+}
+
+impl SceneCatalogue for MatterportPlatform {
     fn object_name(&self, id: &SceneId, near: &Frame, object: &ObjectId) -> Result<Option<String>, PlatformError> {
         let scene = self.loaded_scene(id)?;
         if let Some(viewpoint) = &near.viewpoint {
@@ -217,8 +231,6 @@ impl Platform for MatterportPlatform {
         Ok(self.objects_of_scene(id, &scene)?.get(object).and_then(|object| object.name.clone()))
     }
 
-    /// From the viewpoints where REVERIE's boxes show it, as in REVERIE's evaluator; without boxes, from those where
-    /// the `.house` file's labels list it.
     fn listed_objects(&self, id: &SceneId) -> Result<Vec<PlacedObject>, PlatformError> {
         let scene = self.loaded_scene(id)?;
         let objects = self.objects_of_scene(id, &scene)?;
@@ -229,13 +241,15 @@ impl Platform for MatterportPlatform {
             return Ok(scene.house.iter().flat_map(|house| &house.objects).filter_map(placed).collect());
         }
         let Some(centres) = self.centres.get(id.as_str()) else { return Ok(Vec::new()) };
-        let placed = |(object, everywhere): (&ObjectId, &ObjectListing)| {
+        let placed = |(object, listing): (&ObjectId, &ObjectListing)| {
             let position = *centres.get(object.as_str())?;
-            Some(PlacedObject { object: object.clone(), name: everywhere.name.clone()?, position })
+            Some(PlacedObject { object: object.clone(), name: listing.name.clone()?, position })
         };
         Ok(objects.iter().filter_map(placed).collect())
     }
 
+    /// From the viewpoints where REVERIE's boxes show it, as in REVERIE's evaluator; without boxes, from those where
+    /// the `.house` file's labels list it.
     fn visible_from(&self, id: &SceneId, object: &ObjectId) -> Result<Option<BTreeSet<ViewpointId>>, PlatformError> {
         let scene = self.loaded_scene(id)?;
         let objects = self.objects_of_scene(id, &scene)?;
@@ -253,7 +267,9 @@ impl Platform for MatterportPlatform {
     fn lists_everything(&self) -> bool {
         false
     }
+}
 
+impl SceneFiles for MatterportPlatform {
     fn source_files(&self, id: &SceneId) -> Result<Vec<PathBuf>, PlatformError> {
         Ok(self.layout.files_of_scene(id, self.loaded_scene(id)?.viewpoints.keys()))
     }

@@ -7,6 +7,7 @@ use super::file_reading;
 use std::{collections::BTreeMap, path::Path};
 use wayword_core::{PlatformError, ViewpointId};
 
+/// Largest file, bytes; a larger one is refused.
 const MAX_BYTES: u64 = 4 << 20;
 const ROOMS_HINT: &str = "get the file again from Matterport3D's house_segmentations";
 

@@ -9,9 +9,11 @@ use std::{f64::consts::FRAC_PI_6, path::Path};
 use wayword_core::{Image, PlatformError, ViewGaze};
 
 const VIEWS_HINT: &str = "render the views again, all of the same size and with a vertical field of view of 60 degrees";
-/// Half of the views' vertical field of view.
+/// Half of the pictures' vertical field of view.
 const HALF_FOV_RAD: f64 = FRAC_PI_6;
+/// Elevations at which the pictures look: -30, 0 and 30 degrees.
 const VIEW_ROWS: usize = 3;
+/// Headings at which the pictures look, 30 degrees apart.
 const VIEW_COLUMNS: usize = 12;
 /// Most pixels of one view; 36 views are in memory at a time.
 const MAX_PIXELS: u64 = 1280 * 960;
@@ -61,6 +63,7 @@ impl ThirtySix {
     /// The view along a gaze: RGB, from the top left. Each pixel comes from the picture with the nearest axis, with bilinear
     /// interpolation.
     pub(crate) fn sample_gaze(&self, gaze: ViewGaze, width: u32, height: u32) -> Vec<u8> {
+        // The distance between two pixels on the image plane at distance 1.
         let pixel = 2.0 * libm::tan(gaze.horizontal_fov_rad / 2.0) / f64::from(width);
         let columns: Vec<(usize, f64, f64)> = (0..width)
             .map(|x| nearest_column(gaze.heading.rad(), (f64::from(x) + 0.5 - f64::from(width) / 2.0) * pixel))

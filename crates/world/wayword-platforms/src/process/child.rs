@@ -1,5 +1,5 @@
-//! Talks with a running child over its pipes, one request at a time. A thread takes the child's place for a world within
-//! this process.
+//! Talks with a running child over its pipes, one request at a time. For a world within this process, a thread answers in
+//! place of a child.
 
 use super::{
     answer::{ChildAnswer, MAX_LINE_BYTES, parse_answer},
@@ -35,8 +35,9 @@ pub(crate) struct RunningChild {
     requests: Option<SyncSender<Vec<u8>>>,
     /// From the thread that reads. It waits until a line is received, so a flood of lines stays in the pipe.
     lines: Receiver<OutputLine>,
+    /// The last lines of its error output.
     last_words: LastWords,
-    /// Hears its error output; `None` for a world within this process.
+    /// The thread that reads its error output; `None` for a world within this process.
     listener: Option<JoinHandle<()>>,
 }
 
@@ -182,6 +183,7 @@ impl Drop for RunningChild {
     }
 }
 
+/// Writes requests to a pipe until there are no more, or the pipe breaks.
 fn write_all(mut pipe: impl Write, requests: &Receiver<Vec<u8>>) {
     while let Ok(request) = requests.recv() {
         if pipe.write_all(&request).and_then(|()| pipe.flush()).is_err() {
@@ -190,6 +192,7 @@ fn write_all(mut pipe: impl Write, requests: &Receiver<Vec<u8>>) {
     }
 }
 
+/// Reads lines from a pipe and passes them on, until the pipe ends or sends a line that is too long.
 fn read_all(pipe: impl Read, lines: &SyncSender<OutputLine>) {
     let mut pipe = BufReader::new(pipe);
     loop {

@@ -25,7 +25,9 @@ const ANSWERS_FOR_A_RESTART: u32 = 200;
 /// Keeps one child running. Only one thread uses the child at a time.
 pub(crate) struct ChildKeeper {
     options: ProcessOptions,
+    /// Receives the lines of the child's error output.
     hear: OutputListener,
+    /// The first greeting; later children must send the same.
     world: WorldProgram,
     state: Mutex<ChildState>,
 }
@@ -37,8 +39,10 @@ struct ChildState {
     images: Option<PathBuf>,
     /// Number of requests so far, to all children; also the id of the last one.
     asked: u64,
+    /// Number of requests that a child answered.
     answered: u32,
     restarts_left: u32,
+    /// The latest fault that ended a child, in words; empty if there was none.
     last_fault: String,
 }
 
@@ -173,6 +177,7 @@ impl ChildState {
         greeting.to_world_program().map_err(ChildFault::Greeting)
     }
 
+    /// Sends a request to the running child, and counts its answers.
     fn ask_running_child(
         &mut self,
         options: &ProcessOptions,
@@ -209,7 +214,9 @@ impl ChildState {
 struct FailedRequest {
     fault: ChildFault,
     method: &'static str,
+    /// The id of the request; `None` if the failure belongs to no request.
     id: Option<u64>,
+    /// The end of the child's error output, for the message.
     last_words: String,
 }
 

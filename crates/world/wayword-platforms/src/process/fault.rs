@@ -1,4 +1,5 @@
-//! Everything that can go wrong with a child, with the message and the advice for each.
+//! Everything that can go wrong with a child, with the message and the advice for each. A message continues "the world
+//! program ...".
 
 use super::protocol::{PROTOCOL_VERSION, WORLD_FRAME};
 use std::io;

@@ -8,7 +8,9 @@ use serde_json::json;
 use std::collections::BTreeSet;
 use wayword_core::{DVec3, PlatformError, SceneId, ViewpointGraph, ViewpointId, graph::GraphError};
 
+/// Most viewpoints of a child's own graph; a larger one is refused.
 const MAX_VIEWPOINTS: usize = 20_000;
+/// Most edges of a graph, or neighbours in all; more are refused.
 const MAX_EDGES: usize = 200_000;
 /// Number of places to ask for, if the graph is made here.
 const POINTS_ASKED: usize = 1000;
@@ -77,6 +79,7 @@ pub(crate) fn of_scene(keeper: &ChildKeeper, scene: &SceneId) -> Result<Viewpoin
     }
 }
 
+/// The graph that the child sends as a whole.
 fn ask_whole_graph(keeper: &ChildKeeper, scene: &SceneId) -> Result<ViewpointGraph, PlatformError> {
     let GraphAnswer { viewpoints, edges } = keeper.ask_and_read("graph", &json!({ "scene": scene }))?;
     if viewpoints.is_empty() || viewpoints.len() > MAX_VIEWPOINTS || edges.len() > MAX_EDGES {
@@ -94,6 +97,7 @@ fn ask_whole_graph(keeper: &ChildKeeper, scene: &SceneId) -> Result<ViewpointGra
     Ok(graph)
 }
 
+/// A graph of places, with the neighbours that the child gives for each.
 fn by_neighbours(
     keeper: &ChildKeeper,
     scene: &SceneId,

@@ -176,6 +176,7 @@ impl GroupMembers {
 /// The state of a process that was started here.
 #[derive(PartialEq)]
 enum ProcessState {
+    /// It has not ended.
     Runs,
     /// It has ended and is not reaped yet.
     Ended,
@@ -196,14 +197,15 @@ fn process_state(process: &mut Child) -> ProcessState {
 }
 
 #[cfg(not(unix))]
-fn process_state(process: &mut Child) -> Look {
+fn process_state(process: &mut Child) -> ProcessState {
     match process.try_wait() {
-        Ok(None) => Look::Runs,
-        Ok(Some(_)) => Look::Ended,
-        Err(_) => Look::Unknown,
+        Ok(None) => ProcessState::Runs,
+        Ok(Some(_)) => ProcessState::Ended,
+        Err(_) => ProcessState::Unknown,
     }
 }
 
-fn lock_ignoring_poison<T>(of: &Mutex<T>) -> MutexGuard<'_, T> {
-    of.lock().unwrap_or_else(PoisonError::into_inner)
+/// Locks a mutex, also after a thread panicked while it held the lock: the data stay usable.
+fn lock_ignoring_poison<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

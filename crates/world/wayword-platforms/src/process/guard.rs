@@ -59,7 +59,7 @@ impl GroupGuard {
     }
 
     #[cfg(not(unix))]
-    pub(crate) fn start(_: &Guardian) -> io::Result<Self> {
+    pub(crate) fn start(_: &GuardProgram) -> io::Result<Self> {
         Err(io::ErrorKind::Unsupported.into())
     }
 

@@ -70,6 +70,7 @@ impl ObservedObject {
         self.convert_label(eye, gaze, size_px).map_err(|reason| format!("label of object {object:?}: {reason}"))
     }
 
+    /// Checks every number of the object and makes a label of it; the error does not name the object yet.
     fn convert_label(self, eye: DVec3, gaze: ViewGaze, size_px: (u32, u32)) -> Result<ObjectLabel, String> {
         let position = self.position.map(plausible_position).transpose()?;
         let (heading, elevation_rad) = match (position, self.heading_rad) {
@@ -84,8 +85,8 @@ impl ObservedObject {
             }
             (None, None) => return Err("has neither `position` nor `heading_rad`".into()),
         };
-        let told_m = self.distance_m.map(|far| bounded_number("distance_m", far, MAX_COORDINATE_M)).transpose()?;
-        if told_m.is_some_and(|far| far < 0.0) {
+        let reported_m = self.distance_m.map(|far| bounded_number("distance_m", far, MAX_COORDINATE_M)).transpose()?;
+        if reported_m.is_some_and(|far| far < 0.0) {
             return Err("`distance_m` is negative".into());
         }
         Ok(ObjectLabel {
@@ -94,21 +95,23 @@ impl ObservedObject {
             heading,
             elevation_rad,
             box_px: self.box_px.map(|corners| box_px(corners, size_px)).transpose()?,
-            distance_m: told_m.or_else(|| position.map(|centre| eye.distance(centre))),
+            distance_m: reported_m.or_else(|| position.map(|centre| eye.distance(centre))),
             position,
             colour: self.colour.map(|colour| protocol::checked_name("`colour`", &colour)).transpose()?,
         })
     }
 }
 
+/// The elevation of a point as seen from an eye, radians.
 fn elevation_rad(eye: DVec3, centre: DVec3) -> f64 {
     let (across, up) = ((centre - eye).truncate().length(), centre.z - eye.z);
     libm::atan2(up, across)
 }
 
-fn bounded_number(field: &str, number: f64, most: f64) -> Result<f64, String> {
-    let fits = number.is_finite() && number.abs() <= most;
-    fits.then_some(number).ok_or_else(|| format!("`{field}` is {number}, which is more than {most} in size"))
+/// A number that is finite and at most `max` in size; the error names the field.
+fn bounded_number(field: &str, number: f64, max: f64) -> Result<f64, String> {
+    let fits = number.is_finite() && number.abs() <= max;
+    fits.then_some(number).ok_or_else(|| format!("`{field}` is {number}, which is more than {max} in size"))
 }
 
 /// A box, cut to its picture; an error if it does not lie within the picture.

@@ -16,8 +16,8 @@ use std::{
     sync::{Arc, Mutex, OnceLock, PoisonError},
 };
 use wayword_core::{
-    Frame, GroundTruth, Heading, Image, ObjectId, Path, PathRequest, Platform, PlatformError, Pose, SceneId, View,
-    ViewGaze, ViewpointGraph, ViewpointId,
+    Frame, GroundTruth, Heading, Image, ObjectId, Path, PathRequest, Platform, PlatformError, Pose, SceneCatalogue,
+    SceneId, View, ViewGaze, ViewpointGraph, ViewpointId,
 };
 use wayword_render::to_flat_gaze;
 use wayword_world::{episode_path::labels_around, graph_walk, output_lines::OutputListener};
@@ -93,6 +93,7 @@ impl ProcessPlatform {
         self.world().has_offer(offer)
     }
 
+    /// The child's answers about a scene, which are asked for on first use.
     fn known_scene(&self, scene: &SceneId) -> Result<Arc<ProcessSceneFacts>, PlatformError> {
         if let Some(known) = self.known.lock().unwrap_or_else(PoisonError::into_inner).get(scene) {
             return Ok(Arc::clone(known));
@@ -105,6 +106,7 @@ impl ProcessPlatform {
         Ok(Arc::clone(known.entry(scene.clone()).or_insert(made)))
     }
 
+    /// Asks the child for a view. Data that the child does not offer are left out.
     fn ask_view(&self, scene: &SceneId, from: &Frame, gaze: ViewGaze, picture: bool) -> Result<View, PlatformError> {
         let eye = from.pose.position;
         if !eye.is_finite() || eye.abs().max_element() > MAX_COORDINATE_M {
@@ -139,6 +141,7 @@ impl ProcessPlatform {
         (options.width_px, options.height_px)
     }
 
+    /// The parameters of the request `observe`.
     fn look_request(&self, scene: &SceneId, from: &Frame, gaze: ViewGaze, picture: bool) -> Value {
         let (width_px, height_px) = self.size_px();
         let half_width = libm::tan(gaze.horizontal_fov_rad / 2.0);
@@ -156,6 +159,7 @@ impl ProcessPlatform {
         })
     }
 
+    /// The ground truth in an answer; `None` if the child offers neither labels nor rooms.
     fn ground_truth_from(
         &self,
         seen: ObserveAnswer,
@@ -200,6 +204,7 @@ impl ProcessPlatform {
         Ok(known.objects.get_or_init(|| objects))
     }
 
+    /// The labels all around a viewpoint; none if the child offers no labels.
     fn labels_at(
         &self,
         scene: &SceneId,
@@ -252,6 +257,12 @@ impl Platform for ProcessPlatform {
         self.ask_view(scene, from, gaze, false)
     }
 
+    fn catalogue(&self) -> &dyn SceneCatalogue {
+        self
+    }
+}
+
+impl SceneCatalogue for ProcessPlatform {
     fn object_name(&self, scene: &SceneId, near: &Frame, object: &ObjectId) -> Result<Option<String>, PlatformError> {
         if self.has_offer(WorldOffer::ObjectName) {
             let NameAnswer { name } =

@@ -37,6 +37,7 @@ pub enum WorldOffer {
 }
 
 impl WorldOffer {
+    /// Each offer with its name in a greeting.
     const NAMED_OFFERS: [(Self, &'static str); 10] = [
         (Self::Graph, "graph"),
         (Self::Points, "points"),

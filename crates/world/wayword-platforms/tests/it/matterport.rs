@@ -134,9 +134,9 @@ fn an_episode_names_its_target_and_notes_namesakes() {
     assert_eq!(path.frames[0].pose.heading, heading(0.0));
     // The desk is neither seen nor listed at this viewpoint, but at others.
     let desk = ObjectId::new("38").unwrap();
-    assert_eq!(platform.object_name(&scene(), &path.frames[0], &desk).unwrap().as_deref(), Some("desk"));
+    assert_eq!(platform.catalogue().object_name(&scene(), &path.frames[0], &desk).unwrap().as_deref(), Some("desk"));
     let nothing = ObjectId::new("999").unwrap();
-    assert_eq!(platform.object_name(&scene(), &path.frames[0], &nothing).unwrap(), None);
+    assert_eq!(platform.catalogue().object_name(&scene(), &path.frames[0], &nothing).unwrap(), None);
 }
 
 /// With the boxes, and without them with the `.house` file: an object is visible from the viewpoints where its label is
@@ -146,7 +146,7 @@ fn visible_from_lists_viewpoints_with_a_box_of_the_object() {
     let (folder, platform) = building();
     let agree = |platform: &MatterportPlatform| {
         let desk = ObjectId::new("38").unwrap();
-        let from = platform.visible_from(&scene(), &desk).unwrap().unwrap();
+        let from = platform.catalogue().visible_from(&scene(), &desk).unwrap().unwrap();
         let graph = platform.graph_for_scene(&scene()).unwrap();
         for (number, viewpoint) in graph.viewpoints().enumerate() {
             let labels = labels_around(platform, &scene(), &frame(platform, number)).unwrap();
@@ -156,11 +156,14 @@ fn visible_from_lists_viewpoints_with_a_box_of_the_object() {
     };
     agree(&platform);
     let nothing = ObjectId::new("999").unwrap();
-    assert!(platform.visible_from(&scene(), &nothing).unwrap().unwrap().is_empty());
+    assert!(platform.catalogue().visible_from(&scene(), &nothing).unwrap().unwrap().is_empty());
     std::fs::remove_dir_all(folder.path().join("reverie")).unwrap();
     agree(&MatterportPlatform::open(folder.path()).unwrap());
     std::fs::remove_dir_all(folder.path().join("matterport/v1")).unwrap();
-    assert_eq!(MatterportPlatform::open(folder.path()).unwrap().visible_from(&scene(), &nothing).unwrap(), None);
+    assert_eq!(
+        MatterportPlatform::open(folder.path()).unwrap().catalogue().visible_from(&scene(), &nothing).unwrap(),
+        None
+    );
 }
 
 #[test]

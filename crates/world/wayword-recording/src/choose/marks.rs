@@ -4,13 +4,13 @@ use super::{INTERVAL_M, INTERVAL_S, MOST_LEFT_OUT};
 use crate::{platform::MAX_WHOLE_FRAMES, reel::Recording};
 use wayword_core::DVec3;
 
-/// Most candidates for one mark.
+/// Most candidates for one mark; if there are more, some in between are left out.
 const MOST_CANDIDATES: usize = 5;
 /// Greatest distance of a candidate from its mark, as a share of the interval.
 const NEAR_INTERVAL_SHARE: f64 = 0.2;
-/// An interval that is shorter than any time between pictures, seconds.
+/// An interval that is shorter than any time between pictures, seconds: with it every picture gets a mark.
 const LEAST_S: f64 = 1e-6;
-/// Least mean time between the pictures of a slide show, seconds; those of a video are closer.
+/// Least mean time between the pictures of a slide show, seconds; the pictures of a video follow each other faster.
 const LEAST_APART_S: f64 = 0.5;
 /// A rest at the end gets its own mark if it has at least this share of the interval; else the last mark moves to the
 /// end.
@@ -34,27 +34,27 @@ pub(super) fn marks_for_recording(recording: &Recording) -> (Vec<FrameMark>, usi
         let usual_s = if is_slide_show(times_s) { LEAST_S } else { INTERVAL_S };
         let interval_s = recording.described.interval_s.unwrap_or(usual_s);
         let all: Vec<usize> = (0..times_s.len()).collect();
-        let off = |a: usize, b: usize| (times_s[a] - times_s[b]).abs();
-        return (spread_marks(&all, interval_s, &off), 0);
+        let distance = |a: usize, b: usize| (times_s[a] - times_s[b]).abs();
+        return (spread_marks(&all, interval_s, &distance), 0);
     };
     let places: Vec<Option<DVec3>> =
         times_s.iter().map(|time_s| track.fix_at(*time_s).map(|fix| fix.position)).collect();
-    let posed: Vec<usize> = (0..times_s.len()).filter(|at| places[*at].is_some()).collect();
-    let place = |at: usize| places[at].unwrap_or_default();
+    let with_pose: Vec<usize> = (0..times_s.len()).filter(|at| places[*at].is_some()).collect();
+    let place_of = |at: usize| places[at].unwrap_or_default();
     let interval_m = recording.described.interval_m.unwrap_or(INTERVAL_M);
-    let off = |a: usize, b: usize| place(a).distance(place(b));
-    let mut marks = spread_marks(&posed, interval_m, &off);
+    let distance = |a: usize, b: usize| place_of(a).distance(place_of(b));
+    let mut marks = spread_marks(&with_pose, interval_m, &distance);
     // The tracker lost its place here and found it again far away.
     let leap_m = (MOST_LEFT_OUT + 1) as f64 * interval_m;
-    let leaps = posed.windows(2).filter(|pair| pair[1] - pair[0] > 1 && off(pair[0], pair[1]) > leap_m);
+    let leaps = with_pose.windows(2).filter(|pair| pair[1] - pair[0] > 1 && distance(pair[0], pair[1]) > leap_m);
     let found_again: Vec<usize> = leaps.map(|pair| pair[1]).collect();
-    let mut passed = 0;
+    let mut passed_leaps = 0;
     for mark in &mut marks {
-        let until = found_again.partition_point(|at| *at <= mark.at);
-        mark.after_gap = until > passed;
-        passed = until;
+        let leaps_so_far = found_again.partition_point(|at| *at <= mark.at);
+        mark.after_gap = leaps_so_far > passed_leaps;
+        passed_leaps = leaps_so_far;
     }
-    (marks, times_s.len() - posed.len())
+    (marks, times_s.len() - with_pose.len())
 }
 
 /// Whether these are a few single pictures, each of which its photographer meant to be a frame, and no clip of a video.
@@ -63,41 +63,41 @@ fn is_slide_show(times_s: &[f64]) -> bool {
     times_s.len() <= MAX_WHOLE_FRAMES && span_s >= LEAST_APART_S * times_s.len().saturating_sub(1) as f64
 }
 
-/// Marks about one interval apart. The distance from the last mark counts, not the length of the track, because a
-/// tracker's positions jitter while a robot rests.
-fn spread_marks(pictures: &[usize], interval: f64, off: &dyn Fn(usize, usize) -> f64) -> Vec<FrameMark> {
+/// Marks about one interval apart. `distance` gives the metres or seconds between two pictures. The distance from the last mark
+/// counts, not the length of the track, because a tracker's positions jitter while a robot rests.
+fn spread_marks(pictures: &[usize], interval: f64, distance: &dyn Fn(usize, usize) -> f64) -> Vec<FrameMark> {
     let (Some(first), Some(last)) = (pictures.first(), pictures.last()) else { return Vec::new() };
     // Indices into `pictures`, not numbers of pictures.
     let mut marks = vec![0];
     let mut from = *first;
     for (at, picture) in pictures.iter().enumerate() {
-        let over = off(from, *picture) - interval;
-        if over < 0.0 {
+        let excess = distance(from, *picture) - interval;
+        if excess < 0.0 {
             continue;
         }
         // If pictures are far apart, the one before may be nearer to the mark's proper place.
         let before = at.saturating_sub(1);
-        if marks.last() != Some(&before) && interval - off(from, pictures[before]) < over {
+        if marks.last() != Some(&before) && interval - distance(from, pictures[before]) < excess {
             marks.push(before);
             from = pictures[before];
         }
-        if off(from, *picture) >= interval {
+        if distance(from, *picture) >= interval {
             marks.push(at);
             from = *picture;
         }
     }
     let end = pictures.len() - 1;
     if marks.last() != Some(&end) {
-        let moves = off(from, *last) < LEFT_OVER * interval && marks.len() > 1;
-        if moves {
+        let moves_to_end = distance(from, *last) < LEFT_OVER * interval && marks.len() > 1;
+        if moves_to_end {
             marks.pop();
         }
-        if off(from, *last) > 0.0 || moves {
+        if distance(from, *last) > 0.0 || moves_to_end {
             marks.push(end);
         }
     }
     let candidates = |mark: usize| {
-        let near = |at: &usize| off(pictures[*at], pictures[mark]) <= NEAR_INTERVAL_SHARE * interval;
+        let near = |at: &usize| distance(pictures[*at], pictures[mark]) <= NEAR_INTERVAL_SHARE * interval;
         let before = (0..mark).rev().take_while(near).count();
         let after = (mark + 1..pictures.len()).take_while(near).count();
         thin_out(mark - before..=mark + after, mark).map(|at| pictures[at]).collect()

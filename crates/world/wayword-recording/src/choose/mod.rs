@@ -21,8 +21,8 @@ pub(crate) const INTERVAL_S: f64 = 2.0;
 const BLURRED_SHARPNESS_SHARE: f64 = 0.3;
 /// A picture that differs from the one before by less than this shows the same, levels of 255 on average.
 const ALIKE_DIFFERENCE_LEVELS: f64 = 2.0;
-/// Most marks in a row that may be left out. After more of them, the straight line between two frames may not be the way
-/// that the camera took.
+/// Most marks in a row that may be left out. If more are, the straight line between the two frames around them may not be
+/// the way that the camera took, so the path breaks there.
 const MOST_LEFT_OUT: usize = 2;
 
 /// The frames of a recording, and what was left out.
@@ -52,13 +52,13 @@ pub(crate) fn choose_frames(
 ) -> Result<FrameChoice, PlatformError> {
     let (marks, without_pose) = marks::marks_for_recording(recording);
     let wanted = all_candidates(&marks);
-    let mut looks = Vec::with_capacity(wanted.len());
+    let mut measures = Vec::with_capacity(wanted.len());
     recording.reel.hand_out_pictures(&wanted, &mut |number, image| {
         each(number, &image);
-        looks.push((number, PictureMeasure::from_image(&image)));
+        measures.push((number, PictureMeasure::from_image(&image)));
         Ok(())
     })?;
-    Ok(FrameChoice { without_pose, ..choose_among(recording, &marks, &looks) })
+    Ok(FrameChoice { without_pose, ..choose_among(recording, &marks, &measures) })
 }
 
 /// The pictures that are examined in order to choose among them, ascending.
@@ -74,12 +74,12 @@ fn all_candidates(marks: &[FrameMark]) -> Vec<usize> {
 }
 
 /// Chooses the frames after every candidate was examined.
-fn choose_among(recording: &Recording, marks: &[FrameMark], looks: &[(usize, PictureMeasure)]) -> FrameChoice {
-    let look = |number: usize| {
-        let found = looks.binary_search_by_key(&number, |(number, _)| *number).ok();
-        found.map(|at| &looks[at].1)
+fn choose_among(recording: &Recording, marks: &[FrameMark], measures: &[(usize, PictureMeasure)]) -> FrameChoice {
+    let measure_of = |number: usize| {
+        let index = measures.binary_search_by_key(&number, |(number, _)| *number).ok();
+        index.map(|at| &measures[at].1)
     };
-    let least = BLURRED_SHARPNESS_SHARE * usual_sharpness(looks);
+    let min_sharpness = BLURRED_SHARPNESS_SHARE * usual_sharpness(measures);
     let mut choice = FrameChoice::default();
     // The mark of the last stop, and its picture's measures.
     let mut last: Option<(usize, &PictureMeasure)> = None;
@@ -87,8 +87,8 @@ fn choose_among(recording: &Recording, marks: &[FrameMark], looks: &[(usize, Pic
         // The first and the last mark stay: without them the path would be another one.
         let is_end = at == 0 || at + 1 == marks.len();
         let is_break = recording.track.is_some() && last.is_some_and(|(from, _)| is_lost(&marks[from + 1..=at]));
-        let before = choice.stops.last().copied().filter(|_| !is_break);
-        let faces = |number: &&usize| before.is_none_or(|before| faces_the_way(recording, before, **number));
+        let last_stop = choice.stops.last().copied().filter(|_| !is_break);
+        let faces = |number: &&usize| last_stop.is_none_or(|last_stop| faces_the_way(recording, last_stop, **number));
         let mut facing: Vec<usize> = mark.candidates.iter().filter(faces).copied().collect();
         if facing.is_empty() && is_end {
             facing.clone_from(&mark.candidates);
@@ -97,17 +97,20 @@ fn choose_among(recording: &Recording, marks: &[FrameMark], looks: &[(usize, Pic
             choice.turned_away += 1;
             continue;
         }
-        let is_sharp = |number: &&usize| look(**number).is_some_and(|look| look.sharpness >= least);
+        let is_sharp = |number: &&usize| measure_of(**number).is_some_and(|measure| measure.sharpness >= min_sharpness);
         let nearest = |number: &&usize| number.abs_diff(mark.at);
-        let sharpest =
-            || facing.iter().max_by(|a, b| sharpness_or_zero(look(**a)).total_cmp(&sharpness_or_zero(look(**b))));
-        let sharp = facing.iter().filter(is_sharp).min_by_key(nearest);
-        let Some(number) = sharp.or_else(|| if is_end { sharpest() } else { None }) else {
+        let sharpest = || {
+            facing
+                .iter()
+                .max_by(|a, b| sharpness_or_zero(measure_of(**a)).total_cmp(&sharpness_or_zero(measure_of(**b))))
+        };
+        let sharp_enough = facing.iter().filter(is_sharp).min_by_key(nearest);
+        let Some(number) = sharp_enough.or_else(|| if is_end { sharpest() } else { None }) else {
             choice.blurred += 1;
             continue;
         };
-        let Some(seen) = look(*number) else { continue };
-        if last.is_some_and(|(_, last)| last.mean_difference(seen) < ALIKE_DIFFERENCE_LEVELS) {
+        let Some(measure) = measure_of(*number) else { continue };
+        if last.is_some_and(|(_, last)| last.mean_difference(measure) < ALIKE_DIFFERENCE_LEVELS) {
             choice.alike += 1;
             if at + 1 < marks.len() || choice.stops.len() < 2 {
                 continue;
@@ -118,23 +121,24 @@ fn choose_among(recording: &Recording, marks: &[FrameMark], looks: &[(usize, Pic
             choice.breaks.insert(choice.stops.len());
         }
         choice.stops.push(*number);
-        last = Some((at, seen));
+        last = Some((at, measure));
     }
     choice
 }
 
-fn sharpness_or_zero(look: Option<&PictureMeasure>) -> f64 {
-    look.map_or(0.0, |look| look.sharpness)
+fn sharpness_or_zero(measure: Option<&PictureMeasure>) -> f64 {
+    measure.map_or(0.0, |measure| measure.sharpness)
 }
 
 /// The median sharpness.
-fn usual_sharpness(looks: &[(usize, PictureMeasure)]) -> f64 {
-    let mut all: Vec<f64> = looks.iter().map(|(_, look)| look.sharpness).collect();
+fn usual_sharpness(measures: &[(usize, PictureMeasure)]) -> f64 {
+    let mut all: Vec<f64> = measures.iter().map(|(_, measure)| measure.sharpness).collect();
     all.sort_by(f64::total_cmp);
     all.get(all.len() / 2).copied().unwrap_or(0.0)
 }
 
-/// Whether the way over these marks is unknown. The last of them would be the next stop.
+/// Whether the way to the next stop is unknown. `marks` are all marks after the last stop; the last of `marks` would be the
+/// next stop.
 fn is_lost(marks: &[FrameMark]) -> bool {
     marks.len() > MOST_LEFT_OUT + 1 || marks.iter().any(|mark| mark.after_gap)
 }

@@ -5,8 +5,8 @@ use wayword_core::Image;
 /// Size of the small grey copies that are compared, pixels.
 const SMALL_WIDTH_PX: usize = 32;
 const SMALL_HEIGHT_PX: usize = 24;
-/// Least width at which sharpness is measured, pixels: motion blur is wide, and noise of single pixels is not
-/// sharpness.
+/// Least width at which sharpness is measured, pixels. Pictures of twice this width or more are shrunk first: motion blur is
+/// wide, and noise of single pixels is not sharpness.
 const MEASURED_PX: usize = 320;
 /// Variance that a picture of one colour gets from its noise, levels squared.
 const NOISE_VARIANCE: f64 = 25.0;
@@ -16,6 +16,7 @@ const NOISE_VARIANCE: f64 = 25.0;
 pub(super) struct PictureMeasure {
     /// Variance of the Laplacian over that of the picture: the share of edges in what the picture shows.
     pub(super) sharpness: f64,
+    /// The small grey copy, row by row, levels of 255.
     small: Vec<f32>,
 }
 
@@ -39,8 +40,10 @@ impl PictureMeasure {
 /// The picture in grey at another size: each pixel is the mean of those that it covers.
 fn shrink_to_grey(image: &Image, wide: usize, high: usize) -> Vec<f32> {
     let (width, height) = (image.width_px() as usize, image.height_px() as usize);
-    let span =
-        |at: usize, of: usize, from: usize| (at * from / of, ((at + 1) * from / of).max(at * from / of + 1).min(from));
+    // Of `length` pixels in a row or column, those that pixel `at` of `count` covers: the first, and the one after the last.
+    let span = |at: usize, count: usize, length: usize| {
+        (at * length / count, ((at + 1) * length / count).max(at * length / count + 1).min(length))
+    };
     let mut shrunk = Vec::with_capacity(wide * high);
     for y in 0..high {
         let (top, bottom) = span(y, high, height);
@@ -62,6 +65,7 @@ fn shrink_to_grey(image: &Image, wide: usize, high: usize) -> Vec<f32> {
     shrunk
 }
 
+/// The Laplacian of a grey picture, without its border: how much the four neighbours of each pixel differ from it.
 fn laplacian(grey: &[f32], width: usize) -> Vec<f32> {
     let height = grey.len() / width;
     let mut edges = Vec::with_capacity(grey.len());

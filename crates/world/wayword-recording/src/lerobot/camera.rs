@@ -8,11 +8,12 @@ use wayword_world::files;
 const CHOOSE_CAMERA_HINT: &str = "write camera = \"NAME\" into a recording.toml in the dataset's folder";
 const NO_CAMERA_HINT: &str = "give a dataset with a feature of dtype video or image";
 
-/// A camera.
+/// A camera of a dataset.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct DatasetCamera {
     /// The name of its feature.
     pub(super) key: String,
+    /// Where its pictures are.
     pub(super) kept: PictureStorage,
 }
 
@@ -49,6 +50,6 @@ pub(super) fn choose_camera(
         (None, [only]) => *only,
         (None, _) => return Err(wrong(format!("has several cameras: {}", listed()), CHOOSE_CAMERA_HINT)),
     };
-    let kept = if info.features[key].dtype == "video" { PictureStorage::Video } else { PictureStorage::Rows };
-    Ok(DatasetCamera { key: key.clone(), kept })
+    let storage = if info.features[key].dtype == "video" { PictureStorage::Video } else { PictureStorage::Rows };
+    Ok(DatasetCamera { key: key.clone(), kept: storage })
 }

@@ -12,6 +12,7 @@ use std::path::{Path, PathBuf};
 use wayword_core::PlatformError;
 use wayword_world::files;
 
+/// Largest list of episodes of version 2 that is read, bytes; a larger one is an error.
 const MAX_LIST_BYTES: u64 = 512 << 20;
 const META_HINT: &str = "download the dataset again, with its folder meta, or write it again with LeRobot's library";
 
@@ -59,13 +60,14 @@ pub(super) fn read_episodes(
     Ok(episodes)
 }
 
+/// A line of `meta/episodes.jsonl`.
 #[derive(Deserialize)]
 struct EpisodeLine {
     episode_index: u64,
     length: u64,
 }
 
-/// Version 2: `meta/episodes.jsonl`.
+/// The episodes of a dataset of version 2, from `meta/episodes.jsonl`.
 fn one_by_one(root: &Path, info: &DatasetInfo, camera: &DatasetCamera) -> Result<Vec<DatasetEpisode>, PlatformError> {
     let file = root.join("meta").join("episodes.jsonl");
     let wrong = |reason: String| files::file_error(&file, reason, META_HINT);
@@ -92,7 +94,7 @@ fn one_by_one(root: &Path, info: &DatasetInfo, camera: &DatasetCamera) -> Result
     episodes.collect()
 }
 
-/// Version 3: `meta/episodes/chunk-000/file-000.parquet` and so on.
+/// The episodes of a dataset of version 3, from `meta/episodes/chunk-000/file-000.parquet` and so on.
 fn in_files(root: &Path, info: &DatasetInfo, camera: &DatasetCamera) -> Result<Vec<DatasetEpisode>, PlatformError> {
     let folder = root.join("meta").join("episodes");
     let mut episodes = Vec::new();
@@ -108,6 +110,7 @@ fn in_files(root: &Path, info: &DatasetInfo, camera: &DatasetCamera) -> Result<V
     Ok(episodes)
 }
 
+/// The episodes that one of these tables lists, a row for each.
 fn in_file(
     root: &Path,
     file: &Path,
@@ -117,17 +120,17 @@ fn in_file(
     let table = ParquetTable::open(file)?;
     let whole = |name: &str| whole_numbers(&table, name);
     let (numbers, lengths) = (whole("episode_index")?, whole("length")?);
-    let (chunks, parts) = (whole("data/chunk_index")?, whole("data/file_index")?);
-    let of_video = |name: &str| format!("videos/{}/{name}", camera.key);
+    let (chunks, file_numbers) = (whole("data/chunk_index")?, whole("data/file_index")?);
+    let video_column = |name: &str| format!("videos/{}/{name}", camera.key);
     let clips = match camera.kept {
         PictureStorage::Rows => None,
         PictureStorage::Video => {
             let mut from_s = Vec::new();
-            table.read_numbers(&of_video("from_timestamp"), 0..table.row_count(), &mut |row, time_s| {
+            table.read_numbers(&video_column("from_timestamp"), 0..table.row_count(), &mut |row, time_s| {
                 from_s.push(time_s);
                 if time_s.is_finite() { Ok(()) } else { Err(format!("row {row} holds {time_s}, which is not a time")) }
             })?;
-            Some((whole(&of_video("chunk_index"))?, whole(&of_video("file_index"))?, from_s))
+            Some((whole(&video_column("chunk_index"))?, whole(&video_column("file_index"))?, from_s))
         }
     };
     let path = |template: &str, chunk: u64, part: u64| {
@@ -141,11 +144,12 @@ fn in_file(
     let episodes = (0..numbers.len()).map(|at| {
         let clip = match &clips {
             None => None,
-            Some((chunks, parts, from_s)) => {
-                Some(VideoClip { file: path(video_path(root, info)?, chunks[at], parts[at])?, from_s: from_s[at] })
-            }
+            Some((chunks, file_numbers, from_s)) => Some(VideoClip {
+                file: path(video_path(root, info)?, chunks[at], file_numbers[at])?,
+                from_s: from_s[at],
+            }),
         };
-        let data = path(&info.data_path, chunks[at], parts[at])?;
+        let data = path(&info.data_path, chunks[at], file_numbers[at])?;
         Ok(DatasetEpisode { number: numbers[at], length: lengths[at], data, clip })
     });
     episodes.collect()
@@ -155,6 +159,7 @@ fn in_file(
 fn whole_numbers(table: &ParquetTable, name: &str) -> Result<Vec<u64>, PlatformError> {
     let mut numbers = Vec::new();
     table.read_numbers(name, 0..table.row_count(), &mut |row, number| {
+        // Up to 1e12 every whole number is exact in an f64; no dataset counts higher.
         if !(0.0..=1e12).contains(&number) || number.fract() != 0.0 {
             return Err(format!("row {row} holds {number}, which is not a count"));
         }
@@ -164,6 +169,7 @@ fn whole_numbers(table: &ParquetTable, name: &str) -> Result<Vec<u64>, PlatformE
     Ok(numbers)
 }
 
+/// The template of the videos' paths.
 fn video_path<'a>(root: &Path, info: &'a DatasetInfo) -> Result<&'a str, PlatformError> {
     let none = || {
         files::file_error(&DatasetInfo::info_file(root), "has a camera that is a video, but no video_path", META_HINT)
@@ -171,6 +177,7 @@ fn video_path<'a>(root: &Path, info: &'a DatasetInfo) -> Result<&'a str, Platfor
     info.video_path.as_deref().ok_or_else(none)
 }
 
+/// The path that a template gives, below the dataset's folder.
 fn path_in_dataset(
     root: &Path,
     template: &str,

@@ -9,9 +9,10 @@ use std::{
 use wayword_core::PlatformError;
 use wayword_world::files;
 
+/// Largest `info.json` that is read, bytes; a larger one is an error.
 const MAX_FILE_BYTES: u64 = 16 << 20;
 const INFO_HINT: &str = "give a dataset of LeRobot, versions 2.0, 2.1 or 3.0, as its library writes it";
-/// Most numbers of a feature that can hold poses.
+/// Most numbers per row of a feature that can hold poses; longer features are not looked at.
 const MAX_WIDTH: u64 = 4096;
 
 /// How a dataset's files are laid out.
@@ -26,28 +27,36 @@ pub(super) enum DatasetLayout {
 /// The content of `meta/info.json`.
 #[derive(Debug, Deserialize)]
 pub(super) struct DatasetInfo {
+    /// The version of the format: `v2.1`.
     codebase_version: String,
+    /// Rows per second.
     fps: f64,
+    /// Episodes per folder, in version 2.
     #[serde(default = "usual_chunk")]
     pub(super) chunks_size: u64,
+    /// Templates of the paths of tables and videos (`template`).
     pub(super) data_path: String,
     #[serde(default)]
     pub(super) video_path: Option<String>,
     pub(super) features: BTreeMap<String, DatasetFeature>,
 }
 
-/// A column, or a camera.
+/// A feature, as LeRobot calls a column of the rows or a camera.
 #[derive(Debug, Clone, Deserialize)]
 pub(super) struct DatasetFeature {
+    /// The type of its numbers, such as `float32`, or `video` or `image`.
     pub(super) dtype: String,
     #[serde(default)]
     shape: Vec<u64>,
+    /// The names of its elements, in one of several forms ([`DatasetFeature::element_names`]).
     #[serde(default)]
     names: Value,
+    /// Properties of a camera's pictures.
     #[serde(default, alias = "video_info")]
     info: Value,
 }
 
+/// Episodes per folder if `info.json` does not give the number: LeRobot's default.
 fn usual_chunk() -> u64 {
     1000
 }

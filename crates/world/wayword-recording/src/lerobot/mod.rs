@@ -1,5 +1,5 @@
-//! LeRobot datasets, versions 2.0, 2.1 and 3.0: rows in Parquet files, pictures in the rows or in videos, one scene for
-//! each episode.
+//! Datasets of LeRobot (Hugging Face's library for robot learning), versions 2.0, 2.1 and 3.0. A dataset has episodes, which
+//! are single recordings: rows of numbers in Parquet files, with pictures in the rows or in videos. Each episode is a scene.
 //!
 //! The format follows huggingface/lerobot, `lerobot/datasets/lerobot_dataset.py` and `utils.py` (0.3.3 writes version
 //! 2.1, 0.4.4 version 3.0).
@@ -38,7 +38,7 @@ const DATASET_HINT: &str = "download the dataset again, or write it again with L
 /// Depth of the folders below `meta` that hold its files: `meta/episodes/chunk-000`.
 const META_DEPTH: usize = 2;
 
-/// A dataset.
+/// A LeRobot dataset, of which each episode is a recording.
 pub(crate) struct LeRobotDataset {
     root: PathBuf,
     described: RecordingDescription,
@@ -80,7 +80,7 @@ impl LeRobotDataset {
         known.map(|(_, episode)| episode).ok_or_else(|| unknown_scene(scene, &self.scenes()))
     }
 
-    /// The poses of the robot in each row.
+    /// The poses of the robot in each row; `None` if the dataset has no feature with poses.
     fn read_track(
         &self,
         table: &ParquetTable,

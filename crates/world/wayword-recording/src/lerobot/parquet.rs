@@ -45,7 +45,7 @@ const PARQUET_HINT: &str =
 /// Rows that are read at a time.
 const STEP_ROWS: u64 = 1024;
 
-/// Receives the bytes of a row; `None` if the row has none.
+/// Receives the number of a row, and its bytes; `None` if the row has none.
 pub(super) type TakeBytes<'a> = dyn FnMut(u64, Option<&[u8]>) -> Result<(), PlatformError> + 'a;
 
 /// A Parquet file: rows with named columns.
@@ -159,18 +159,19 @@ impl ParquetTable {
         let leaf =
             self.find_leaf(name, |leaf| flat(leaf) && leaf.path().parts().get(1).is_none_or(|part| part == "bytes"))?;
         let mut wanted = wanted.iter().copied().peekable();
+        // The closure below can only return texts, so an error of `take` is kept here.
         let mut refused = None;
         let read = self.each_row_group(leaf, 0..self.row_count(), |column, _, rows| {
-            let mut at = rows.start;
+            let mut next_row = rows.start;
             while let Some(row) = wanted.next_if(|row| rows.contains(row)) {
-                column.skip_rows(row.saturating_sub(at)).map_err(|reason| near_row(row, &reason))?;
+                column.skip_rows(row.saturating_sub(next_row)).map_err(|reason| near_row(row, &reason))?;
                 let bytes = column.next_bytes().map_err(|reason| near_row(row, &reason))?;
                 let bytes = bytes.ok_or_else(|| format!("ends before row {row}"))?;
                 if let Err(error) = take(row, bytes.as_ref().map(|bytes| bytes.data())) {
                     refused = Some(error);
                     return Err(String::new());
                 }
-                at = row + 1;
+                next_row = row + 1;
             }
             Ok(())
         });
@@ -220,6 +221,7 @@ impl ParquetTable {
     }
 }
 
+/// Whether a column, or the group of columns in which it lies, has this name.
 fn is_named(leaf: &ColumnDescriptor, name: &str) -> bool {
     leaf.path().parts().first().is_some_and(|first| first == name)
 }
@@ -239,6 +241,7 @@ fn next_list(cells: &mut Peekable<ColumnCells<f64>>, width: usize) -> Result<Vec
     if list.len() == width { Ok(list) } else { Err(format!("is not a list of {width} numbers")) }
 }
 
+/// An error of the crate in the rows that are read next, of which it does not name the row.
 fn near_row(row: u64, reason: &str) -> String {
     format!("at row {row} or soon after it: {reason}")
 }

@@ -10,7 +10,7 @@ use wayword_world::files;
 
 const DATASET_HINT: &str = "download the dataset again, or write it again with LeRobot's library";
 
-/// Pictures in rows.
+/// The pictures of an episode that are stored in its rows.
 pub(super) struct RowReel {
     table: ParquetTable,
     /// The camera's column.
@@ -48,7 +48,7 @@ impl PictureReel for RowReel {
     }
 }
 
-/// A stretch of a video.
+/// The pictures of an episode that are a stretch of a video.
 pub(super) struct VideoStretch {
     film: Mp4Film,
     /// For each picture of the episode, its number in the video; ascending.
@@ -104,7 +104,7 @@ impl PictureReel for VideoStretch {
     fn hand_out_pictures(&self, wanted: &[usize], take: &mut TakePicture<'_>) -> Result<(), PlatformError> {
         let numbers: Vec<usize> = wanted.iter().filter_map(|number| self.numbers.get(*number).copied()).collect();
         self.film.decode_pictures(&numbers, &mut |number, image| match self.numbers.binary_search(&number) {
-            Ok(own) => take(own, image),
+            Ok(index) => take(index, image),
             Err(_) => Ok(()),
         })
     }

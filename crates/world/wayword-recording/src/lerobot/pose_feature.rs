@@ -33,6 +33,7 @@ pub(super) struct PoseFeature {
     facing: FeatureFacing,
 }
 
+/// The elements of a feature that give the direction in which the robot looks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum FeatureFacing {
     Unknown,
@@ -48,7 +49,9 @@ enum ElementRole {
     X,
     Y,
     Z,
+    /// An angle counter-clockwise from +x, radians.
     Yaw,
+    /// The same angle in degrees.
     YawDeg,
     /// A component of a quaternion: 0 to 3 for x, y, z, w.
     Q(usize),
@@ -79,25 +82,27 @@ impl PoseFeature {
         let feature = feature.ok_or_else(|| {
             wrong(format!("poses = {named:?} is not a list of floating-point numbers; such lists: {}", listed()))
         })?;
-        let place =
+        let pose =
             Self::pose_in_feature(named, feature).map_err(|reason| wrong(format!("poses = {named:?}: {reason}")))?;
-        if matches!(place.facing, FeatureFacing::Yaw(..))
+        if matches!(pose.facing, FeatureFacing::Yaw(..))
             && described.world.is_some_and(|world| world != WorldUpAxis::ZUp)
         {
             return Err(wrong(format!("poses = {named:?}: a yaw turns about z, so `world` must be z-up")));
         }
-        Ok(Some(place))
+        Ok(Some(pose))
     }
 
     /// The pose of a feature that the user did not name. `None` unless its elements are x, y, perhaps z, and a yaw, and
     /// its name is not that of a command or of a part of the robot.
     fn unnamed_pose(key: &str, feature: &DatasetFeature) -> Option<Self> {
-        let place = Self::pose_in_feature(key, feature).ok()?;
-        let elements = 3 + usize::from(place.z.is_some());
-        let robot = !name_words(key).any(|word| NO_ROBOT.contains(&word.as_str()) || NO_PLACE.contains(&word.as_str()));
-        (robot && matches!(place.facing, FeatureFacing::Yaw(..)) && place.width == elements).then_some(place)
+        let pose = Self::pose_in_feature(key, feature).ok()?;
+        let elements = 3 + usize::from(pose.z.is_some());
+        let is_robot =
+            !name_words(key).any(|word| NO_ROBOT.contains(&word.as_str()) || NO_PLACE.contains(&word.as_str()));
+        (is_robot && matches!(pose.facing, FeatureFacing::Yaw(..)) && pose.width == elements).then_some(pose)
     }
 
+    /// The elements of a feature that form a pose. The error gives the reason why they form none.
     fn pose_in_feature(key: &str, feature: &DatasetFeature) -> Result<Self, String> {
         let names = feature.element_names().ok_or("its elements have no names")?;
         let roles: Vec<Option<ElementRole>> = names.iter().map(|name| element_role(name)).collect();
@@ -156,13 +161,14 @@ impl PoseFeature {
     /// The pose as it was recorded, from the same numbers.
     pub(super) fn sample_from_numbers(&self, numbers: &[f64]) -> Option<PoseSample> {
         let (position, facing) = self.split_numbers(numbers)?;
-        let held = match (self.facing, facing) {
+        let columns = match (self.facing, facing) {
             (FeatureFacing::Quaternion(_), [x, y, z, w]) => rotation_columns([*x, *y, *z, *w]),
             _ => None,
         };
-        Some(PoseSample { position, held })
+        Some(PoseSample { position, held: columns })
     }
 
+    /// The recorded position, and the numbers that give the direction.
     fn split_numbers<'a>(&self, numbers: &'a [f64]) -> Option<(DVec3, &'a [f64])> {
         let (place, facing) = numbers.split_at_checked(2 + usize::from(self.z.is_some()))?;
         Some((DVec3::new(*place.first()?, *place.get(1)?, place.get(2).copied().unwrap_or(0.0)), facing))

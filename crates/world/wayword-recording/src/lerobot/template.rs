@@ -3,7 +3,7 @@
 
 use std::path::{Component, Path, PathBuf};
 
-/// Widest number, digits.
+/// Most digits to which a template may pad a number with zeros; more is an error.
 const MAX_DIGITS: usize = 20;
 
 /// The value of a placeholder.
@@ -35,6 +35,7 @@ pub(super) fn fill_template(template: &str, values: &[(&str, TemplateValue<'_>)]
     Ok(path)
 }
 
+/// Whether a relative path does not lead out of its folder.
 fn is_below(path: &Path) -> bool {
     path.components().all(|part| matches!(part, Component::Normal(_)))
 }

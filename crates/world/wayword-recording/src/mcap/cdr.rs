@@ -1,4 +1,5 @@
-//! Reads CDR, the encoding of ROS 2 messages (OMG DDSI-RTPS 2.5, section 10.2; DDS-XTypes 1.3, section 7.4.1).
+//! Reads CDR (Common Data Representation), the encoding of ROS 2 messages (OMG DDSI-RTPS 2.5, section 10.2; DDS-XTypes 1.3,
+//! section 7.4.1).
 //!
 //! The first four bytes give the byte order. Each number after them is aligned to its own size, counted from the end of
 //! these four.
@@ -28,7 +29,7 @@ impl<'a> CdrReader<'a> {
             return Err(format!("byte 0: {why} (`ros2 bag convert`)"));
         }
         match head[..2] {
-            [0, way @ (0 | 1)] => Ok(Self { body, at: 0, big_endian: way == 0 }),
+            [0, byte_order @ (0 | 1)] => Ok(Self { body, at: 0, big_endian: byte_order == 0 }),
             _ => Err(format!("byte 0: is written as {:#04x}{:02x}, not as plain CDR", head[0], head[1])),
         }
     }

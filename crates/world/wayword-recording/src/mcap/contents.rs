@@ -1,5 +1,8 @@
 //! Finds the topics of an MCAP file, and the places of its messages.
 //!
+//! Each program that writes to a topic has a channel, and messages carry the channel's number. Messages lie in chunks, which may
+//! be compressed.
+//!
 //! The summary at the end of the file lists both. A file has no summary if its recorder crashed or was set to write none.
 //! Then the file is read through once, up to the byte at which it breaks off.
 
@@ -47,9 +50,10 @@ pub(crate) struct McapTopic {
 /// A part of a file in which messages follow each other.
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct MessageStretch {
+    /// Offsets in the file: of the first byte, and of the byte after the last.
     from: u64,
     to: u64,
-    /// `Some` if a chunk has to be here: the channels with messages in it, or an empty set if they are not listed.
+    /// `Some` if a chunk has to begin at `from`: the channels with messages in it, or an empty set if they are not listed.
     chunk: Option<BTreeSet<u16>>,
 }
 
@@ -137,14 +141,14 @@ impl McapContents {
     /// include its place.
     ///
     /// # Errors
-    /// When the file is broken at another place than [`McapContents::broken_at`], or `hear` fails.
+    /// When the file is broken at another place than [`McapContents::broken`], or `hear` fails.
     pub(crate) fn each_message(
         &self,
         file: &File,
         wanted: &TopicChannels<'_>,
         hear: &mut dyn FnMut(TopicMessage<'_>) -> Result<ControlFlow<()>, String>,
     ) -> Result<(), String> {
-        let most = |id| wanted.get(&id).map_or(0, |(_, kind)| kind.most_bytes());
+        let max_bytes = |id| wanted.get(&id).map_or(0, |(_, kind)| kind.most_bytes());
         let mut hear = |found: McapRecord<'_>| {
             if found.opcode == op::MESSAGE
                 && let Record::Message { header, data } = found.parse_record()?
@@ -166,7 +170,7 @@ impl McapContents {
             if chunk.is_some() {
                 records.enter_chunk()?;
             }
-            match records.each_record(&most, &mut hear) {
+            match records.each_record(&max_bytes, &mut hear) {
                 Ok(ControlFlow::Break(())) => break,
                 Ok(ControlFlow::Continue(())) => {}
                 Err(why) if self.broken.as_ref() == Some(&why) => {}
@@ -209,6 +213,7 @@ impl McapListing {
         records.each_record(&|_| 0, &mut take).map(drop)
     }
 
+    /// The topics of the channels that have messages.
     fn topics_with(&self, has_messages: impl Fn(&u16) -> bool) -> BTreeMap<String, McapTopic> {
         let mut topics = BTreeMap::new();
         for (id, channel) in self.channels.iter().filter(|(id, _)| has_messages(id)) {

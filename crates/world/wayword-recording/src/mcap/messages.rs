@@ -59,11 +59,13 @@ pub(crate) struct MessageHead {
     pub(crate) frame: String,
 }
 
+/// Reads the header with which most messages begin.
 fn read_head(cdr: &mut CdrReader<'_>) -> Result<MessageHead, String> {
     let (seconds, nanoseconds) = (cdr.read_i32()?, cdr.read_u32()?);
     Ok(MessageHead { stamp_ns: i64::from(seconds) * 1_000_000_000 + i64::from(nanoseconds), frame: read_frame(cdr)? })
 }
 
+/// Reads the name of a frame, without a slash before it.
 fn read_frame(cdr: &mut CdrReader<'_>) -> Result<String, String> {
     let frame = cdr.read_text()?;
     Ok(frame.strip_prefix('/').map_or(frame.clone(), str::to_owned))
@@ -135,11 +137,11 @@ impl CameraLens {
             cdr.read_f64()?;
         }
         let [focal_px, ..] = cdr.read_f64s::<9>()?;
-        let widths = f64::from(width_px) / focal_px;
+        let width_in_focal_lengths = f64::from(width_px) / focal_px;
         let fov = match distortion.as_str() {
             // In a fisheye picture, equal angles are equal distances.
-            "equidistant" | "fisheye" => widths,
-            _ => 2.0 * libm::atan(widths / 2.0),
+            "equidistant" | "fisheye" => width_in_focal_lengths,
+            _ => 2.0 * libm::atan(width_in_focal_lengths / 2.0),
         };
         let usual = 10_f64.to_radians()..=160_f64.to_radians();
         Ok(Self { head, horizontal_fov_rad: Some(fov).filter(|fov| usual.contains(fov)) })
@@ -161,8 +163,8 @@ impl RigidTransform {
     pub(crate) fn new(position: [f64; 3], rotation: [f64; 4]) -> Option<Self> {
         let (position, rotation) = (DVec3::from(position), DQuat::from_array(rotation));
         let length = rotation.length();
-        let stands = position.is_finite() && length.is_finite() && length > 1e-6;
-        stands.then(|| Self { position, rotation: rotation / length })
+        let is_valid = position.is_finite() && length.is_finite() && length > 1e-6;
+        is_valid.then(|| Self { position, rotation: rotation / length })
     }
 
     /// Composes two placings: `self` places a frame in an outer one, and `inner` places something in that frame. The result
@@ -200,9 +202,13 @@ pub(crate) fn read_transforms(kind: MessageKind, message: &[u8]) -> Result<Vec<S
     let mut all = Vec::with_capacity(count);
     for _ in 0..count {
         let head = read_head(&mut cdr)?;
-        let what = if kind == MessageKind::Pose { None } else { Some(read_frame(&mut cdr)?) };
+        let child_frame = if kind == MessageKind::Pose { None } else { Some(read_frame(&mut cdr)?) };
         let (position, rotation) = (cdr.read_f64s()?, cdr.read_f64s()?);
-        all.extend(RigidTransform::new(position, rotation).map(|placing| StampedTransform { head, what, placing }));
+        all.extend(RigidTransform::new(position, rotation).map(|placing| StampedTransform {
+            head,
+            what: child_frame,
+            placing,
+        }));
     }
     Ok(all)
 }

@@ -1,7 +1,9 @@
 //! Reads ROS 2 recordings from MCAP files (`ros2 bag record`, Foxglove): the pictures of one camera, and its poses.
 //!
-//! A camera's pose comes from a chain of transforms: of the camera on the robot, of the robot in its odometry, and of that
-//! in the map. Memory holds only the poses, and the places of the pictures in the file.
+//! A camera's pose comes from a chain of transforms: of the camera on the robot, of the robot in the frame of its odometry,
+//! and of that frame in the map. A placing is the position and rotation of one frame in another at one time.
+//!
+//! Memory holds only the poses, and the places of the pictures in the file.
 
 mod cdr;
 mod contents;
@@ -79,6 +81,7 @@ impl McapFile {
         files::file_error(&self.path, reason, hint)
     }
 
+    /// Finds the camera, and reads the times of its pictures and its track.
     fn read_recording(&self) -> Result<Recording, PlatformError> {
         self.check_magic()?;
         let broken = |why: String| {
@@ -95,8 +98,8 @@ impl McapFile {
         let named = self.named_poses(&contents).map_err(unclear)?;
         let frame = heads.get(camera).map_or("", |head| head.head.frame.as_str());
         let (mut shots, poses) = gather_messages(&file, &contents, camera, frame).map_err(broken)?;
-        let way = poses.choose_chain(named).map_err(unclear)?;
-        let (track, clock) = self.find_track(&shots, way.as_ref(), frame);
+        let chain = poses.choose_chain(named).map_err(unclear)?;
+        let (track, clock) = self.find_track(&shots, chain.as_ref(), frame);
         shots.retain(|shot| shot.times.time_on(clock).is_some());
         let time_ns = |shot: &PictureShot| shot.times.time_on(clock).unwrap_or_default();
         shots.sort_by_key(|shot| (time_ns(shot), shot.place));
@@ -132,33 +135,34 @@ impl McapFile {
     fn find_track(
         &self,
         shots: &[PictureShot],
-        way: Option<&TransformChain<'_>>,
+        chain: Option<&TransformChain<'_>>,
         frame: &str,
     ) -> (Option<CameraTrack>, MessageClock) {
-        let stamped = shots.iter().any(|shot| shot.times.time_on(MessageClock::Stamp).is_some());
-        let usual = if stamped { MessageClock::Stamp } else { MessageClock::Log };
-        let Some(way) = way else { return (None, usual) };
-        let on = |clock: MessageClock| {
+        let has_stamps = shots.iter().any(|shot| shot.times.time_on(MessageClock::Stamp).is_some());
+        let usual_clock = if has_stamps { MessageClock::Stamp } else { MessageClock::Log };
+        let Some(chain) = chain else { return (None, usual_clock) };
+        let track_on = |clock: MessageClock| {
             let times = shots.iter().filter_map(|shot| shot.times.time_on(clock));
             let (first_ns, last_ns) = (times.clone().min()?, times.max()?);
-            let placings = way.chain_placings(clock);
-            let meet = placings.first()?.0 <= last_ns && placings.last()?.0 >= first_ns;
-            let axes = self.described.axes_or_usual(PoseAxes::for_body(if way.of_camera {
+            let placings = chain.chain_placings(clock);
+            let overlaps = placings.first()?.0 <= last_ns && placings.last()?.0 >= first_ns;
+            let axes = self.described.axes_or_usual(PoseAxes::for_body(if chain.of_camera {
                 body_for_frame(&placings, frame)
             } else {
                 PoseBody::Robot
             }));
-            let track = meet.then(|| fixes_from_placings(&placings, first_ns, axes)).and_then(CameraTrack::new)?;
+            let track = overlaps.then(|| fixes_from_placings(&placings, first_ns, axes)).and_then(CameraTrack::new)?;
             Some(match find_doubt(&samples_from_placings(&placings), axes, &self.described) {
                 Some(doubt) => track.in_doubt(format!("{}: {}", self.path.display(), doubt.into_words())),
                 None => track,
             })
         };
-        let clocks = if stamped { &[MessageClock::Stamp, MessageClock::Log][..] } else { &[MessageClock::Log] };
-        clocks.iter().find_map(|clock| Some((Some(on(*clock)?), *clock))).unwrap_or((None, usual))
+        let clocks = if has_stamps { &[MessageClock::Stamp, MessageClock::Log][..] } else { &[MessageClock::Log] };
+        clocks.iter().find_map(|clock| Some((Some(track_on(*clock)?), *clock))).unwrap_or((None, usual_clock))
     }
 }
 
+/// Placings of the camera as fixes in Wayword's frame.
 fn fixes_from_placings(placings: &[(i64, RigidTransform)], first_ns: i64, axes: PoseAxes) -> Vec<TrackFix> {
     let fix = |(time_ns, placing): &(i64, RigidTransform)| TrackFix {
         time_s: seconds_since(*time_ns, first_ns),
@@ -168,7 +172,7 @@ fn fixes_from_placings(placings: &[(i64, RigidTransform)], first_ns: i64, axes: 
     placings.iter().map(fix).collect()
 }
 
-/// The poses as they were recorded.
+/// Placings of the camera as poses in the recorded frame.
 fn samples_from_placings(placings: &[(i64, RigidTransform)]) -> Vec<PoseSample> {
     let sample = |(_, placing): &(i64, RigidTransform)| PoseSample {
         position: DVec3::from(placing.position.to_array()),
@@ -178,7 +182,8 @@ fn samples_from_placings(placings: &[(i64, RigidTransform)]) -> Vec<PoseSample> 
 }
 
 /// The body that the frame of the pictures belongs to. By `sensor_msgs/msg/Image` it should be the optical frame, but some
-/// recorders name the camera's body. A camera does not look straight up, so a frame with its z axis pointing up is a body.
+/// recorders name the camera's body. An optical frame has its z axis ahead, and a camera does not look
+/// straight up. So a frame with z within 37 degrees of up is a body.
 fn body_for_frame(placings: &[(i64, RigidTransform)], frame: &str) -> PoseBody {
     let upright = placings.first().is_some_and(|(_, placing)| (placing.rotation * Vector::Z).z > 0.8);
     if upright && !frame.contains("optical") { PoseBody::Robot } else { PoseBody::Optical }
@@ -223,6 +228,7 @@ fn read_beginnings(
     let wanted = contents.channels_where(|_, kind| kind.is_picture() || kind == MessageKind::Lens);
     let mut missing: BTreeSet<&str> = wanted.values().map(|(topic, _)| *topic).collect();
     contents.each_message(file, &wanted, &mut |TopicMessage { topic, kind, bytes, .. }| {
+        // Only the first message of a topic counts.
         if !missing.remove(topic) {
         } else if kind == MessageKind::Lens {
             // A lens that cannot be read counts as unknown.

@@ -35,7 +35,7 @@ pub(crate) fn decode_picture(kind: MessageKind, message: &[u8]) -> Result<Image,
     }
 }
 
-/// The layout of the pixels in a row.
+/// How the pixels of a row are written.
 #[derive(Clone, Copy)]
 enum RosPixelLayout {
     /// Bytes per pixel, and which of them are red, green and blue.
@@ -120,6 +120,7 @@ fn decode_yuv422(row: &[u8], [first, u]: [usize; 2], rgb: &mut Vec<u8>) {
         let chroma = |at: usize| if pair.len() == 4 { i32::from(pair[at]) - 128 } else { 0 };
         let (blue, red) = (chroma(u), chroma(u + 2));
         for y in pair.iter().skip(first).step_by(2) {
+            // The factors of the standard in 256ths.
             let light = 298 * (i32::from(*y) - 16) + 128;
             let colours = [light + 409 * red, light - 100 * blue - 208 * red, light + 516 * blue];
             rgb.extend(colours.map(|colour| (colour >> 8).clamp(0, 255) as u8));
@@ -132,13 +133,14 @@ fn decode_bayer(rows: [&[u8]; 3], y: usize, [red_x, red_y]: [usize; 2], rgb: &mu
     let width = rows[1].len();
     for x in 0..width {
         let (mut sums, mut counts) = ([0_u32; 3], [0_u32; 3]);
-        for (row, dy) in rows.iter().zip([1, 0, 1]) {
+        // The rows above and below have the other parity than row `y`.
+        for (row, row_parity) in rows.iter().zip([1, 0, 1]) {
             for column in x.saturating_sub(1)..=(x + 1).min(width - 1) {
                 // At the edge the row itself replaces the missing one. It has other colours, so it does not count.
-                let doubled = dy == 1 && std::ptr::eq(row.as_ptr(), rows[1].as_ptr());
-                if !doubled {
-                    let off_red = [(column + red_x) % 2, (y + dy + red_y) % 2];
-                    let colour = off_red[0] + off_red[1];
+                let is_edge_copy = row_parity == 1 && std::ptr::eq(row.as_ptr(), rows[1].as_ptr());
+                if !is_edge_copy {
+                    let steps_from_red = [(column + red_x) % 2, (y + row_parity + red_y) % 2];
+                    let colour = steps_from_red[0] + steps_from_red[1];
                     sums[colour] += u32::from(row[column]);
                     counts[colour] += 1;
                 }

@@ -1,4 +1,5 @@
-//! Finds the poses of the camera, in the tree of frames, odometry, or poses.
+//! Finds the messages that give the poses of the camera: first in the tree of frames (`tf`), then in odometry, then in topics
+//! of poses.
 
 use super::{
     messages::{MessageHead, MessageKind, RigidTransform, StampedTransform},
@@ -27,6 +28,7 @@ struct TopicPoses {
     kind: MessageKind,
     /// The frame that is placed, if the messages name it.
     what: Option<String>,
+    /// Its poses over time, as one edge of the tree.
     edge: TransformEdge,
 }
 
@@ -34,7 +36,7 @@ struct TopicPoses {
 #[derive(Debug)]
 pub(crate) struct TransformChain<'a> {
     edges: Vec<&'a TransformEdge>,
-    /// Whether the way begins at the camera's own frame.
+    /// Whether the chain begins at the camera's own frame.
     pub(crate) of_camera: bool,
 }
 
@@ -50,52 +52,55 @@ impl RecordedPoses {
                 self.tree.add_placed(logged_ns, placed, topic.ends_with("tf_static"));
                 continue;
             }
-            let StampedTransform { head: MessageHead { stamp_ns, frame }, what, placing } = placed;
+            let StampedTransform { head: MessageHead { stamp_ns, frame }, what: child_frame, placing } = placed;
             if !self.topics.contains_key(topic) {
                 let edge = TransformEdge { parent: frame, ..TransformEdge::default() };
-                self.topics.insert(topic.to_owned(), TopicPoses { kind, what, edge });
+                self.topics.insert(topic.to_owned(), TopicPoses { kind, what: child_frame, edge });
             }
-            if let Some(moves) = self.topics.get_mut(topic) {
-                moves.edge.samples.push((MessageTimes { stamp_ns, logged_ns }, placing));
+            if let Some(poses) = self.topics.get_mut(topic) {
+                poses.edge.samples.push((MessageTimes { stamp_ns, logged_ns }, placing));
             }
         }
     }
 
-    /// The way by the named topic, or else by the obvious one. `None` if the file has no poses of the camera.
+    /// The chain of the named topic, or else of the obvious one. `None` if the file has no poses of the camera.
     pub(crate) fn choose_chain(
         &self,
         named: Option<(&str, MessageKind)>,
     ) -> Result<Option<TransformChain<'_>>, UnclearReason> {
         match named {
             Some((topic, MessageKind::Transforms)) => {
-                let way = self.tree.way_up(true).map(|edges| Some(TransformChain { edges, of_camera: true }));
-                way.ok_or_else(|| (self.describe_incomplete(topic), "name another topic as `poses`, or leave it out"))
+                let chain = self.tree.way_up(true).map(|edges| Some(TransformChain { edges, of_camera: true }));
+                chain.ok_or_else(|| (self.describe_incomplete(topic), "name another topic as `poses`, or leave it out"))
             }
-            Some((topic, _)) => Ok(self.topics.get(topic).map(|moves| self.chain_for_topic(moves))),
+            Some((topic, _)) => Ok(self.topics.get(topic).map(|poses| self.chain_for_topic(poses))),
             None => self.obvious_chain(),
         }
     }
 
+    /// The reason why the tree of frames gives no chain, for the user who named its topic.
     fn describe_incomplete(&self, topic: &str) -> String {
         let above = self.tree.frames_above(&self.camera).join(" in ");
         format!("{topic} does not say how the camera moved: its frame is {above}, which never moves or has no parent")
     }
 
+    /// The chain without a named topic: of the tree of frames, else of the only topic with odometry, else of the only one
+    /// with poses.
     fn obvious_chain(&self) -> Result<Option<TransformChain<'_>>, UnclearReason> {
         if let Some(edges) = self.tree.way_up(false) {
             return Ok(Some(TransformChain { edges, of_camera: true }));
         }
         for kind in [MessageKind::Odometry, MessageKind::Pose] {
-            let wished = |name: &str| {
+            let is_goal = |name: &str| {
                 kind == MessageKind::Pose && GOAL_WORDS.iter().any(|word| name.to_ascii_lowercase().contains(word))
             };
-            let of_kind = self.topics.iter().filter(|(name, moves)| moves.kind == kind && !wished(name));
-            let found: Vec<(&String, &TopicPoses)> = of_kind.collect();
-            match found[..] {
+            let of_kind = self.topics.iter().filter(|(name, poses)| poses.kind == kind && !is_goal(name));
+            let own_poses: Vec<(&String, &TopicPoses)> = of_kind.collect();
+            match own_poses[..] {
                 [] => {}
-                [(_, moves)] => return Ok(Some(self.chain_for_topic(moves))),
+                [(_, poses)] => return Ok(Some(self.chain_for_topic(poses))),
                 _ => {
-                    let names = list_names(found.iter().map(|(name, _)| name.as_str()));
+                    let names = list_names(own_poses.iter().map(|(name, _)| name.as_str()));
                     return Err((format!("has several pose topics: {names}"), NAME_IT));
                 }
             }
@@ -103,17 +108,18 @@ impl RecordedPoses {
         Ok(None)
     }
 
-    /// The way that a topic gives. It begins at the camera's frame if the mounting of the camera on the robot is known.
-    fn chain_for_topic<'a>(&'a self, moves: &'a TopicPoses) -> TransformChain<'a> {
-        let mounted = moves.what.as_ref().and_then(|what| self.tree.up_to(what));
-        let of_camera = mounted.is_some();
+    /// The chain that a topic gives. It begins at the camera's frame if the mounting of the camera on the robot is known.
+    fn chain_for_topic<'a>(&'a self, poses: &'a TopicPoses) -> TransformChain<'a> {
+        let mounted = poses.what.as_ref().and_then(|what| self.tree.up_to(what));
+        let is_mounting_known = mounted.is_some();
         let mut edges = mounted.unwrap_or_default();
-        edges.push(&moves.edge);
-        TransformChain { edges, of_camera }
+        edges.push(&poses.edge);
+        TransformChain { edges, of_camera: is_mounting_known }
     }
 }
 
 impl TransformChain<'_> {
+    /// The placings of the chain's first frame in its last one, in the order of their times (nanoseconds) on a clock.
     pub(crate) fn chain_placings(&self, clock: MessageClock) -> Vec<(i64, RigidTransform)> {
         placings_along(&self.edges, clock)
     }

@@ -48,6 +48,7 @@ impl<'a> McapRecord<'a> {
 /// a text's length asks for before it checks whether the bytes are there.
 fn texts_fit(opcode: u8, body: &[u8]) -> Option<()> {
     let mut rest = body;
+    // The numbers are the bytes before each text, as in the specification of MCAP.
     match opcode {
         op::SCHEMA => drop((next_text(&mut rest, 2)?, next_text(&mut rest, 0)?)),
         op::CHUNK_INDEX => drop((next_text(&mut rest, 32)?, next_text(&mut rest, 8)?)),
@@ -65,9 +66,9 @@ fn texts_fit(opcode: u8, body: &[u8]) -> Option<()> {
     Some(())
 }
 
-/// The bytes of a text: its length follows after `further` bytes, and then the text itself.
-fn next_text<'a>(rest: &mut &'a [u8], further: usize) -> Option<&'a [u8]> {
-    let (count, behind) = rest.get(further..)?.split_first_chunk()?;
+/// Skips `before_bytes` bytes, and takes the text that follows: first its length, then the text itself.
+fn next_text<'a>(rest: &mut &'a [u8], before_bytes: usize) -> Option<&'a [u8]> {
+    let (count, behind) = rest.get(before_bytes..)?.split_first_chunk()?;
     let (text, behind) = behind.split_at_checked(usize::try_from(u32::from_le_bytes(*count)).ok()?)?;
     *rest = behind;
     Some(text)

@@ -21,7 +21,7 @@ const HEAD_BYTES: u64 = 9;
 const CHUNK_HEAD_BYTES: u64 = 40;
 /// Bytes of a message's body before its payload.
 const MESSAGE_HEAD_BYTES: u64 = 22;
-/// Longest schema, channel or index of a chunk's messages.
+/// Longest schema, channel or index of a chunk's messages, bytes; of a longer record only this many are read.
 const MAX_RECORD_BYTES: u64 = 64 << 20;
 /// Bytes that are read from the file at once: a picture's head is short, and the rest may be skipped.
 const BUFFER_BYTES: usize = 16 << 10;
@@ -46,7 +46,9 @@ pub(crate) struct RecordReader<'a> {
     end: u64,
     /// End of the chunk that was entered last, if it is not compressed.
     chunk_end: u64,
+    /// The compressed chunk that is open.
     packed: Option<PackedChunk>,
+    /// The bytes of the last record that were read.
     body: Vec<u8>,
 }
 
@@ -135,6 +137,8 @@ impl<'a> RecordReader<'a> {
         let from = self.at;
         let end = from.saturating_add(HEAD_BYTES).saturating_add(length).min(self.end);
         let head = self.read_exactly::<{ CHUNK_HEAD_BYTES as usize }>()?;
+        // A chunk's head: two times, at 16 the unpacked length, a checksum, at 28 the length of the compression's name, the name
+        // (empty if not compressed), and then the length of the records.
         let is_packed = head[28..32] != [0; 4];
         // The crate handles all unusual chunks.
         if !is_packed && u64_at(&head, 32).checked_add(CHUNK_HEAD_BYTES) == Some(length) {
@@ -158,6 +162,7 @@ impl<'a> RecordReader<'a> {
     /// Reads the needed first bytes of a body and skips the rest. Returns whether the record concerns messages.
     fn read_body(&mut self, opcode: u8, length: u64, most: &MostBytes<'_>) -> Result<bool, String> {
         self.body.clear();
+        // The first two bytes of a message are its channel, which determines how many bytes are needed.
         let begun = length.min(2);
         self.append_bytes(begun)?;
         let wanted = wanted_bytes(opcode, &self.body, most);
@@ -168,6 +173,7 @@ impl<'a> RecordReader<'a> {
         Ok(wanted.is_some())
     }
 
+    /// Reads bytes of the file to the end of `body`.
     fn append_bytes(&mut self, count: u64) -> Result<(), String> {
         // Memory grows only with the bytes that the file really has.
         match self.file.by_ref().take(count).read_to_end(&mut self.body) {
@@ -246,6 +252,7 @@ fn wanted_bytes(opcode: u8, body: &[u8], most: &MostBytes<'_>) -> Option<u64> {
     }
 }
 
+/// The little-endian number at an offset; 0 if the bytes end before it does.
 fn u64_at(bytes: &[u8], at: usize) -> u64 {
     bytes.get(at..).and_then(<[u8]>::first_chunk).copied().map_or(0, u64::from_le_bytes)
 }

@@ -1,4 +1,4 @@
-//! The pictures of one topic.
+//! The pictures of one topic, which are read from the file and decoded one by one.
 
 use super::{MCAP_HINT, messages::MessageKind, pixels, record::RecordPlace, records::RecordReader};
 use crate::reel::{PictureReel, TakePicture};
@@ -54,7 +54,7 @@ impl TopicReel {
     fn read_picture(&self, records: &mut RecordReader<'_>, place: RecordPlace) -> Result<Image, String> {
         let mut picture = Err("the message is no longer there".to_owned());
         records.go_to(place)?;
-        let heard = records.each_record(&|_| MAX_MESSAGE_BYTES, &mut |found| {
+        let read = records.each_record(&|_| MAX_MESSAGE_BYTES, &mut |found| {
             if found.place == place
                 && let Record::Message { data, .. } = found.parse_record()?
             {
@@ -62,6 +62,6 @@ impl TopicReel {
             }
             Ok(if found.place < place { ControlFlow::Continue(()) } else { ControlFlow::Break(()) })
         });
-        heard.and(picture.map_err(|why| format!("message at {place}: {why}")))
+        read.and(picture.map_err(|why| format!("message at {place}: {why}")))
     }
 }

@@ -1,4 +1,4 @@
-//! Chooses the topic of a file that is the camera, and the topic of its lens.
+//! Chooses the topic with the camera's pictures, and the topic that describes the camera's lens.
 
 use super::{
     contents::McapContents,
@@ -8,7 +8,7 @@ use super::{
 };
 use std::collections::BTreeMap;
 
-/// Most names that an error lists.
+/// Most names that an error lists; it gives the number of the others.
 const MAX_NAMES: usize = 20;
 /// Words in the names of topics with pictures of another kind than a person would see.
 const NO_VIEW: [&str; 9] = ["depth", "disparity", "infra", "thermal", "mask", "segment", "semantic", "label", "debug"];
@@ -52,14 +52,15 @@ pub(crate) fn choose_camera<'a>(
             None => Err((not_there(contents, named), "name one of these, or leave `camera` out")),
         };
     }
-    let fit: Vec<&str> = cameras.iter().filter(|(_, why)| why.is_none()).map(|(name, _)| *name).collect();
-    match obvious_camera(&fit) {
+    let readable: Vec<&str> = cameras.iter().filter(|(_, why)| why.is_none()).map(|(name, _)| *name).collect();
+    match obvious_camera(&readable) {
         Some(camera) => Ok(camera),
-        None if fit.is_empty() => Err(no_camera(contents, &cameras)),
-        None => Err((format!("holds several cameras: {}", list_names(fit.into_iter())), NAME_IT)),
+        None if readable.is_empty() => Err(no_camera(contents, &cameras)),
+        None => Err((format!("holds several cameras: {}", list_names(readable.into_iter())), NAME_IT)),
     }
 }
 
+/// The reason why a topic that the user named is no camera.
 fn not_there(contents: &McapContents, named: &str) -> String {
     match contents.topics.get(named) {
         Some(topic) => format!("{named} has no pictures, but {}", describe_topic(topic)),
@@ -69,6 +70,7 @@ fn not_there(contents: &McapContents, named: &str) -> String {
     }
 }
 
+/// The error for a file without a camera that can be read.
 fn no_camera(contents: &McapContents, cameras: &[(&str, Option<String>)]) -> UnclearReason {
     if !cameras.is_empty() {
         let why = cameras.iter().map(|(name, why)| format!("{name}: {}", why.as_deref().unwrap_or_default()));
@@ -94,6 +96,7 @@ fn describe_topic(topic: &McapTopic) -> String {
     }
 }
 
+/// Names in one line, cut after the first [`MAX_NAMES`].
 pub(crate) fn list_names<'a>(names: impl Iterator<Item = &'a str>) -> String {
     let names: Vec<&str> = names.collect();
     match names.len().saturating_sub(MAX_NAMES) {
@@ -102,18 +105,18 @@ pub(crate) fn list_names<'a>(names: impl Iterator<Item = &'a str>) -> String {
     }
 }
 
-/// The obvious camera among those that can be read: the only one; else the only one without depth and the like and without
-/// doubles; else the only one of these with colour in its name.
-fn obvious_camera<'a>(fit: &[&'a str]) -> Option<&'a str> {
+/// The obvious camera among those that can be read: the only one; else the only one that a person would see
+/// and that is not also there in compressed form; else the only one of these with colour in its name.
+fn obvious_camera<'a>(readable: &[&'a str]) -> Option<&'a str> {
     let only = |names: &[&'a str]| if let [name] = names { Some(*name) } else { None };
     let has = |name: &str, words: &[&str]| words.iter().any(|word| name.to_ascii_lowercase().contains(word));
-    let seen: Vec<&str> = fit.iter().copied().filter(|name| !has(name, &NO_VIEW)).collect();
+    let candidates: Vec<&str> = readable.iter().copied().filter(|name| !has(name, &NO_VIEW)).collect();
     // The same pictures compressed are a fraction of the bytes.
-    let doubled =
-        |name: &str| seen.iter().any(|other| *other != name && other.strip_suffix("/compressed") == Some(name));
-    let seen: Vec<&str> = seen.iter().copied().filter(|name| !doubled(name)).collect();
-    let colour: Vec<&str> = seen.iter().copied().filter(|name| has(name, &COLOUR_WORDS)).collect();
-    only(fit).or_else(|| only(&seen)).or_else(|| only(&colour))
+    let has_compressed_twin =
+        |name: &str| candidates.iter().any(|other| *other != name && other.strip_suffix("/compressed") == Some(name));
+    let candidates: Vec<&str> = candidates.iter().copied().filter(|name| !has_compressed_twin(name)).collect();
+    let colour: Vec<&str> = candidates.iter().copied().filter(|name| has(name, &COLOUR_WORDS)).collect();
+    only(readable).or_else(|| only(&candidates)).or_else(|| only(&colour))
 }
 
 /// A camera's lens: that of the neighbouring topic, else those with the same frame if all of them have one field of view.

@@ -1,11 +1,11 @@
-//! The tree of frames that are placed in each other (`tf2`), over time.
+//! The tree of coordinate frames that ROS publishes (`tf2`): each frame is placed in its parent, at many times.
 
 use super::messages::{RigidTransform, StampedTransform};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Names of fixed frames, the best first (REP 105).
 const STANDING_FRAMES: [&str; 3] = ["map", "odom", "world"];
-/// Most frames of a file: no robot has more.
+/// Most frames of a file; further ones are ignored. No robot has so many.
 const MAX_FRAMES: usize = 100_000;
 
 /// The clock by which times are read.
@@ -41,10 +41,12 @@ pub(crate) struct TransformEdge {
     pub(crate) parent: String,
     /// Whether it never moves.
     pub(crate) fixed: bool,
+    /// In the order of the file.
     pub(crate) samples: Vec<(MessageTimes, RigidTransform)>,
 }
 
 impl TransformEdge {
+    /// Whether the frame moves in its parent.
     fn is_moving(&self) -> bool {
         !self.fixed && self.samples.len() > 1
     }
@@ -71,6 +73,7 @@ const MAX_GAP_NS: i64 = 10_000_000_000;
 
 /// An edge on one clock.
 pub(crate) struct TimedEdge {
+    /// Placings with their times, nanoseconds, ascending; a single one if the frame does not move.
     samples: Vec<(i64, RigidTransform)>,
     moves: bool,
 }
@@ -122,6 +125,7 @@ pub(crate) struct TransformTree {
 }
 
 impl TransformTree {
+    /// An empty tree for the camera with this frame.
     pub(crate) fn new(camera: &str) -> Self {
         Self { camera: camera.to_owned(), ..Self::default() }
     }
@@ -152,6 +156,7 @@ impl TransformTree {
         }
     }
 
+    /// Once the way from the camera's frame up to a fixed frame is known, drops all frames that are not on it.
     fn forget_others(&mut self) {
         let above = self.frames_above(&self.camera);
         let root = above.last().copied().unwrap_or_default();

@@ -127,13 +127,13 @@ fn check_reports_all_unreadable_recordings_of_the_scenes() {
     let shelf = with_unreadable();
     let (platform, ..) = open(&shelf);
     let scenes: Vec<SceneId> = ["a", "b", "phone", "torn", "elsewhere"].map(|name| SceneId::new(name).unwrap()).into();
-    let told = platform.check_scenes(&scenes.iter().collect()).unwrap_err().to_string();
+    let told = platform.files().check_scenes(&scenes.iter().collect()).unwrap_err().to_string();
     assert!(told.contains("2 of 4 recordings cannot be read") && told.contains("--scan"), "{told}");
     assert!(told.contains("1.jpg: is an HEIC picture") && told.contains("heif-convert"), "{told}");
     assert!(told.contains("torn/1.png: cannot be decoded as a picture"), "{told}");
-    platform.check_scenes(&scenes[..2].iter().collect()).unwrap();
+    platform.files().check_scenes(&scenes[..2].iter().collect()).unwrap();
     let alone = RecordingPlatform::open(&shelf.path().join("phone"), Arc::new(|_: &str| {})).unwrap();
-    let told = alone.check_scenes(&scenes.iter().collect()).unwrap_err().to_string();
+    let told = alone.files().check_scenes(&scenes.iter().collect()).unwrap_err().to_string();
     assert!(told.contains("1.jpg: is an HEIC picture, neither PNG nor JPEG"), "{told}");
     assert!(alone.graph_for_scene(&scenes[2]).unwrap_err().to_string().contains("HEIC"));
 }
@@ -144,8 +144,8 @@ fn an_unopened_recording_reports_its_error_when_used() {
     std::fs::write(shelf.path().join("b/2.heic"), b"\0\0\0\x1cftypheic\0\0\0\0mif1heic").unwrap();
     let (platform, ..) = open(&shelf);
     let [a, b] = ["a", "b"].map(|name| SceneId::new(name).unwrap());
-    platform.check_scenes(&BTreeSet::from([&a])).unwrap();
-    let told = platform.check_scenes(&BTreeSet::from([&a, &b])).unwrap_err().to_string();
+    platform.files().check_scenes(&BTreeSet::from([&a])).unwrap();
+    let told = platform.files().check_scenes(&BTreeSet::from([&a, &b])).unwrap_err().to_string();
     assert!(told.contains("1 of 4 recordings cannot be read"), "{told}");
     assert!(told.contains("holds pictures, but 2.heic is an HEIC picture"), "{told}");
     assert!(platform.graph_for_scene(&b).unwrap_err().to_string().contains("2.heic"));
@@ -153,7 +153,7 @@ fn an_unopened_recording_reports_its_error_when_used() {
 
 /// The names of the files that a scene is read from.
 fn files(platform: &RecordingPlatform, scene: &str) -> Vec<String> {
-    let files = platform.source_files(&SceneId::new(scene).unwrap()).unwrap();
+    let files = platform.files().source_files(&SceneId::new(scene).unwrap()).unwrap();
     files.iter().map(|file| file.file_name().unwrap().to_str().unwrap().to_owned()).collect()
 }
 
@@ -173,7 +173,10 @@ fn files_of_a_folder_are_its_pictures_poses_and_description() {
     let (platform, ..) = open(&shelf);
     assert_eq!(files(&platform, "a"), ["1.png", "2.png", "poses.csv", "recording.toml"]);
     assert_eq!(files(&platform, "b"), ["1.png"]);
-    assert!(matches!(platform.source_files(&SceneId::new("c").unwrap()), Err(PlatformError::UnknownScene { .. })));
+    assert!(matches!(
+        platform.files().source_files(&SceneId::new("c").unwrap()),
+        Err(PlatformError::UnknownScene { .. })
+    ));
 }
 
 #[cfg(all(feature = "mcap", feature = "video"))]

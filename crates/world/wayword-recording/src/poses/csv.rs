@@ -4,26 +4,36 @@ use super::rows::{PoseFacing, PoseKey, PoseRow, PoseRows, parse_number, seconds_
 use crate::axes::{PoseAxes, PoseBody};
 use wayword_core::DVec3;
 
-/// The number of each column that is read.
+/// The number of each column that is read, from 0.
 struct CsvColumns {
     of: CsvKeyColumn,
+    /// The columns of x, y and z. A file without heights has the column of x in the place of z.
     position: [usize; 3],
     facing: CsvFacing,
 }
 
+/// The column that gives the time or the picture of a row.
 enum CsvKeyColumn {
     Time { column: usize, unit: Option<&'static str> },
     Picture(usize),
 }
 
+/// The columns that give the direction in which the body looks.
 enum CsvFacing {
+    /// There are none.
     Nowhere,
     Quaternion([usize; 4]),
-    Yaw { column: usize, per_unit_rad: f64 },
-    Heading { column: usize, per_unit_rad: f64 },
+    Yaw {
+        column: usize,
+        per_unit_rad: f64,
+    },
+    Heading {
+        column: usize,
+        per_unit_rad: f64,
+    },
 }
 
-/// The beginning of EuRoC's names for positions.
+/// The beginning of the columns' names for positions in EuRoC (a dataset of flights).
 const EUROC_POSITION: &str = "p_rs_r_";
 const HEADER_HINT: &str = "the header needs a column `time_s` or `image`, and `x`, `y`, `z`; `qx`, `qy`, `qz`, `qw`, \
                       `yaw_rad` or `heading_deg` say where the camera looks";
@@ -53,17 +63,18 @@ struct CsvCells<'a> {
 
 impl<'a> CsvCells<'a> {
     fn from_line(line: &'a str) -> Self {
-        let between = if line.contains(';') && !line.contains(',') { ';' } else { ',' };
+        let separator = if line.contains(';') && !line.contains(',') { ';' } else { ',' };
         let is_plain = |cell: &&str| !cell.starts_with('"') || (cell.len() > 1 && cell.ends_with('"'));
-        let cells = || line.split(between).map(str::trim);
+        let cells = || line.split(separator).map(str::trim);
         let plain: Vec<&str> = cells().take_while(is_plain).map(|cell| cell.trim_matches('"')).collect();
-        let held = (plain.len() < cells().count()).then_some(between);
-        Self { plain, held }
+        let separator_in_cell = (plain.len() < cells().count()).then_some(separator);
+        Self { plain, held: separator_in_cell }
     }
 
+    /// The text of a cell.
     fn get(&self, column: usize) -> Result<&'a str, String> {
         self.plain.get(column).copied().ok_or_else(|| match self.held {
-            Some(between) => format!("a quoted cell contains {between:?}, which cannot be read"),
+            Some(separator) => format!("a quoted cell contains {separator:?}, which cannot be read"),
             None => format!("has too few cells ({})", self.plain.len()),
         })
     }
@@ -83,6 +94,7 @@ fn name_of(cell: &str) -> String {
 }
 
 impl CsvColumns {
+    /// Finds the columns by their names; `None` without a time or picture, or without x and y.
     fn from_names(names: &[String]) -> Option<Self> {
         let find = |name: &str| names.iter().position(|other| other == name);
         let any = |names: &[&str]| names.iter().find_map(|name| find(name));
@@ -96,10 +108,10 @@ impl CsvColumns {
             });
             with_unit.or(bare)
         };
-        let of = any(&["image", "file", "filename", "picture", "name"]).map(CsvKeyColumn::Picture).or_else(time)?;
+        let key = any(&["image", "file", "filename", "picture", "name"]).map(CsvKeyColumn::Picture).or_else(time)?;
         let axis = |axis: &str| any(&[axis, &format!("t{axis}"), &format!("p{axis}"), &format!("{axis}_m")]);
         Some(Self {
-            of,
+            of: key,
             position: [axis("x")?, axis("y")?, axis("z").or_else(|| axis("x"))?],
             facing: CsvFacing::from_columns(&find),
         })
@@ -108,7 +120,7 @@ impl CsvColumns {
     fn read_row(&self, cells: &CsvCells<'_>) -> Result<PoseRow, String> {
         let cell = |column: usize| cells.get(column);
         let value = |column: usize| parse_number(cell(column)?);
-        let of = match self.of {
+        let key = match self.of {
             CsvKeyColumn::Time { column, unit } => PoseKey::Time(seconds_in_unit(value(column)?, unit)),
             CsvKeyColumn::Picture(column) => PoseKey::Picture(cell(column)?.to_owned()),
         };
@@ -122,7 +134,7 @@ impl CsvColumns {
             CsvFacing::Yaw { column, per_unit_rad } => PoseFacing::Yaw(value(column)? * per_unit_rad),
             CsvFacing::Heading { column, per_unit_rad } => PoseFacing::Heading(value(column)? * per_unit_rad),
         };
-        Ok(PoseRow { of, position, facing })
+        Ok(PoseRow { of: key, position, facing })
     }
 }
 

@@ -49,16 +49,17 @@ pub(super) fn read_json(text: &str) -> Result<PoseRows, String> {
     let value: serde_json::Value = serde_json::from_str(text).map_err(|error| error.to_string())?;
     match PoseFile::deserialize(value).map_err(|_| EXPECTED_JSON.to_owned())? {
         PoseFile::Transforms { frames } => {
-            let rows = frames.into_iter().enumerate().map(|(at, framed)| framed.into_row().ok_or((at, "frame")));
+            let rows = frames.into_iter().enumerate().map(|(at, frame)| frame.into_row().ok_or((at, "frame")));
             rows_of(PoseAxes::for_body(PoseBody::OpenGl), rows)
         }
         PoseFile::Poses { poses } | PoseFile::List(poses) => {
-            let rows = poses.into_iter().enumerate().map(|(at, posed)| posed.into_row().ok_or((at, "pose")));
+            let rows = poses.into_iter().enumerate().map(|(at, pose)| pose.into_row().ok_or((at, "pose")));
             rows_of(PoseAxes::for_body(PoseBody::Robot), rows)
         }
     }
 }
 
+/// Collects rows with the usual axes of their format. A row that is no pose is given as its number and its kind.
 fn rows_of(
     usual: PoseAxes,
     rows: impl Iterator<Item = Result<PoseRow, (usize, &'static str)>>,
@@ -81,7 +82,7 @@ impl NerfFrame {
 
 impl JsonPose {
     fn into_row(self) -> Option<PoseRow> {
-        let of = match (self.image, self.time_s) {
+        let key = match (self.image, self.time_s) {
             (Some(image), _) => PoseKey::Picture(image),
             (None, Some(time_s)) => PoseKey::Time(seconds_in_unit(time_s, Some("s"))),
             (None, None) => return None,
@@ -92,6 +93,6 @@ impl JsonPose {
             (.., Some(rad)) => PoseFacing::Yaw(rad),
             _ => PoseFacing::Unknown,
         };
-        Some(PoseRow { of, position: DVec3::from_array(self.position), facing })
+        Some(PoseRow { of: key, position: DVec3::from_array(self.position), facing })
     }
 }

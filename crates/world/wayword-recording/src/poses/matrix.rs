@@ -16,6 +16,7 @@ pub(super) fn read_matrix(text: &str) -> Result<PoseRows, String> {
         let numbers: Vec<f64> = line
             .split([' ', '\t', ','])
             .filter(|word| !word.is_empty())
+            // One more than the longest valid line has, so that a longer line is noticed.
             .take(13)
             .map(parse_number)
             .collect::<Result<_, _>>()
@@ -36,6 +37,7 @@ pub(super) fn read_matrix(text: &str) -> Result<PoseRows, String> {
     Ok(PoseRows { usual, knows_above: true, rows })
 }
 
+/// The pose on a line. `at` is the number of the line's picture, which counts for a matrix without a time.
 fn row_from_numbers(numbers: &[f64], at: usize) -> Option<PoseRow> {
     match *numbers {
         [time, x, y, z, qx, qy, qz, qw] => Some(PoseRow {

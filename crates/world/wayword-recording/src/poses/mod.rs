@@ -16,6 +16,7 @@ use std::path::{Component, Path, PathBuf};
 use wayword_core::PlatformError;
 use wayword_world::files;
 
+/// Largest pose file that is read, bytes; a larger one is an error.
 const MAX_FILE_BYTES: u64 = 256 << 20;
 const POSE_FILE_HINT: &str = "docs/RECORDINGS.md shows the pose files that can be read";
 /// Names of a folder's pose file, in the order in which they are tried.
@@ -61,27 +62,27 @@ pub(crate) fn read_track(
     let text = files::text_if_there(file, MAX_FILE_BYTES, POSE_FILE_HINT)?
         .ok_or_else(|| wrong("there is no such file".into()))?;
     let ending = file.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
-    let read = match ending {
+    let pose_rows = match ending {
         "json" => json::read_json(&text),
         "csv" => csv::read_csv(&text),
         _ => matrix::read_matrix(&text),
     }
     .map_err(wrong)?;
-    let axes = described.axes_or_usual(read.usual);
-    let doubt = pose_plausibility::find_doubt(&read.samples(), axes, described);
-    let rows = read.rows;
+    let axes = described.axes_or_usual(pose_rows.usual);
+    let doubt = pose_plausibility::find_doubt(&pose_rows.samples(), axes, described);
+    let rows = pose_rows.rows;
     if axes.world != WorldUpAxis::ZUp && rows.iter().any(|row| matches!(row.facing, PoseFacing::Yaw(_))) {
         return Err(wrong("a yaw turns about z, so `world` must be z-up".into()));
     }
     if let Some(PoseDoubt::Misread(reason)) = doubt {
         return Err(files::file_error(file, reason, crate::describe::DESCRIPTION_HINT));
     }
-    let none = if rows.is_empty() {
+    let why_none = if rows.is_empty() {
         "holds no poses"
     } else {
         "has no usable pose: the pictures that it names or counts are not here, or its positions are not valid"
     };
-    let track = on_clock(rows, axes, times_s, name).ok_or_else(|| wrong(none.into()))?;
+    let track = on_clock(rows, axes, times_s, name).ok_or_else(|| wrong(why_none.into()))?;
     if !times_s.iter().any(|time_s| track.fix_at(*time_s).is_some()) {
         let ((from, to), first, last) =
             (track.span_s(), times_s.first().unwrap_or(&0.0), times_s.last().unwrap_or(&0.0));
@@ -96,7 +97,7 @@ pub(crate) fn read_track(
     })
 }
 
-/// Converts rows into fixes. Rows of pictures that do not exist are left out.
+/// The track of rows, on the clock of the pictures. Rows of pictures that do not exist are left out; `None` if no row is left.
 fn on_clock(
     rows: Vec<rows::PoseRow>,
     axes: PoseAxes,

@@ -67,13 +67,15 @@ impl PoseRow {
 impl PoseRows {
     /// The poses as they were recorded.
     pub(super) fn samples(&self) -> Vec<PoseSample> {
-        let held = |facing: PoseFacing| match facing {
+        let orientation = |facing: PoseFacing| match facing {
             PoseFacing::Quaternion(quaternion) => rotation_columns(quaternion),
             PoseFacing::Columns(columns) => Some(columns),
             PoseFacing::Unknown | PoseFacing::Yaw(_) | PoseFacing::Heading(_) => None,
         };
-        let sample =
-            |row: &PoseRow| PoseSample { position: row.position, held: held(row.facing).filter(|_| self.knows_above) };
+        let sample = |row: &PoseRow| PoseSample {
+            position: row.position,
+            held: orientation(row.facing).filter(|_| self.knows_above),
+        };
         self.rows.iter().map(sample).collect()
     }
 }

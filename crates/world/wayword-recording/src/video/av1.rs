@@ -39,6 +39,7 @@ impl Av1Decoder {
 
 impl SampleDecoder for Av1Decoder {
     fn feed(&mut self, coded: CodedSample<'_>, out: &mut TakePlanes<'_>) -> Result<(), String> {
+        // The number of the sample serves as its timestamp, which the decoder gives back with the picture.
         let sample = i64::try_from(coded.sample).ok();
         let mut sent = self.decoder.send_data(coded.bytes.to_vec(), None, sample, None);
         loop {
@@ -56,6 +57,7 @@ impl SampleDecoder for Av1Decoder {
     }
 }
 
+/// Hands out a decoded picture with the number of its sample.
 fn hand_out(picture: &Picture, container: StreamColour, out: &mut TakePlanes<'_>) -> Result<(), String> {
     let sample = picture
         .timestamp()

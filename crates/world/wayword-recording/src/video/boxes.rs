@@ -56,6 +56,7 @@ impl BoxHeader {
         let mut fields = BoxFields::new(start);
         let short = fields.read_u32().ok()?;
         let kind = fields.read_array().ok()?;
+        // 0 means up to the end of the surroundings, and 1 that a length of 64 bits follows.
         let (length, bytes) = match short {
             0 => (8, left),
             1 => (16, fields.read_u64().ok()?),
@@ -76,7 +77,8 @@ impl<'a> BoxFields<'a> {
         Self { rest: bytes }
     }
 
-    /// The fields, version and flags of a box that begins with the last two.
+    /// Reads the beginning of a box that has a byte of version and three bytes of flags there: the fields after them, the
+    /// version, and the flags.
     pub(super) fn with_version(bytes: &'a [u8]) -> Result<(Self, u8, u32), String> {
         let mut fields = Self::new(bytes);
         let word = fields.read_u32()?;

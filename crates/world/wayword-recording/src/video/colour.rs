@@ -3,7 +3,7 @@
 
 use wayword_core::Image;
 
-/// Fixed point: 1.0.
+/// The number 1.0 in fixed point, with 16 bits after the point.
 const FIXED_POINT_ONE: f64 = 65536.0;
 /// The value of `matrix_coefficients` that leaves the matrix open.
 const UNSPECIFIED_MATRIX: u32 = 2;
@@ -79,10 +79,13 @@ pub(super) struct PicturePlanes<'a> {
     pub(super) colour: StreamColour,
 }
 
-/// Factors in fixed point.
+/// The numbers with which samples become RGB.
 struct RgbFactors {
+    /// The brightness sample of black.
     black: i32,
+    /// The sample of a colour difference of 0.
     grey: i32,
+    /// Factors in fixed point, from here on: of the brightness, and of the differences of red and blue in each colour.
     brightness: i32,
     red: i32,
     green_of_red: i32,
@@ -91,11 +94,12 @@ struct RgbFactors {
 }
 
 impl RgbFactors {
-    /// H.273, section 8.3, equations 21 to 23 and 39 to 44.
+    /// The factors for samples of `bits` bits (H.273, section 8.3, equations 21 to 23 and 39 to 44).
     fn new(colour: StreamColour, bits: u32) -> Result<Self, String> {
-        let (kr, kb) = colour.brightness_weights()?;
-        let kg = 1.0 - kr - kb;
+        let (red_weight, blue_weight) = colour.brightness_weights()?;
+        let green_weight = 1.0 - red_weight - blue_weight;
         let unit = 1 << (bits - 8);
+        // Without the full range, brightness goes from 16 to 235 and colour differences from 16 to 240, in 8 bits.
         let (black, steps, chroma_steps) = match colour.full_range {
             Some(true) => (0, (1 << bits) - 1, (1 << bits) - 1),
             _ => (16 * unit, 219 * unit, 224 * unit),
@@ -106,10 +110,10 @@ impl RgbFactors {
             black,
             grey: 128 * unit,
             brightness: fixed(255.0 / f64::from(steps)),
-            red: fixed(2.0 * (1.0 - kr) * chroma),
-            green_of_red: fixed(-2.0 * (1.0 - kr) * kr / kg * chroma),
-            green_of_blue: fixed(-2.0 * (1.0 - kb) * kb / kg * chroma),
-            blue: fixed(2.0 * (1.0 - kb) * chroma),
+            red: fixed(2.0 * (1.0 - red_weight) * chroma),
+            green_of_red: fixed(-2.0 * (1.0 - red_weight) * red_weight / green_weight * chroma),
+            green_of_blue: fixed(-2.0 * (1.0 - blue_weight) * blue_weight / green_weight * chroma),
+            blue: fixed(2.0 * (1.0 - blue_weight) * chroma),
         })
     }
 
@@ -141,7 +145,7 @@ pub(super) fn rgb_picture(planes: &PicturePlanes<'_>) -> Result<Image, String> {
     Image::new(planes.width_px, planes.height_px, rgb).map_err(|error| error.to_string())
 }
 
-/// Turns one row into RGB, from samples of `KIND_BYTES` bytes; `None` if there are too few samples.
+/// Turns one row into RGB, from samples of `BYTES` bytes; `None` if there are too few samples.
 fn convert_row<const BYTES: usize>(
     planes: &PicturePlanes<'_>,
     factors: &RgbFactors,

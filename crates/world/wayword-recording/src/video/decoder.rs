@@ -1,4 +1,4 @@
-//! The common interface of the decoders of all codecs.
+//! The common interface of the decoders of all codecs. A sample is one coded picture, as it lies in the file.
 
 use super::colour::PicturePlanes;
 use crate::picture_size;
@@ -18,8 +18,8 @@ pub(super) type TakePlanes<'a> = dyn FnMut(usize, &PicturePlanes<'_>) -> Result<
 
 /// A decoder of one stream.
 pub(super) trait SampleDecoder {
-    /// Takes the next sample, and hands out the pictures that are ready. Samples may be skipped if the next one is one
-    /// with which decoding can begin.
+    /// Takes the next sample, and hands out the pictures that are ready. The caller may skip samples, if decoding can begin with
+    /// the sample after them.
     fn feed(&mut self, coded: CodedSample<'_>, out: &mut TakePlanes<'_>) -> Result<(), String>;
 
     /// Hands out the remaining pictures after the last sample.

@@ -25,7 +25,7 @@ pub(super) struct TrackEdit {
     length: u64,
 }
 
-/// Ticks per second.
+/// Ticks per second of the two clocks of an MP4 file: the movie's, and the track's own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct TickRates {
     pub(super) movie: u32,
@@ -42,18 +42,18 @@ pub(super) fn read_edit(trak: &[u8]) -> Result<Option<TrackEdit>, String> {
         }
         Ok(fields.read_rows::<20>()?.filter_map(|row| edit_entry(&row, version)).collect())
     };
-    let mut found: Option<TrackEdit> = None;
+    let mut shown_part: Option<TrackEdit> = None;
     let mut wait = 0_u64;
     for (length, start) in read().map_err(in_box("elst"))? {
-        match found {
+        match shown_part {
             None if start < 0 => wait = wait.saturating_add(length),
-            None => found = Some(TrackEdit { wait, start, length }),
+            None => shown_part = Some(TrackEdit { wait, start, length }),
             // An empty piece at the end has no pictures.
             Some(_) if start < 0 => {}
             Some(_) => return Err("has an edit list of several pieces (box `elst`), which cannot be read".to_owned()),
         }
     }
-    Ok(found)
+    Ok(shown_part)
 }
 
 /// Length of a piece and its start; -1 for an empty piece.

@@ -16,7 +16,8 @@ use std::{
 use wayword_core::{Image, PlatformError, contain_panics::run_decoder};
 use wayword_world::files;
 
-/// Most pictures that decoders hold back (ITU-T H.264, annex A.3.1).
+/// Most decoded pictures that wait for an earlier one; more mean a broken file. A decoder holds back at most so many
+/// (ITU-T H.264, annex A.3.1).
 const MAX_HELD: usize = 17;
 
 /// One camera's pictures in an MP4 file.
@@ -55,20 +56,20 @@ impl Mp4Film {
     pub(crate) fn decode_pictures(&self, wanted: &[usize], take: &mut TakePicture<'_>) -> Result<(), PlatformError> {
         let wrong = |reason: String| files::file_error(&self.file, reason, VIDEO_HINT);
         let mut file = File::open(&self.file).map_err(|error| wrong(error.to_string()))?;
-        let mut desk = PictureBuffer::new(&self.movie, wanted);
+        let mut buffer = PictureBuffer::new(&self.movie, wanted);
         let mut decoder = self.movie.codec.new_decoder().map_err(wrong)?;
         for run in self.decode_runs(&mut file, wanted).map_err(wrong)? {
             for sample in run {
-                let fed = self.feed_sample(&mut file, sample, decoder.as_mut(), &mut desk);
+                let fed = self.feed_sample(&mut file, sample, decoder.as_mut(), &mut buffer);
                 fed.map_err(|reason| {
                     wrong(format!("picture at byte {}: {reason}", self.movie.samples[sample].offset))
                 })?;
-                desk.hand_over(take)?;
+                buffer.hand_over(take)?;
             }
         }
-        run_decoder(|| decoder.finish(&mut |sample, planes| desk.put_picture(sample, planes))).map_err(wrong)?;
-        desk.hand_over(take)?;
-        match desk.first_missing() {
+        run_decoder(|| decoder.finish(&mut |sample, planes| buffer.put_picture(sample, planes))).map_err(wrong)?;
+        buffer.hand_over(take)?;
+        match buffer.first_missing() {
             Some(number) => Err(wrong(format!("picture {number} (counted from 0) could not be decoded"))),
             None => Ok(()),
         }
@@ -80,13 +81,14 @@ impl Mp4Film {
         file: &mut File,
         sample: usize,
         decoder: &mut dyn SampleDecoder,
-        desk: &mut PictureBuffer<'_>,
+        buffer: &mut PictureBuffer<'_>,
     ) -> Result<(), String> {
         let bytes = self.read_sample(file, sample)?;
         let coded = CodedSample { sample, shown: self.movie.samples[sample].shown, bytes: &bytes };
-        run_decoder(|| decoder.feed(coded, &mut |sample, planes| desk.put_picture(sample, planes)))
+        run_decoder(|| decoder.feed(coded, &mut |sample, planes| buffer.put_picture(sample, planes)))
     }
 
+    /// The bytes of a sample.
     fn read_sample(&self, file: &mut File, sample: usize) -> Result<Vec<u8>, String> {
         let sample = self.movie.samples[sample];
         bytes_at(file, sample.offset, sample.bytes.into())
@@ -96,28 +98,29 @@ impl Mp4Film {
     fn decode_runs(&self, file: &mut File, wanted: &[usize]) -> Result<Vec<Range<usize>>, String> {
         let mut runs: Vec<Range<usize>> = Vec::new();
         for ShownPicture { sample, .. } in wanted.iter().filter_map(|number| self.movie.shown.get(*number)) {
-            let fed = runs.last().map_or(0, |run| run.end);
-            if *sample < fed {
+            let decoded_to = runs.last().map_or(0, |run| run.end);
+            if *sample < decoded_to {
                 continue;
             }
-            let key = self.key_before(file, *sample, fed)?;
+            let key = self.key_before(file, *sample, decoded_to)?;
             match runs.last_mut() {
                 // The samples between them have to be decoded.
-                Some(run) if key <= fed => run.end = sample + 1,
+                Some(run) if key <= decoded_to => run.end = sample + 1,
                 _ => runs.push(key..sample + 1),
             }
         }
         Ok(runs)
     }
 
-    /// The last sample from which the wanted one can be decoded; `fed` if there is none after `fed`.
-    fn key_before(&self, file: &mut File, wanted: usize, fed: usize) -> Result<usize, String> {
-        for key in (fed..=wanted).rev().filter(|at| self.movie.samples[*at].is_key) {
+    /// The last sample from which the wanted one can be decoded; `decoded_to`, up to which samples are decoded anyway, if there is
+    /// none after it.
+    fn key_before(&self, file: &mut File, wanted: usize, decoded_to: usize) -> Result<usize, String> {
+        for key in (decoded_to..=wanted).rev().filter(|at| self.movie.samples[*at].is_key) {
             if self.movie.codec.can_begin_with(&self.read_sample(file, key)?) {
                 return Ok(key);
             }
         }
-        Ok(fed)
+        Ok(decoded_to)
     }
 }
 
@@ -128,6 +131,7 @@ struct PictureBuffer<'a> {
     numbers: BTreeMap<usize, usize>,
     /// Wanted numbers that have not been handed over, in order.
     due: std::iter::Peekable<std::iter::Copied<std::slice::Iter<'a, usize>>>,
+    /// Decoded pictures by their numbers.
     done: BTreeMap<usize, Image>,
 }
 

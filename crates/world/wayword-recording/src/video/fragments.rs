@@ -6,11 +6,13 @@ use super::{
     tables::{TrackSample, check_count},
 };
 
+/// Flags of the box `tfhd`: which fields it has, and whether offsets count from the fragment's beginning.
 const BASE_OFFSET: u32 = 0x1;
 const DEFAULT_DURATION: u32 = 0x8;
 const DEFAULT_SIZE: u32 = 0x10;
 const DEFAULT_FLAGS: u32 = 0x20;
 const DEFAULT_BASE_IS_MOOF: u32 = 0x2_0000;
+/// Flags of the box `trun`: which fields it has, for the run and for each sample.
 const DATA_OFFSET: u32 = 0x1;
 const FIRST_FLAGS: u32 = 0x4;
 const HAS_DURATIONS: u32 = 0x100;
@@ -23,6 +25,7 @@ const NOT_A_KEY: u32 = 0x1_0000;
 /// Values for samples without their own.
 #[derive(Debug, Clone, Copy, Default)]
 struct SampleDefaults {
+    /// Ticks of the track.
     duration: u32,
     bytes: u32,
     flags: u32,
@@ -46,6 +49,7 @@ impl SampleDefaults {
 #[derive(Debug)]
 pub(super) struct FragmentReader {
     track: u32,
+    /// The movie's defaults; a fragment can have its own.
     usual: SampleDefaults,
     file_bytes: u64,
     /// Time at which the next sample is decoded, ticks.
@@ -74,6 +78,7 @@ impl FragmentReader {
         Ok(())
     }
 
+    /// Adds the samples of one box `traf`, which describes one track of a fragment.
     fn add_track(&mut self, traf: &[u8], start: u64, samples: &mut Vec<TrackSample>) -> Result<(), String> {
         let (mut fields, _, flags) = BoxFields::with_version(need_box(traf, b"tfhd")?)?;
         if fields.read_u32()? != self.track {
@@ -85,6 +90,7 @@ impl FragmentReader {
             (None, _) if flags & DEFAULT_BASE_IS_MOOF != 0 => start,
             (None, _) => self.end,
         };
+        // The number of the sample entry, which is not needed.
         optional(0x2)?;
         let usual = SampleDefaults {
             duration: optional(DEFAULT_DURATION)?.unwrap_or(self.usual.duration),
@@ -104,6 +110,7 @@ impl FragmentReader {
         Ok(())
     }
 
+    /// Adds the samples of one box `trun`. Their bytes lie one after another in the file.
     fn add_run(
         &mut self,
         trun: &[u8],
@@ -126,11 +133,11 @@ impl FragmentReader {
             let mut field = |flag: u32| if flags & flag != 0 { fields.read_u32().map(Some) } else { Ok(None) };
             let duration = field(HAS_DURATIONS)?.unwrap_or(usual.duration);
             let bytes = field(HAS_SIZES)?.unwrap_or(usual.bytes);
-            let own = field(HAS_FLAGS)?.or(first.filter(|_| at == 0)).unwrap_or(usual.flags);
-            let later = field(HAS_DELAYS)?.unwrap_or(0).cast_signed();
+            let sample_flags = field(HAS_FLAGS)?.or(first.filter(|_| at == 0)).unwrap_or(usual.flags);
+            let delay = field(HAS_DELAYS)?.unwrap_or(0).cast_signed();
             if bytes > 0 {
-                let shown = self.decoded + i64::from(later);
-                samples.push(TrackSample { offset: self.end, bytes, shown, is_key: own & NOT_A_KEY == 0 });
+                let shown = self.decoded + i64::from(delay);
+                samples.push(TrackSample { offset: self.end, bytes, shown, is_key: sample_flags & NOT_A_KEY == 0 });
             }
             self.decoded += i64::from(duration);
             self.end = self.end.saturating_add(u64::from(bytes));

@@ -1,4 +1,7 @@
 //! Decodes H.264 with Cisco's OpenH264.
+//!
+//! A stream consists of NAL units: parts of pictures, and parameter sets that describe the stream. In an MP4 file the length of
+//! each unit comes before it; OpenH264 wants a start code there.
 
 use super::{
     boxes::{BoxFields, in_box},
@@ -76,7 +79,7 @@ fn taken_apart(record: &[u8]) -> Result<(usize, Vec<&[u8]>), String> {
     fields.read_bytes(4)?;
     let length_bytes = usize::from(fields.read_u8()? & 3) + 1;
     let mut units = Vec::new();
-    // Sequence parameter sets, then picture parameter sets.
+    // Sequence parameter sets, with their number in 5 bits, then picture parameter sets, with theirs in 8.
     for mask in [31, 255] {
         for _ in 0..fields.read_u8()? & mask {
             let length = fields.read_u16()?;
@@ -86,6 +89,7 @@ fn taken_apart(record: &[u8]) -> Result<(usize, Vec<&[u8]>), String> {
     Ok((length_bytes, units))
 }
 
+/// The type of a NAL unit.
 fn unit_kind(unit: &[u8]) -> u8 {
     unit.first().map_or(0, |first| first & 31)
 }

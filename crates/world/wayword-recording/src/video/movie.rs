@@ -21,7 +21,7 @@ const MAX_DESCRIBING_BYTES: u64 = 512 << 20;
 /// Most boxes of a file: two for each picture.
 const MAX_BOXES: u64 = 2 * tables::MAX_SAMPLES;
 
-/// The way out of a file that cannot be read.
+/// The advice for a video that cannot be read.
 pub(super) const VIDEO_HINT: &str = crate::file_kind::ENCODE_HINT;
 const CAMERA_HINT: &str = "write `camera = \"NUMBER\"` into the .toml file beside it";
 
@@ -65,8 +65,9 @@ impl From<String> for Mp4Error {
 
 /// The boxes that describe the pictures of a file.
 struct MovieBoxes {
+    /// The box `moov`, which describes the tracks.
     moov: Vec<u8>,
-    /// Each `moof`, and where it begins.
+    /// Each box `moof`, which describes a fragment, after its offset in the file.
     moofs: Vec<(u64, Vec<u8>)>,
 }
 
@@ -123,6 +124,7 @@ pub(super) fn bytes_at(file: &mut File, start: u64, count: u64) -> Result<Vec<u8
 /// A track with pictures, and the data to choose among several tracks.
 struct VideoTrack<'a> {
     number: u32,
+    /// The track's box `trak`, and the box `stbl` in it with the tables of samples.
     trak: &'a [u8],
     stbl: &'a [u8],
     ticks_per_s: u32,
@@ -134,11 +136,13 @@ impl<'a> VideoTrack<'a> {
     fn read(trak: &'a [u8]) -> Result<Option<Self>, String> {
         let Some(mdia) = find_box(trak, b"mdia") else { return Ok(None) };
         let Some(hdlr) = find_box(mdia, b"hdlr") else { return Ok(None) };
+        // The kind of the track, after version, flags and a reserved number.
         if hdlr.get(8..12) != Some(b"vide") {
             return Ok(None);
         }
         let number = || -> Result<u32, String> {
             let (mut fields, version, _) = BoxFields::with_version(need_box(trak, b"tkhd")?)?;
+            // Two times come first.
             fields.read_bytes(if version == 0 { 8 } else { 16 })?;
             fields.read_u32()
         };
@@ -152,6 +156,7 @@ impl<'a> VideoTrack<'a> {
         read().map(Some).map_err(|reason| format!("track {number}: {reason}"))
     }
 
+    /// Reads the samples of the track, and which of them are shown when.
     fn read_movie(&self, parts: &MovieBoxes, file_bytes: u64) -> Result<Mp4Movie, String> {
         let codec = match &self.entry.codec {
             sample_entry::NamedCodec::H264(record) => {
@@ -180,6 +185,7 @@ impl<'a> VideoTrack<'a> {
         Ok(Mp4Movie { codec, turn, samples, shown })
     }
 
+    /// The track in words: its number, codec and size.
     fn describe_track(&self) -> String {
         let codec = match &self.entry.codec {
             sample_entry::NamedCodec::H264(_) => "H.264",
@@ -204,12 +210,12 @@ fn ticks_per_s(header: &[u8]) -> Result<u32, String> {
 fn choose_track<'a, 'b>(tracks: &'b [VideoTrack<'a>], camera: Option<&str>) -> Result<&'b VideoTrack<'a>, String> {
     let names = || tracks.iter().map(VideoTrack::describe_track).collect::<Vec<_>>().join(", ");
     let wanted = camera.map(str::trim);
-    let mut meant = tracks.iter().filter(|track| match wanted {
+    let mut fitting = tracks.iter().filter(|track| match wanted {
         Some(wanted) => track.number.to_string() == wanted,
         // Cover pictures and previews do not count as a second camera.
         None => tracks.len() == 1 || !matches!(track.entry.codec, sample_entry::NamedCodec::Other(_)),
     });
-    match (meant.next(), meant.next(), wanted) {
+    match (fitting.next(), fitting.next(), wanted) {
         (Some(track), None, _) => Ok(track),
         (_, _, Some(wanted)) => Err(format!("has no video track {wanted:?}; it has {}", names())),
         _ if tracks.is_empty() => Err("holds no video".to_owned()),

@@ -20,6 +20,7 @@ impl PictureTurn {
         let (mut fields, version, _) = BoxFields::with_version(tkhd)?;
         // Times, number, duration; then layer, group, volume.
         fields.read_bytes(if version == 0 { 20 } else { 32 } + 16)?;
+        // The matrix has rows of three, of which the third number is not needed.
         let (a, b) = (fields.read_i32()?, fields.read_i32()?);
         fields.read_i32()?;
         let (c, d) = (fields.read_i32()?, fields.read_i32()?);

@@ -55,6 +55,7 @@ pub(super) fn read_entry(stsd: &[u8]) -> Result<SampleEntry, String> {
     }
     let Mp4Box { kind, body } = boxes_in(fields.remaining_bytes()).next().ok_or("lists no sample entry")?;
     let mut fields = BoxFields::new(body);
+    // Reserved fields, up to the size.
     fields.read_bytes(24)?;
     let (width_px, height_px) = (fields.read_u16()?, fields.read_u16()?);
     let within_entry = body.get(BEFORE_BOXES..).unwrap_or_default();
@@ -66,6 +67,7 @@ pub(super) fn read_entry(stsd: &[u8]) -> Result<SampleEntry, String> {
     Ok(SampleEntry { codec, width_px, height_px, colour: read_colour(within_entry).map_err(in_box("colr"))? })
 }
 
+/// The common name of a codec, or else its kind in the file.
 fn codec_name(kind: &[u8; 4]) -> String {
     KNOWN_CODECS
         .iter()

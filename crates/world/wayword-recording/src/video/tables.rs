@@ -3,7 +3,7 @@
 
 use super::boxes::{BoxFields, find_box, in_box, need_box};
 
-/// Most samples of a track: nearly four days at 30 a second.
+/// Most samples of a track, nearly four days at 30 a second; more are an error.
 pub(super) const MAX_SAMPLES: u64 = 10_000_000;
 
 /// One coded picture.
@@ -39,7 +39,9 @@ pub(super) fn read_samples(stbl: &[u8], file_bytes: u64) -> Result<Vec<TrackSamp
 
 /// The length of each sample, bytes.
 enum SampleSizes {
+    /// All samples have the same length.
     All { bytes: u32, count: usize },
+    /// Each sample has its own.
     Each(Vec<u32>),
 }
 
@@ -59,6 +61,7 @@ impl SampleSizes {
     }
 }
 
+/// Reads the box `stsz`.
 fn read_sizes(stsz: &[u8], file_bytes: u64) -> Result<SampleSizes, String> {
     let (mut fields, ..) = BoxFields::with_version(stsz)?;
     let bytes = fields.read_u32()?;
@@ -124,25 +127,26 @@ fn read_offsets(stbl: &[u8], sizes: &SampleSizes) -> Result<Vec<u64>, String> {
     Ok(offsets)
 }
 
-/// The time at which each sample is shown: the time at which it is decoded, plus its delay.
+/// The time at which each sample is shown, ticks of the track: the time at which it is decoded, plus its delay.
 fn read_shown_times(stbl: &[u8], count: usize) -> Result<Vec<i64>, String> {
     let (mut fields, ..) = BoxFields::with_version(need_box(stbl, b"stts")?)?;
-    let lengths = read_runs(&mut fields).map_err(in_box("stts"))?;
-    let mut later: Vec<(u32, i32)> = Vec::new();
+    let durations = read_runs(&mut fields).map_err(in_box("stts"))?;
+    let mut delays: Vec<(u32, i32)> = Vec::new();
     if let Some(ctts) = find_box(stbl, b"ctts") {
         let (mut fields, ..) = BoxFields::with_version(ctts)?;
         // In version 0 these are unsigned by the standard, but writers put negative numbers there.
-        later = read_runs(&mut fields)
+        delays = read_runs(&mut fields)
             .map_err(in_box("ctts"))?
-            .map(|(count, later)| (count, later.cast_signed()))
+            .map(|(count, delay)| (count, delay.cast_signed()))
             .collect();
     }
-    let mut later = later.into_iter().flat_map(|(count, later)| std::iter::repeat_n(i64::from(later), count as usize));
+    let mut delays =
+        delays.into_iter().flat_map(|(count, delay)| std::iter::repeat_n(i64::from(delay), count as usize));
     let mut shown = Vec::with_capacity(count);
     let mut decoded = 0_i64;
-    for length in lengths.flat_map(|(count, length)| std::iter::repeat_n(length, count as usize)).take(count) {
-        shown.push(decoded + later.next().unwrap_or(0));
-        decoded += i64::from(length);
+    for duration in durations.flat_map(|(count, duration)| std::iter::repeat_n(duration, count as usize)).take(count) {
+        shown.push(decoded + delays.next().unwrap_or(0));
+        decoded += i64::from(duration);
     }
     if shown.len() < count {
         return Err(format!("has {count} samples, but times for only {} of them (`stts`)", shown.len()));

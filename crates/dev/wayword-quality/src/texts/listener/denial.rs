@@ -3,7 +3,8 @@
 
 use super::{
     fits::{ABOVE_M, AHEAD_RAD, BETWEEN_M, FAR_M, SLACK_M, SLACK_RAD, TargetListener, is_between},
-    target_description::{ArrivalSide, RelationKind, TargetRelation},
+    target_description::{ArrivalSide, TargetRelation},
+    vocabulary::RelationKind,
 };
 use std::{collections::BTreeSet, f64::consts::PI};
 use wayword_core::DVec3;

@@ -2,9 +2,8 @@
 
 use super::{
     scene::ListenerScene,
-    target_description::{
-        ArrivalSide, LevelMention, NamesakeRank, RelationKind, RelationLandmark, TargetDescription, TargetRelation,
-    },
+    target_description::{ArrivalSide, LevelMention, RelationLandmark, TargetDescription, TargetRelation},
+    vocabulary::{NamesakeRank, RelationKind},
 };
 use std::{collections::BTreeSet, f64::consts::PI};
 use wayword_core::{DVec3, Heading};

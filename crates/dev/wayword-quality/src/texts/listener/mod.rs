@@ -105,24 +105,28 @@ pub(super) fn hear_episodes(
     Ok(heard)
 }
 
+/// Reads the description of the target in a text, and compares it with the target, with all objects of the scene, and with the
+/// namesakes in view at the end.
 fn hear_text(scene: &ListenerScene, arrival: ListenerArrival, target: usize, text: &str) -> ListenerResult {
     let mut heard = ListenerResult { text: text.to_owned(), ..ListenerResult::default() };
-    let said = target_description::describe_target(text, &scene.names).unwrap_or_default();
-    let listener = TargetListener { scene, said: &said, arrival };
+    let description = target_description::describe_target(text, &scene.names).unwrap_or_default();
+    let listener = TargetListener { scene, said: &description, arrival };
     let namesakes = listener.namesakes_in_view(target);
     heard.has_namesake = !namesakes.is_empty();
-    heard.is_named = scene.objects_called(&said.name).any(|object| object == target);
+    heard.is_named = scene.objects_called(&description.name).any(|object| object == target);
     if !heard.is_named {
         return heard;
     }
-    let left = listener.fitting_objects();
-    let fitting = left.objects;
+    let matches = listener.fitting_objects();
+    let fitting = matches.objects;
     heard.fitting = fitting.len();
     heard.fits_target = fitting.contains(&target);
     heard.denied = listener.denied_part(target);
-    heard.has_look = said.has_look || left.left_out > 0;
-    heard.has_distinction =
-        heard.has_look || !said.relations.is_empty() || !said.ranks.is_empty() || said.side.is_some();
+    heard.has_look = description.has_look || matches.left_out > 0;
+    heard.has_distinction = heard.has_look
+        || !description.relations.is_empty()
+        || !description.ranks.is_empty()
+        || description.side.is_some();
     heard.fits_namesake = heard.fits_target && !fitting.is_disjoint(&namesakes);
     heard
 }

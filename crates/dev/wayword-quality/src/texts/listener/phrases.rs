@@ -3,11 +3,10 @@
 use super::super::names::LexiconName;
 use super::{
     clauses::ListenerText,
-    target_description::{
-        ArrivalSide, InRoom, LevelMention, NamesakeRank, RelationKind, RelationLandmark, TargetDescription,
-        TargetRelation,
+    target_description::{ArrivalSide, InRoom, LevelMention, RelationLandmark, TargetDescription, TargetRelation},
+    vocabulary::{
+        LOOK_WORDS, NUMBER_WORDS, NamesakeRank, OF_ROOMS, ORDINAL_WORDS, RANK_WORDS, RELATION_PHRASES, RelationKind,
     },
-    vocabulary::{LOOK_WORDS, NUMBER_WORDS, OF_ROOMS, ORDINAL_WORDS, RANK_WORDS, RELATION_PHRASES},
 };
 use wayword_language::lexicon::is_plural;
 

@@ -1,6 +1,9 @@
 //! Reads the description of the target out of a text, by a grammar that only the listener uses.
 
-use super::clauses::ListenerText;
+use super::{
+    clauses::ListenerText,
+    vocabulary::{NamesakeRank, RelationKind},
+};
 use std::collections::BTreeSet;
 
 /// The description of the object of a text's task.
@@ -44,19 +47,6 @@ pub(super) enum LevelMention {
     Top,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum NamesakeRank {
-    Leftmost,
-    Rightmost,
-    Nearest,
-    Farthest,
-    Highest,
-    Lowest,
-    Middle,
-    FromLeft(usize),
-    FromRight(usize),
-}
-
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct TargetRelation {
     pub(super) how: RelationKind,
@@ -68,21 +58,6 @@ pub(super) struct TargetRelation {
 pub(super) struct RelationLandmark {
     pub(super) name: String,
     pub(super) is_room: bool,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum RelationKind {
-    Closest,
-    Farthest,
-    Near,
-    Above,
-    Under,
-    On,
-    LeftOf,
-    RightOf,
-    Between,
-    /// "In front of", "behind": labels cannot decide it.
-    Unknown,
 }
 
 /// The description of the object of a text's task; `None` where the text names no thing. `known` has names of things in addition to those

@@ -1,6 +1,34 @@
 //! The vocabulary of the listener. It is independent of the reader's lexicon.
 
-use super::target_description::{NamesakeRank, RelationKind};
+/// How a thing is told from its namesakes by its place among them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum NamesakeRank {
+    Leftmost,
+    Rightmost,
+    Nearest,
+    Farthest,
+    Highest,
+    Lowest,
+    Middle,
+    FromLeft(usize),
+    FromRight(usize),
+}
+
+/// How a thing lies to another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum RelationKind {
+    Closest,
+    Farthest,
+    Near,
+    Above,
+    Under,
+    On,
+    LeftOf,
+    RightOf,
+    Between,
+    /// "In front of", "behind": labels cannot decide it.
+    Unknown,
+}
 
 /// Phrases of relations, the longest first.
 pub(super) const RELATION_PHRASES: &[(&str, RelationKind)] = &[

@@ -2,6 +2,7 @@
 
 use super::{ReplyEnding, ScriptReply, ServiceErrorKind, request_parts};
 use crate::provider::ScriptRequest;
+use jiff::Timestamp;
 use serde_json::{Value, json};
 use wayword_core::MessageRole;
 
@@ -67,6 +68,14 @@ pub(super) fn model_list(names: &[&str]) -> Value {
     let model = |name: &&str| json!({ "type": "model", "id": name, "display_name": name });
     let data: Vec<Value> = names.iter().map(model).collect();
     json!({ "data": data, "has_more": false, "first_id": names.first(), "last_id": names.last() })
+}
+
+/// The headers of a 429 that give the moment from which requests are allowed again.
+pub(super) fn reset_headers(at: Timestamp) -> Vec<(&'static str, String)> {
+    vec![
+        ("anthropic-ratelimit-requests-remaining", "0".to_owned()),
+        ("anthropic-ratelimit-requests-reset", at.to_string()),
+    ]
 }
 
 pub(super) fn error_body(wrong: ServiceErrorKind, message: &str, details: Option<Value>) -> Value {

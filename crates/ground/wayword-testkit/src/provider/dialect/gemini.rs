@@ -31,7 +31,7 @@ fn read_content(content: &Value, pictures: &mut Vec<Vec<u8>>) -> Result<String, 
     for part in request_parts::list_field(content, "parts")? {
         match part.get("inlineData").or_else(|| part.get("inline_data")) {
             Some(picture) => {
-                pictures.push(request_parts::decode_picture(&request_parts::text_field(picture, "data")?)?)
+                pictures.push(request_parts::decode_picture(&request_parts::text_field(picture, "data")?)?);
             }
             None => texts.push(request_parts::text_field(part, "text")?),
         }

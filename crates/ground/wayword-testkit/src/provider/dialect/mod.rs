@@ -7,7 +7,7 @@ mod ollama;
 mod openai;
 mod request_parts;
 
-use super::{RetryAfter, ScriptRequest};
+use super::{RetryAfter, ScriptRequest, retry_after::end_of_wait};
 use axum::{
     http::{HeaderName, HeaderValue, StatusCode, header},
     response::{IntoResponse, Response},
@@ -174,12 +174,11 @@ impl ProviderDialect {
     /// A 429 that announces the wait in the given form.
     pub(super) fn too_many(self, form: RetryAfter, wait: Duration) -> Response {
         let message = "Rate limit reached: too many requests.";
-        self.error_response_with(
-            ServiceErrorKind::TooMany,
-            message,
-            form.response_headers(wait, self),
-            form.error_details(wait),
-        )
+        let headers = match form {
+            RetryAfter::Reset if self == Self::Anthropic => anthropic::reset_headers(end_of_wait(wait)),
+            _ => form.response_headers(wait),
+        };
+        self.error_response_with(ServiceErrorKind::TooMany, message, headers, form.error_details(wait))
     }
 
     fn error_response_with(

@@ -56,11 +56,11 @@ impl ScriptedRoute {
         let places: Vec<DVec3> = viewpoints.iter().filter_map(|viewpoint| graph.position_of(viewpoint)).collect();
         let (ahead, right) = (heading.unit_vector(), heading.turned_by(std::f64::consts::FRAC_PI_2).unit_vector());
         let from = places.first().copied().unwrap_or_default();
-        let told = |place: &DVec3| {
+        let relative_to_start = |place: &DVec3| {
             let off = *place - from;
             DVec3::new(off.dot(right), off.dot(ahead), off.z)
         };
-        Self(places.iter().map(told).collect())
+        Self(places.iter().map(relative_to_start).collect())
     }
 }
 
@@ -189,10 +189,10 @@ fn parse_step(line: &str) -> Option<(usize, usize, usize)> {
 
 /// A way out, as in "1: left, 88 degrees left, 1.9 m, up 0.6 m; new".
 fn parse_way(line: &str) -> Option<(f64, f64, f64)> {
-    let (_, told) = line.split_once(": ").filter(|(number, _)| number.parse::<usize>().is_ok())?;
-    let told = told.split(';').next()?;
+    let (_, description) = line.split_once(": ").filter(|(number, _)| number.parse::<usize>().is_ok())?;
+    let description = description.split(';').next()?;
     let (mut turn, mut length, mut climb) = (0.0, 0.0, 0.0);
-    for part in told.split(", ").map(str::trim) {
+    for part in description.split(", ").map(str::trim) {
         let number = |part: &str| part.split(' ').find_map(|word| word.parse::<f64>().ok());
         match part {
             part if part.ends_with("degrees right") => turn = number(part)?.to_radians(),

@@ -6,9 +6,9 @@ use wayword_core::{DVec3, Frame, Heading, ObjectLabel, PlatformError, View, View
 /// Gazes that differ by less than this are equal, radians.
 const SAME_RAD: f64 = 1e-9;
 
-/// The labels in a view of an eye that draws for each thing whether it lies left or right of the frame's heading. A thing that is drawn
-/// onto the wrong side gets the place that it would have if the world were mirrored at that heading. So it may move into another view,
-/// and things from the mirrored view (`look`) may move into this one.
+/// Returns the labels that the eye reports for a view. For each thing, a random draw decides whether the eye reports it left or right of
+/// the frame's heading. A thing that gets the wrong side is reported where it would be if the world were mirrored at that heading. So it
+/// may leave this view, and things of the mirrored view, which `look` gives, may enter it.
 pub(super) fn guess_sides(
     draws: &EyeDraws<'_>,
     from: &Frame,

@@ -75,3 +75,32 @@ fn a_turned_world_shows_the_same_pictures_to_an_eye_that_turns_too() {
         assert!((a.turn_rad - b.turn_rad).abs() < 1e-9 && (a.distance_m - b.distance_m).abs() < 1e-9);
     }
 }
+
+#[test]
+fn an_altered_world_reports_nothing_that_only_the_original_has() {
+    let (scene, path) = walk();
+    let gaze = ViewGaze::quarter_view(path.frames[0].pose.heading);
+    assert!(House.ground().look_down(&scene, 1).unwrap().is_some());
+    assert!(House.ground().view_depth(&scene, &path.frames[0], gaze).unwrap().is_some());
+    let world = AlteredPlatform::new(House, WorldMirror);
+    assert!(world.inner().is_none());
+    assert!(world.ground().look_down(&scene, 1).unwrap().is_none());
+    let path = WorldMirror.path_after(path);
+    assert!(world.ground().view_depth(&scene, &path.frames[0], gaze).unwrap().is_none());
+    assert!(world.files().examine_scene(&scene).unwrap().is_none());
+    assert_eq!(world.files().scene_file(&scene).unwrap(), None);
+}
+
+#[test]
+fn the_ground_of_a_mirrored_world_is_mirrored() {
+    let (scene, path) = walk();
+    let (first, last) = (&path.frames[0], &path.frames[path.frames.len() - 1]);
+    let before = House.ground().ground_route(&scene, first, last).unwrap().unwrap();
+    let mirrored = WorldMirror.path_after(path.clone());
+    let (first, last) = (&mirrored.frames[0], &mirrored.frames[mirrored.frames.len() - 1]);
+    let world = AlteredPlatform::new(House, WorldMirror);
+    let after = world.ground().ground_route(&scene, first, last).unwrap().unwrap();
+    assert_eq!(after.length_m, before.length_m);
+    let mirrored: Vec<DVec3> = before.corners.into_iter().map(|corner| WorldMirror.place_after(corner)).collect();
+    assert_eq!(after.corners, mirrored);
+}

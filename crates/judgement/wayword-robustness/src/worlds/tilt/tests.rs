@@ -119,5 +119,5 @@ fn a_tilted_view_contains_its_elevation_and_has_no_depth() {
     };
     assert_eq!(view.pose, pose);
     assert_eq!(view.horizontal_fov_rad, gaze.horizontal_fov_rad);
-    assert!(tilted(-10.0, 0.0).view_depth(&scene, &path.frames[0], gaze).unwrap().is_none());
+    assert!(tilted(-10.0, 0.0).ground().view_depth(&scene, &path.frames[0], gaze).unwrap().is_none());
 }

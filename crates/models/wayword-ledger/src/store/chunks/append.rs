@@ -1,32 +1,21 @@
-//! The one thread that writes a chunk's file. Each write has to wait for the disk, so the thread combines all lines that arrived during
-//! the last write into the next one. It reports a line as written once the disk has it.
+//! Writes a chunk's file. A line counts as written once the disk has it.
 
 use super::line::{CHUNK_LINE_FORMAT, ChunkEntry};
-use crate::{LedgerError, LedgerLocation, recording::MOST_LINE_BYTES};
+use crate::{
+    LedgerError, LedgerLocation,
+    recording::MOST_LINE_BYTES,
+    store::commit_queue::{CommitQueue, GroupCommit},
+};
 use std::{
     fs::{File, OpenOptions},
     io::{self, Seek, SeekFrom, Write},
     path::{Path, PathBuf},
-    sync::mpsc,
-    thread::{self, JoinHandle},
 };
 
-/// Most lines in the queue, and in one write. A sender waits while the queue is full, so that memory is bounded.
-const MOST_AT_ONCE: usize = 1024;
-
-type AppendResult = Result<(), LedgerError>;
-
-struct AppendJob {
-    line: Vec<u8>,
-    /// Gets the result once the line is on disk, if a thread waits for it.
-    done: Option<mpsc::SyncSender<AppendResult>>,
-}
-
-/// Passes lines to the writing thread. When it is dropped, all pending lines are written first.
+/// Passes lines to the thread that writes them. When it is dropped, all pending lines are written first.
 #[derive(Debug)]
 pub(super) struct ChunkAppender {
-    jobs: Option<mpsc::SyncSender<AppendJob>>,
-    thread: Option<JoinHandle<()>>,
+    lines: CommitQueue<Vec<u8>, ()>,
     path: PathBuf,
 }
 
@@ -39,7 +28,7 @@ impl ChunkAppender {
         #[cfg(unix)]
         std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
         let file = options.open(path).map_err(&failed)?;
-        let mut tail = ChunkFileTail { file, sound, is_torn: true };
+        let mut tail = ChunkFileTail { file, place: LedgerLocation::from_path(path), sound, is_torn: true };
         if sound == 0 {
             let first =
                 ChunkEntry::Ledger { format: CHUNK_LINE_FORMAT }.to_line().map_err(|error| failed(error.into()))?;
@@ -48,34 +37,24 @@ impl ChunkAppender {
         } else {
             tail.cut_torn_end().map_err(&failed)?;
         }
-        let (sender, jobs) = mpsc::sync_channel(MOST_AT_ONCE);
-        let place = LedgerLocation::from_path(path);
-        let thread = thread::Builder::new()
-            .name("recording".to_owned())
-            .spawn(move || run_append_thread(&mut tail, &jobs, &place))
-            .map_err(LedgerError::io_error(path, "start the ledger's thread"))?;
-        Ok(Self { jobs: Some(sender), thread: Some(thread), path: path.to_owned() })
+        Ok(Self { lines: CommitQueue::start("recording", path, tail)?, path: path.to_owned() })
     }
 
     /// Writes a line, and returns once it is on disk.
-    pub(super) fn write_line(&self, entry: &ChunkEntry) -> AppendResult {
-        let (done, written) = mpsc::sync_channel(1);
-        self.send_job(AppendJob { line: self.encode_line(entry)?, done: Some(done) });
-        written.recv().unwrap_or_else(|_| Err(self.thread_ended_error()))
+    pub(super) fn write_line(&self, entry: &ChunkEntry) -> Result<(), LedgerError> {
+        self.lines.write_and_wait(self.encode_line(entry)?)
     }
 
     /// Writes a line with the next write that succeeds, and does not wait for it.
     pub(super) fn queue_line(&self, entry: &ChunkEntry) {
         if let Ok(line) = self.encode_line(entry) {
-            self.send_job(AppendJob { line, done: None });
+            self.lines.queue_write(line);
         }
     }
 
     /// Returns once all earlier lines are on disk.
-    pub(super) fn flush(&self) -> AppendResult {
-        let (done, written) = mpsc::sync_channel(1);
-        self.send_job(AppendJob { line: Vec::new(), done: Some(done) });
-        written.recv().unwrap_or_else(|_| Err(self.thread_ended_error()))
+    pub(super) fn flush(&self) -> Result<(), LedgerError> {
+        self.lines.write_and_wait(Vec::new())
     }
 
     fn encode_line(&self, entry: &ChunkEntry) -> Result<Vec<u8>, LedgerError> {
@@ -86,37 +65,12 @@ impl ChunkAppender {
         }
         Ok(line)
     }
-
-    fn send_job(&self, job: AppendJob) {
-        if let Some(jobs) = &self.jobs {
-            // If the thread has ended, the caller that waits gets an error.
-            let _ = jobs.send(job);
-        }
-    }
-
-    fn thread_ended_error(&self) -> LedgerError {
-        LedgerError::Store {
-            place: LedgerLocation::from_path(&self.path),
-            doing: "write",
-            reason: "the thread that writes it has ended".to_owned(),
-            hint: "run the same command again",
-            is_lost: false,
-        }
-    }
-}
-
-impl Drop for ChunkAppender {
-    fn drop(&mut self) {
-        self.jobs = None;
-        if let Some(thread) = self.thread.take() {
-            let _ = thread.join();
-        }
-    }
 }
 
 /// A file, and how many of its bytes are intact.
 struct ChunkFileTail {
     file: File,
+    place: LedgerLocation,
     sound: u64,
     /// Whether the file may have other bytes behind the intact lines.
     is_torn: bool,
@@ -143,41 +97,19 @@ impl ChunkFileTail {
     }
 }
 
-fn run_append_thread(tail: &mut ChunkFileTail, jobs: &mpsc::Receiver<AppendJob>, place: &LedgerLocation) {
-    let mut group = Vec::new();
-    while let Ok(first) = jobs.recv() {
-        group.push(first);
-        while group.len() < MOST_AT_ONCE {
-            let Ok(next) = jobs.try_recv() else { break };
-            group.push(next);
-        }
-        let written = write_group(tail, &group, place);
-        group = report_results(group, &written);
-    }
-    let _ = write_group(tail, &group, place);
-}
+impl GroupCommit for ChunkFileTail {
+    type Write = Vec<u8>;
+    type Outcome = ();
 
-fn write_group(tail: &mut ChunkFileTail, group: &[AppendJob], place: &LedgerLocation) -> AppendResult {
-    let bytes: Vec<u8> = group.iter().flat_map(|job| &job.line).copied().collect();
-    if bytes.is_empty() {
-        return Ok(());
-    }
-    tail.append_bytes(&bytes).map_err(LedgerError::io_error(place.clone(), "write the recording"))
-}
-
-/// Passes the result to the threads that wait. Returns the lines that were not written and that no thread waits for:
-/// they go into the next write.
-fn report_results(group: Vec<AppendJob>, written: &AppendResult) -> Vec<AppendJob> {
-    let mut unwritten = Vec::new();
-    for job in group {
-        match job.done {
-            // The thread may no longer wait.
-            Some(done) => drop(done.send(written.clone())),
-            None if written.is_err() => unwritten.push(job),
-            None => {}
+    fn commit_group(&mut self, lines: &[Vec<u8>]) -> Result<Vec<()>, LedgerError> {
+        let bytes = lines.concat();
+        if !bytes.is_empty() {
+            self.append_bytes(&bytes).map_err(LedgerError::io_error(self.place.clone(), "write the recording"))?;
         }
+        Ok(vec![(); lines.len()])
     }
-    unwritten
+
+    fn finish(self) {}
 }
 
 /// Makes the name of a new file survive a loss of power, by syncing its folder. File systems that do not support this do not need it.

@@ -1,8 +1,7 @@
 //! A line of a chunk's file: a JSON object that begins with the checksum of the rest of the line.
 
-use crate::{CallKey, LedgerEntry, store::RequestEnd};
+use crate::{CallKey, LedgerEntry, checksum::sha256_text, store::RequestEnd};
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
 
 /// Version of the lines.
 pub(super) const CHUNK_LINE_FORMAT: u32 = 1;
@@ -33,7 +32,7 @@ impl ChunkEntry {
     pub(super) fn to_line(&self) -> serde_json::Result<Vec<u8>> {
         let json = serde_json::to_vec(self)?;
         let rest = json.get(1..).unwrap_or_default();
-        let mut line = format!("{LINE_PREFIX}{}{CHECKSUM_SUFFIX}", sha256_digits(rest)).into_bytes();
+        let mut line = format!("{LINE_PREFIX}{}{CHECKSUM_SUFFIX}", sha256_text(rest)).into_bytes();
         line.extend_from_slice(rest);
         line.push(b'\n');
         Ok(line)
@@ -54,7 +53,7 @@ impl ChunkEntry {
         let behind = line.strip_prefix(LINE_PREFIX.as_bytes()).ok_or("it is no line of a recording in chunks")?;
         let (checksum, rest) = behind.split_at_checked(CHECKSUM_DIGITS).ok_or_else(changed)?;
         let rest = rest.strip_prefix(CHECKSUM_SUFFIX.as_bytes()).ok_or_else(changed)?;
-        if checksum != sha256_digits(rest).as_bytes() {
+        if checksum != sha256_text(rest).as_bytes() {
             return Err(changed());
         }
         let json = [b"{", rest].concat();
@@ -66,10 +65,6 @@ impl ChunkEntry {
             _ => Ok(entry),
         }
     }
-}
-
-fn sha256_digits(bytes: &[u8]) -> String {
-    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 #[cfg(test)]

@@ -1,4 +1,5 @@
-//! A store of recordings: each chunk of a shard has one file of JSON lines, to which requests and answers are appended.
+//! A store for the calls of a shard. Each chunk has one file of JSON lines, its recording, to which requests and answers are
+//! appended.
 //!
 //! It is meant for network file systems, where a file of SQLite is not safe. It uses no locks and no second file, and never overwrites
 //! written bytes. The caller has to make sure that only one program at a time writes a file.
@@ -8,12 +9,13 @@ mod line;
 mod read;
 mod tally;
 
-use super::{CallOrder, CallQueries, CallStore, ClaimHolder, ClaimState, PendingRequest, RequestEnd, SqliteStore};
+use super::{
+    CallOrder, CallQueries, CallStore, ClaimHolder, ClaimState, PendingRequest, RequestEnd, SentRequest, SqliteStore,
+};
 use crate::{
     CallAnswer, CallKey, CostGrouping, CostLine, LedgerEntry, LedgerError, LedgerFilter, LedgerLocation,
     RequestRefusedError, RunSpending,
     budget::{SpentBudget, check_limits},
-    run::SentRequest,
 };
 use append::ChunkAppender;
 use std::{
@@ -26,7 +28,7 @@ use tally::ChunkTally;
 
 pub(crate) use line::ChunkEntry;
 
-/// The recordings of a shard. One of its chunks is current.
+/// The recordings of a shard. Calls go to that of the current chunk, which `turn_to` selects.
 #[derive(Debug, Default)]
 pub(crate) struct ChunkStore {
     state: Mutex<ChunkStoreState>,
@@ -46,7 +48,7 @@ struct ChunkStoreState {
 struct OpenChunk {
     path: PathBuf,
     file: ChunkAppender,
-    /// The answers of this chunk.
+    /// The answers of this chunk, to look them up.
     memory: SqliteStore,
 }
 
@@ -181,6 +183,7 @@ impl CallStore for ChunkStore {
     }
 
     fn claim_call(&self, _: &CallKey, _: Option<&str>) -> Result<ClaimState, LedgerError> {
+        // Only this program writes the recording, so no other one can be making the call.
         Ok(ClaimState::Ours)
     }
 

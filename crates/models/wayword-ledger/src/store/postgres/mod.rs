@@ -12,10 +12,10 @@ mod rates;
 mod rows;
 mod tables;
 
-use super::{CallQueries, CallStore, ClaimHolder, ClaimState, PendingRequest, RequestEnd, SendSlot};
+use super::{CallQueries, CallStore, ClaimHolder, ClaimState, PendingRequest, RequestEnd, SendSlot, SentRequest};
 use crate::{
     CallAnswer, CallKey, LedgerEntry, LedgerError, LedgerLocation, ProviderRates, RequestRefusedError,
-    budget::check_limits, checksum, run::SentRequest,
+    budget::check_limits, checksum,
 };
 use link::{DatabaseLink, ReserveOutcome};
 use presence::DatabasePresence;

@@ -5,10 +5,8 @@ mod queries;
 mod schema;
 mod writer;
 
-use super::{CallStore, ClaimHolder, ClaimState, PendingRequest, RequestEnd};
-use crate::{
-    CallAnswer, CallKey, LedgerEntry, LedgerError, LedgerLocation, RequestRefusedError, network_at, run::SentRequest,
-};
+use super::{CallStore, ClaimHolder, ClaimState, PendingRequest, RequestEnd, SentRequest};
+use crate::{CallAnswer, CallKey, LedgerEntry, LedgerError, LedgerLocation, RequestRefusedError, network_at};
 use presence::PresenceFile;
 use rusqlite::{Connection, OpenFlags, OptionalExtension, params};
 use std::{
@@ -53,7 +51,7 @@ impl SqliteStore {
         };
         let mut writing = connect()?;
         schema::prepare_tables(&mut writing, path)?;
-        let (reader, writer) = (Mutex::new(connect()?), LedgerWriter::start(writing, path)?);
+        let (reader, writer) = (Mutex::new(connect()?), LedgerWriter::for_connection(writing, path)?);
         Ok(Self { path: path.to_owned(), reader, writer, presence: OnceLock::new(), is_shared: true })
     }
 
@@ -74,7 +72,7 @@ impl SqliteStore {
         let reader = connect()?;
         // Otherwise connections that share a cache would lock each other out.
         reader.pragma_update(None, "read_uncommitted", true).map_err(LedgerError::store_error(&path, "open"))?;
-        let (reader, writer) = (Mutex::new(reader), LedgerWriter::start(writing, &path)?);
+        let (reader, writer) = (Mutex::new(reader), LedgerWriter::for_connection(writing, &path)?);
         Ok(Self { path, reader, writer, presence: OnceLock::new(), is_shared: false })
     }
 

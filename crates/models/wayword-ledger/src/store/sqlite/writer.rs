@@ -1,17 +1,17 @@
-//! The one thread that writes a ledger's file. Each commit has to wait for the disk, so the thread combines all writes that arrived
-//! during the last commit into the next one.
+//! Writes a ledger's file: several writes in each transaction.
 
-use crate::{LedgerEntry, LedgerError, LedgerLocation, checksum, store::ClaimState};
+use crate::{
+    LedgerEntry, LedgerError, checksum,
+    store::{
+        ClaimState,
+        commit_queue::{CommitQueue, GroupCommit},
+    },
+};
 use rusqlite::{Connection, Transaction, TransactionBehavior, params};
 use std::{
     path::{Path, PathBuf},
-    sync::mpsc,
-    thread::{self, JoinHandle},
     time::Duration,
 };
-
-/// Most writes in the queue, and in one commit. A sender waits while the queue is full, so that memory is bounded.
-const MOST_AT_ONCE: usize = 1024;
 
 /// How long the last checkpoint waits for other programs. They can make the checkpoint too.
 const LAST_PATIENCE: Duration = Duration::from_secs(1);
@@ -37,10 +37,6 @@ pub(super) enum LedgerWrite {
     Flush,
 }
 
-/// The result of a write: for a request that is about to be sent, its number; for an answer, 1 if it is the first and 0
-/// if the call had one before; for a claim, the number that [`claim_from_number`] reads.
-type WriteResult = Result<i64, LedgerError>;
-
 impl LedgerWrite {
     /// Whether the write has to survive a loss of power. Claims need not, because they end with their programs.
     fn has_to_last(&self) -> bool {
@@ -48,123 +44,48 @@ impl LedgerWrite {
     }
 }
 
-struct WriteJob {
-    write: LedgerWrite,
-    /// Gets the result once the write is on disk, if a thread waits for it.
-    done: Option<mpsc::SyncSender<WriteResult>>,
-}
-
-/// Passes writes to the writing thread. When it is dropped, all pending writes are finished first.
-#[derive(Debug)]
-pub(super) struct LedgerWriter {
-    jobs: Option<mpsc::SyncSender<WriteJob>>,
-    thread: Option<JoinHandle<()>>,
-    path: PathBuf,
-}
+/// Passes writes to the thread that writes the file. The result of a write is a number: for a request that is about to be sent, its
+/// own; for an answer, 1 if it is the first and 0 if the call had one before; for a claim, the number that [`claim_from_number`]
+/// reads.
+pub(super) type LedgerWriter = CommitQueue<LedgerWrite, i64>;
 
 impl LedgerWriter {
-    pub(super) fn start(connection: Connection, path: &Path) -> Result<Self, LedgerError> {
-        let (sender, jobs) = mpsc::sync_channel(MOST_AT_ONCE);
-        let of = path.to_owned();
-        let thread = thread::Builder::new()
-            .name("ledger".to_owned())
-            .spawn(move || run_write_thread(connection, &jobs, &of))
-            .map_err(LedgerError::io_error(path, "start the ledger's thread"))?;
-        Ok(Self { jobs: Some(sender), thread: Some(thread), path: path.to_owned() })
-    }
-
-    /// Writes a change, and returns once it is on disk.
-    pub(super) fn write_and_wait(&self, write: LedgerWrite) -> WriteResult {
-        let (done, written) = mpsc::sync_channel(1);
-        self.send_job(WriteJob { write, done: Some(done) });
-        written.recv().unwrap_or_else(|_| Err(self.thread_ended_error()))
-    }
-
-    /// Writes a change with the next commit that succeeds, and does not wait for it.
-    pub(super) fn queue_write(&self, write: LedgerWrite) {
-        self.send_job(WriteJob { write, done: None });
+    pub(super) fn for_connection(connection: Connection, path: &Path) -> Result<Self, LedgerError> {
+        Self::start("ledger", path, LedgerCommitter { connection, path: path.to_owned() })
     }
 
     /// Returns once all earlier writes are on disk.
     pub(super) fn flush(&self) -> Result<(), LedgerError> {
         self.write_and_wait(LedgerWrite::Flush).map(drop)
     }
-
-    fn send_job(&self, job: WriteJob) {
-        if let Some(jobs) = &self.jobs {
-            // If the thread has ended, `keep` returns an error.
-            let _ = jobs.send(job);
-        }
-    }
-
-    fn thread_ended_error(&self) -> LedgerError {
-        LedgerError::Store {
-            place: LedgerLocation::from_path(&self.path),
-            doing: "write",
-            reason: "the thread that writes it has ended".to_owned(),
-            hint: "run the same command again",
-            is_lost: false,
-        }
-    }
 }
 
-impl Drop for LedgerWriter {
-    fn drop(&mut self) {
-        self.jobs = None;
-        if let Some(thread) = self.thread.take() {
-            let _ = thread.join();
-        }
-    }
+/// Makes each group of writes in one transaction.
+struct LedgerCommitter {
+    connection: Connection,
+    path: PathBuf,
 }
 
-fn run_write_thread(mut connection: Connection, jobs: &mpsc::Receiver<WriteJob>, path: &Path) {
-    let mut group = Vec::new();
-    while let Ok(first) = jobs.recv() {
-        group.push(first);
-        while group.len() < MOST_AT_ONCE {
-            let Ok(next) = jobs.try_recv() else { break };
-            group.push(next);
-        }
-        let written = commit_group(&mut connection, &group, path);
-        group = report_results(group, &written);
-    }
-    if !group.is_empty() {
-        let _ = commit_group(&mut connection, &group, path);
-    }
-    // Puts everything into the main file, because then the ledger is easier to copy. Otherwise the next program would
-    // do this.
-    let _ = connection.busy_timeout(LAST_PATIENCE);
-    let _ = connection.execute_batch("PRAGMA wal_checkpoint(TRUNCATE)");
-}
+impl GroupCommit for LedgerCommitter {
+    type Write = LedgerWrite;
+    type Outcome = i64;
 
-/// Passes the result to the threads that wait. Returns the failed writes that no thread waits for: they go into the
-/// next commit.
-fn report_results(group: Vec<WriteJob>, written: &Result<Vec<i64>, LedgerError>) -> Vec<WriteJob> {
-    let mut unwritten = Vec::new();
-    for (at, job) in group.into_iter().enumerate() {
-        let result = match written {
-            Ok(numbers) => Ok(numbers.get(at).copied().unwrap_or(0)),
-            Err(error) => Err(error.clone()),
-        };
-        match job.done {
-            // The thread may no longer wait.
-            Some(done) => drop(done.send(result)),
-            None if result.is_err() => unwritten.push(job),
-            None => {}
-        }
+    fn commit_group(&mut self, group: &[LedgerWrite]) -> Result<Vec<i64>, LedgerError> {
+        let failed = LedgerError::store_error(&self.path, "write");
+        let sync = if group.iter().any(LedgerWrite::has_to_last) { "FULL" } else { "NORMAL" };
+        self.connection.pragma_update(None, "synchronous", sync).map_err(&failed)?;
+        let transaction = self.connection.transaction_with_behavior(TransactionBehavior::Immediate).map_err(&failed)?;
+        let numbers =
+            group.iter().map(|write| apply_write(&transaction, write)).collect::<Result<_, _>>().map_err(&failed)?;
+        transaction.commit().map_err(&failed)?;
+        Ok(numbers)
     }
-    unwritten
-}
 
-fn commit_group(connection: &mut Connection, group: &[WriteJob], path: &Path) -> Result<Vec<i64>, LedgerError> {
-    let failed = LedgerError::store_error(path, "write");
-    let sync = if group.iter().any(|job| job.write.has_to_last()) { "FULL" } else { "NORMAL" };
-    connection.pragma_update(None, "synchronous", sync).map_err(&failed)?;
-    let transaction = connection.transaction_with_behavior(TransactionBehavior::Immediate).map_err(&failed)?;
-    let numbers =
-        group.iter().map(|job| apply_write(&transaction, &job.write)).collect::<Result<_, _>>().map_err(&failed)?;
-    transaction.commit().map_err(&failed)?;
-    Ok(numbers)
+    /// Puts everything into the main file, because then the ledger is easier to copy. Otherwise the next program would do this.
+    fn finish(self) {
+        let _ = self.connection.busy_timeout(LAST_PATIENCE);
+        let _ = self.connection.execute_batch("PRAGMA wal_checkpoint(TRUNCATE)");
+    }
 }
 
 fn apply_write(transaction: &Transaction<'_>, write: &LedgerWrite) -> rusqlite::Result<i64> {

@@ -7,10 +7,10 @@
 use super::{PickleCallable, PickleTuple, PickleValue, TensorLocation, TensorStorage};
 use std::{collections::BTreeMap, rc::Rc};
 
-/// The most values, so that a small file cannot fill the memory.
+/// The most steps of a pickle, each of which makes at most one value, so that a small file cannot fill the memory.
 const MOST_VALUES: usize = 4 << 20;
 
-/// The deepest nesting of tuples.
+/// The deepest nesting of tuples; deeper ones are refused.
 const MAX_TUPLE_DEPTH: usize = 16;
 
 /// The state of the stack machine: the bytes that are left, the stack, the marks on it, and the values that got a
@@ -21,7 +21,9 @@ pub(super) struct PickleMachine<'a> {
     stack: Vec<PickleValue>,
     marks: Vec<usize>,
     memo: BTreeMap<u32, PickleValue>,
+    /// The tables that the pickle makes. Values refer to them by their index.
     pub(super) tables: Vec<BTreeMap<Rc<str>, PickleValue>>,
+    /// The number of steps so far.
     made: usize,
 }
 
@@ -30,6 +32,12 @@ impl<'a> PickleMachine<'a> {
         Self { rest: bytes, ..Self::default() }
     }
 
+    /// Performs the steps until the first one below, and returns the value on top of the stack.
+    ///
+    /// The steps below have these names in Python's `pickletools`, in their order: STOP, PROTO, MARK, NONE with NEWTRUE
+    /// and NEWFALSE, BINFLOAT, EMPTY_DICT, EMPTY_LIST, EMPTY_TUPLE, BININT1, BININT2, BININT, LONG1, BINUNICODE,
+    /// SHORT_BINSTRING, BINPUT, LONG_BINPUT, BINGET, LONG_BINGET, GLOBAL, TUPLE, TUPLE1 to TUPLE3, BINPERSID, REDUCE,
+    /// BUILD, APPEND, APPENDS, SETITEM, SETITEMS.
     pub(super) fn run(&mut self) -> Result<PickleValue, String> {
         loop {
             let step = self.take_byte()?;
@@ -86,17 +94,20 @@ impl<'a> PickleMachine<'a> {
         Ok(self.take_bytes(bytes)?.iter().rev().fold(0, |number, &byte| number << 8 | u32::from(byte)))
     }
 
+    /// Takes the value on top of the stack, if it is above the last mark.
     fn pop_value(&mut self) -> Result<PickleValue, String> {
         let floor = self.marks.last().copied().unwrap_or(0);
         let value = if self.stack.len() > floor { self.stack.pop() } else { None };
         value.ok_or_else(|| "it takes a value that is not there".to_owned())
     }
 
+    /// Takes all values since the last mark, and the mark.
     fn since_mark(&mut self) -> Result<Vec<PickleValue>, String> {
         let mark = self.marks.pop().ok_or("it ends a list that did not begin")?;
         Ok(self.stack.split_off(mark.min(self.stack.len())))
     }
 
+    /// Skips the bytes of a value that is not needed, and pushes a placeholder for it.
     fn skip_bytes(&mut self, bytes: usize) -> Result<(), String> {
         self.take_bytes(bytes)?;
         self.stack.push(PickleValue::Other);
@@ -119,6 +130,7 @@ impl<'a> PickleMachine<'a> {
         Ok(())
     }
 
+    /// Pushes a whole number of any length, which comes first. Its sign is in the highest bit.
     fn push_long(&mut self) -> Result<(), String> {
         let count = usize::from(self.take_byte()?);
         let bytes = self.take_bytes(count)?;
@@ -129,6 +141,7 @@ impl<'a> PickleMachine<'a> {
         Ok(())
     }
 
+    /// Pushes a text. Its length comes first, in a number of `bytes` bytes.
     fn push_text(&mut self, bytes: usize) -> Result<(), String> {
         let length = self.take_number(bytes)? as usize;
         let text = std::str::from_utf8(self.take_bytes(length)?).map_err(|_| "a text is not UTF-8")?;
@@ -137,6 +150,7 @@ impl<'a> PickleMachine<'a> {
         Ok(())
     }
 
+    /// Keeps the value on top of the stack under a number of `bytes` bytes.
     fn memorise_top(&mut self, bytes: usize) -> Result<(), String> {
         let number = self.take_number(bytes)?;
         let value = self.stack.last().cloned().ok_or("it keeps a value that is not there")?;
@@ -144,6 +158,7 @@ impl<'a> PickleMachine<'a> {
         Ok(())
     }
 
+    /// Pushes the value that was kept under a number of `bytes` bytes.
     fn recall_value(&mut self, bytes: usize) -> Result<(), String> {
         let number = self.take_number(bytes)?;
         let value = self.memo.get(&number).cloned().ok_or("it recalls a value that was not kept")?;
@@ -158,6 +173,7 @@ impl<'a> PickleMachine<'a> {
         Ok(line)
     }
 
+    /// Pushes a function or type by its name. Names that are not known are an error.
     fn push_known_name(&mut self) -> Result<(), String> {
         let (module, name) = (self.take_line()?, self.take_line()?);
         let known = match (&module[..], &name[..]) {
@@ -189,6 +205,7 @@ impl<'a> PickleMachine<'a> {
         Ok(())
     }
 
+    /// Pushes a tuple of the topmost values.
     fn short_tuple(&mut self, length: usize) -> Result<(), String> {
         let mut values = (0..length).map(|_| self.pop_value()).collect::<Result<Vec<_>, _>>()?;
         values.reverse();
@@ -218,14 +235,17 @@ impl<'a> PickleMachine<'a> {
         Ok(())
     }
 
+    /// Replaces a function and the tuple of its arguments on the stack by its result.
     fn call_name(&mut self) -> Result<(), String> {
-        let (given, called) = (self.pop_value()?, self.pop_value()?);
-        match (called, given) {
-            (PickleValue::Known(PickleCallable::OrderedDict), PickleValue::Tuple(given)) if given.values.is_empty() => {
-                self.push_table()
+        let (arguments, function) = (self.pop_value()?, self.pop_value()?);
+        match (function, arguments) {
+            (PickleValue::Known(PickleCallable::OrderedDict), PickleValue::Tuple(arguments))
+                if arguments.values.is_empty() =>
+            {
+                self.push_table();
             }
-            (PickleValue::Known(PickleCallable::Rebuild), PickleValue::Tuple(given)) => {
-                let place = tensor_location(&given.values).ok_or("a tensor is not described as PyTorch does")?;
+            (PickleValue::Known(PickleCallable::Rebuild), PickleValue::Tuple(arguments)) => {
+                let place = tensor_location(&arguments.values).ok_or("a tensor is not described as PyTorch does")?;
                 self.stack.push(PickleValue::Tensor(Rc::new(place)));
             }
             _ => return Err("it calls something that is not to be called so".to_owned()),
@@ -262,14 +282,14 @@ impl<'a> PickleMachine<'a> {
 }
 
 /// Reads the location of a tensor from the arguments of its constructor: (storage, offset, shape, strides, ..).
-fn tensor_location(given: &[PickleValue]) -> Option<TensorLocation> {
+fn tensor_location(arguments: &[PickleValue]) -> Option<TensorLocation> {
     let [
         PickleValue::Storage(storage),
         PickleValue::Whole(offset),
         PickleValue::Tuple(shape),
         PickleValue::Tuple(strides),
         ..,
-    ] = given
+    ] = arguments
     else {
         return None;
     };

@@ -16,6 +16,7 @@ use wayword_run::{
     count::count_phrase,
     error::CommandError,
     run_folder::{RejectedText, file, read_lines},
+    settings::RolePlayer,
     terms,
 };
 
@@ -23,9 +24,6 @@ const CARD_TEMPLATE: &str = include_str!("card.md");
 /// The hub's classes of size, each with its upper limit.
 const HUB_SIZE_CLASSES: [(usize, &str); 4] =
     [(1_000, "n<1K"), (10_000, "1K<n<10K"), (100_000, "10K<n<100K"), (1_000_000, "100K<n<1M")];
-/// Names of the roles that no model plays.
-const LABELS_ROLE: &str = "labels";
-const RULES_ROLE: &str = "rules";
 
 /// The values that the template of the card shows.
 #[derive(Debug, Serialize)]
@@ -164,8 +162,8 @@ impl DatasetCard {
             scenes: count_scenes(&all),
             splits: split_lines(records, splits),
             roles: role_lines(records),
-            labels: count(|record| record.instruction.provenance.answerer == LABELS_ROLE),
-            rules: count(|record| record.instruction.provenance.writer == RULES_ROLE),
+            labels: count(|record| RolePlayer::Labels.is_named(&record.instruction.provenance.answerer)),
+            rules: count(|record| RolePlayer::Rules.is_named(&record.instruction.provenance.writer)),
             styles: records.iter().map(|record| record.instruction.style.clone()).collect(),
             seeds: records.iter().map(|record| record.instruction.provenance.seed.to_string()).collect(),
             repaired: count(|record| record.instruction.provenance.repairs > 0),

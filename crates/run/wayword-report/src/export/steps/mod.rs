@@ -24,6 +24,7 @@ use std::{
 };
 use store::{TrajectoryMaker, TrajectoryStore};
 use walks::{ExportedWalk, walks_from_records};
+use wayword_core::hex_text;
 use wayword_formats::{
     DatasetFormat,
     jsonl::InstructionRecord,
@@ -175,5 +176,5 @@ fn hash_texts(records: &[InstructionRecord], splits: &[String]) -> String {
         // A record that was read can be written.
         hash.update(serde_json::to_vec(&(record, split)).unwrap_or_default());
     }
-    hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+    hex_text(hash.finalize())
 }

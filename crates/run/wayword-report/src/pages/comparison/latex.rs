@@ -5,6 +5,7 @@ use super::{
     notes,
 };
 use std::fmt::Write;
+use wayword_metrics::escape_latex;
 use wayword_navigation::comparison::AgentComparison;
 
 /// The comparison as a LaTeX table; it needs the package `booktabs`.
@@ -63,27 +64,4 @@ fn latex_number(text: &str) -> String {
 fn append_text(table: &mut String, text: std::fmt::Arguments<'_>) {
     // Writing to a text cannot fail.
     let _ = table.write_fmt(text);
-}
-
-/// Escapes a text for LaTeX.
-fn escape_latex(text: &str) -> String {
-    let mut escaped = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '\\' => escaped.push_str("\\textbackslash{}"),
-            '~' => escaped.push_str("\\textasciitilde{}"),
-            '^' => escaped.push_str("\\textasciicircum{}"),
-            '<' => escaped.push_str("\\textless{}"),
-            '>' => escaped.push_str("\\textgreater{}"),
-            '|' => escaped.push_str("\\textbar{}"),
-            '"' => escaped.push_str("\\textquotedbl{}"),
-            '†' => escaped.push_str("\\textdagger{}"),
-            // After the end of a line of a table it would begin an option.
-            '[' => escaped.push_str("{[}"),
-            '…' => escaped.push_str("\\ldots{}"),
-            '{' | '}' | '$' | '&' | '#' | '_' | '%' => escaped.extend(['\\', c]),
-            c => escaped.push(c),
-        }
-    }
-    escaped
 }

@@ -233,7 +233,7 @@ fn an_agent_that_follows_has_no_warning_and_one_that_was_not_tested_has_its_own(
 
 /// Ground truth is not mistaken for perception, nor the knowledge of the map for understanding of the text.
 #[test]
-fn notes_name_the_ground_truth_that_readers_get() {
+fn notes_name_the_labels_and_rooms_that_readers_get() {
     let mut comparison = comparison();
     comparison.about.prior = Some("shortest:1-8".into());
     comparison.about.parameters.clear();

@@ -7,7 +7,9 @@ use wayword_robustness::ratio::RobustnessRatio;
 /// How many of the texts that were written again in the unchanged world are equal to the run's own.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RepeatedTexts {
+    /// Those that are equal.
     pub equal: usize,
+    /// All that were written again.
     pub of: usize,
 }
 
@@ -18,8 +20,9 @@ pub struct RobustnessResults {
     pub platform: String,
     /// Who answered and who wrote, in words.
     pub roles: String,
-    /// Number of paths, and of scenes.
+    /// Number of paths.
     pub paths: usize,
+    /// Number of scenes.
     pub scenes: usize,
     /// How many of the texts of the unchanged world are those of the run.
     pub again: RepeatedTexts,
@@ -36,13 +39,16 @@ pub struct RobustnessResults {
 /// A change that was not made.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct RefusedChange {
+    /// The change with its dose.
     pub change: String,
+    /// Why it was not made.
     pub reason: String,
 }
 
 /// The results for the texts of one style.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct StyleResults {
+    /// Name of the style.
     pub style: String,
     /// Changes that are measured by R, in the order in which they were asked for.
     pub changes: Vec<ChangeResults>,
@@ -74,6 +80,7 @@ pub struct ChangeResults {
 pub struct RobustnessFigure {
     /// `landmarks`, `turns`, `rooms`, `floors` or `mean`.
     pub kind: String,
+    /// R with its interval; `None` where it cannot be computed.
     pub r: Option<MeanEstimate>,
     /// Why there is none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -87,6 +94,7 @@ pub struct RobustnessFigure {
 /// An exact expectation, and how many texts keep it.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct ExpectationResult {
+    /// The change with its dose.
     pub change: String,
     /// The property that has to hold, in words.
     pub expected: String,
@@ -101,8 +109,11 @@ pub struct ExpectationResult {
 /// Two texts of one path.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct TextPairExample {
+    /// The id of the path.
     pub path: String,
+    /// The text of the unchanged world.
     pub before: String,
+    /// The text of the changed world.
     pub after: String,
     /// The difference, in words.
     pub note: String,

@@ -29,7 +29,7 @@ pub(super) fn write_map(args: &ViewMap, output: &CommandOutput) -> Result<Writte
     }
     let graph = platform.graph_for_scene(&scene)?;
     let level = choose_level(args.level, &scene, &graph, path.as_ref(), output)?;
-    let above = level.map(|level| platform.look_down(&scene, level)).transpose()?.flatten();
+    let above = level.map(|level| platform.ground().look_down(&scene, level)).transpose()?.flatten();
     let plan = MapPlan { graph: &graph, level, above: above.as_ref(), path: path.as_ref() };
     let sketch = layout::sketch_plan(&plan).ok_or_else(|| {
         let problem =
@@ -44,7 +44,7 @@ pub(super) fn write_map(args: &ViewMap, output: &CommandOutput) -> Result<Writte
         (picture::encode_png(&painted)?, [painted.width_px(), painted.height_px()])
     };
     UnfinishedFile::write_whole(&args.out, &bytes)?;
-    let islands = platform.ground_islands(&scene)?;
+    let islands = platform.ground().ground_islands(&scene)?;
     Ok(WrittenView { scene, files: vec![args.out.clone()], width, height, frames: 1, islands })
 }
 

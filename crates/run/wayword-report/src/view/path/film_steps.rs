@@ -12,6 +12,7 @@ const WALKS_M: f64 = 1.0;
 /// A place from which a picture of the film is taken.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FilmStep {
+    /// The pose of the camera, with its place in the scene.
     pub frame: Frame,
     /// Whether it lies between two of the path's own frames.
     pub is_between: bool,

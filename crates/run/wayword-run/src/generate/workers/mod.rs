@@ -6,7 +6,11 @@ mod chunk;
 mod plan_file;
 mod summaries;
 
-use super::{ItemWorkshop, refuse_impossible_paths, warn_of_no_effect};
+use super::{
+    ItemWorkshop,
+    prepare::{ModelCheck, PreparedRun},
+    warn_of_no_effect,
+};
 use crate::{
     calls::{CallKeeping, ModelCalls},
     error::{CommandError, Exit},
@@ -16,7 +20,6 @@ use crate::{
     lookout::DetectorLookout,
     output::CommandOutput,
     plan::RunPlan,
-    platforms, scene_selection,
     settings::{RunJob, RunSettings},
     stores::RunPlace,
     team::RoleTeam,
@@ -34,6 +37,10 @@ pub(super) struct WorkerStop {
     exit: Exit,
 }
 
+/// Writes the plan of a run that workers share, or makes this worker's part of it, and prints how far it came.
+///
+/// # Errors
+/// When the settings differ from those of the plan, the folder, the queue or the platform cannot be used, or a model is not ready.
 pub fn run_worker(
     out: &Path,
     job: &RunJob,
@@ -49,36 +56,26 @@ pub fn run_worker(
     let before = kept.as_ref().map(|kept| plan_file::settings_of(out, kept)).transpose()?;
     let service = board::part_of(&job.service, asked, output)?;
     // The list of recordings is filled in once this worker has its part.
-    let mut job = RunJob { service, keeping: CallKeeping::Chunks(Vec::new()), ..job.clone() };
-    if let Some(before) = &before {
-        job.settings.left_out.clone_from(&before.left_out);
-    }
-    if !asked.plan {
-        ModelCalls::check_ready(&job, output)?;
-    }
-    let platform = platforms::open_platform(&job.settings)?;
-    if before.is_none() {
-        job.settings = scene_selection::settle_left_out(&job.settings, platform.as_ref(), output)?;
-    }
-    let plan = RunPlan::for_writing(&job, platform.as_ref())?;
-    let settings = plan.settings_with_hashes()?;
-    if before.is_none() {
-        scene_selection::tell_of_episodes(&settings, &plan.items, platform.as_ref(), output)?;
-        refuse_impossible_paths(&plan.items, &settings, platform.as_ref())?;
+    let job = RunJob { service, keeping: CallKeeping::Chunks(Vec::new()), ..job.clone() };
+    let continued = before.map(|before| RunSettings { left_out: before.left_out, ..job.settings.clone() });
+    let check = if asked.plan { ModelCheck::PlanAlone } else { ModelCheck::ReadyFirst };
+    let prepared = PreparedRun::open(&job, continued, check, output)?;
+    let (plan, settings) = &prepared.plan_with_settings(output)?;
+    if prepared.is_new {
         place.check_store()?;
-        plan_file::write_plan(out, &plan, &settings, asked)?;
+        plan_file::write_plan(out, plan, settings, asked)?;
         place.publish_file(PLAN)?;
     }
     // Another worker may have written the plan meanwhile, and the plan in the folder counts.
     let kept = kept.map_or_else(|| wayword_queue::ChunkPlan::for_folder(out), Ok)?;
-    plan_file::check_agreement(place.shown_path(), &kept, &plan, &settings, asked)?;
+    plan_file::check_agreement(place.shown_path(), &kept, plan, settings, asked)?;
     if asked.plan {
         let told = PlanSummary::from_plan(place.shown_path(), &kept);
         output.print_result(&told, &told);
         return Ok(Exit::Done);
     }
     watch::is_of_run(&kept.run);
-    let worked = make_chunks(&place, &kept, &plan, &settings, asked, worker, output)?;
+    let worked = make_chunks(&place, &kept, plan, settings, asked, worker, output)?;
     output.print_result(&worked, &worked);
     Ok(worked.exit)
 }

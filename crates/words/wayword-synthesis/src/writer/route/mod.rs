@@ -100,7 +100,7 @@ impl WayClause {
         self
     }
 
-    fn to_side(mut self, side: Side) -> Self {
+    fn with_side(mut self, side: Side) -> Self {
         self.side = Some(side);
         self
     }
@@ -110,7 +110,7 @@ impl WayClause {
         self
     }
 
-    fn from_room(mut self, room: &str) -> Self {
+    fn with_start_room(mut self, room: &str) -> Self {
         self.from = Some(room.to_owned());
         self
     }

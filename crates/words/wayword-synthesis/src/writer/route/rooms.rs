@@ -41,9 +41,9 @@ impl WayPlanner<'_> {
         let kind = draw_option(&kinds, &mut self.rng)?;
         let mut clause = WayClause::new(kind, opening.before, MAIN_WEIGHT);
         match kind {
-            ClauseKind::LeaveEnter => clause = clause.from_room(&from).with_room(&opening.to),
+            ClauseKind::LeaveEnter => clause = clause.with_start_room(&from).with_room(&opening.to),
             ClauseKind::ThroughDoor => {}
-            _ => clause = clause.from_room(&from).with_room(&from),
+            _ => clause = clause.with_start_room(&from).with_room(&from),
         }
         self.push(clause);
         self.enter_room(to.as_deref().filter(|_| kind == ClauseKind::LeaveEnter));
@@ -105,18 +105,18 @@ impl WayPlanner<'_> {
         let mut clause = WayClause::new(kind, at, weight);
         match kind {
             ClauseKind::Leave | ClauseKind::LeaveByDoor => {
-                clause = clause.from_room(&opening.from).with_room(&opening.from)
+                clause = clause.with_start_room(&opening.from).with_room(&opening.from);
             }
             ClauseKind::ThroughDoor | ClauseKind::ToDoor => {}
             ClauseKind::AlongToEnd => clause = clause.with_room(&opening.from),
             ClauseKind::PassEnter => {
                 clause = clause
-                    .from_room(&opening.from)
+                    .with_start_room(&opening.from)
                     .with_room(&opening.to)
                     .with_offer(ThingOffer::new(OfferRole::PassEnter, at));
                 clause.kind = ClauseKind::Enter;
             }
-            _ => clause = clause.from_room(&opening.from).with_room(&opening.to),
+            _ => clause = clause.with_start_room(&opening.from).with_room(&opening.to),
         }
         self.push(clause);
         if kind == ClauseKind::AlongToEnd {
@@ -128,7 +128,7 @@ impl WayPlanner<'_> {
             let kinds = [(1.0, ClauseKind::ThroughDoor), (if to.is_some() { 2.0 } else { 0.0 }, ClauseKind::Enter)];
             let kind = draw_option(&kinds, &mut self.rng).unwrap_or(ClauseKind::ThroughDoor);
             if kind == ClauseKind::Enter {
-                self.push(WayClause::new(kind, at, weight).from_room(&opening.from).with_room(&opening.to));
+                self.push(WayClause::new(kind, at, weight).with_start_room(&opening.from).with_room(&opening.to));
                 return self.enter_room(to.as_deref());
             }
         }
@@ -170,7 +170,7 @@ impl WayPlanner<'_> {
         }
         if self.stands_in_a_door(at) {
             self.change_room(opening);
-            return self.push(WayClause::new(ClauseKind::Turn, at, MAIN_WEIGHT).to_side(side));
+            return self.push(WayClause::new(ClauseKind::Turn, at, MAIN_WEIGHT).with_side(side));
         }
         let mut kinds: Vec<(f64, ClauseKind)> = Vec::new();
         if to.is_some() {
@@ -188,31 +188,31 @@ impl WayPlanner<'_> {
         kinds.push((self.kind_count(ClauseKind::TurnAt) * 1.5, ClauseKind::TurnAt));
         match draw_option(&kinds, &mut self.rng) {
             Some(ClauseKind::Leave) => {
-                self.push(WayClause::new(ClauseKind::Turn, at, MAIN_WEIGHT).to_side(side));
+                self.push(WayClause::new(ClauseKind::Turn, at, MAIN_WEIGHT).with_side(side));
                 self.push(
                     WayClause::new(ClauseKind::Leave, at, MAIN_WEIGHT)
-                        .from_room(&opening.from)
+                        .with_start_room(&opening.from)
                         .with_room(&opening.from),
                 );
                 self.enter_room(None);
             }
             Some(ClauseKind::TurnAt) => {
-                let turn = WayClause::new(ClauseKind::Turn, at, MAIN_WEIGHT).to_side(side);
+                let turn = WayClause::new(ClauseKind::Turn, at, MAIN_WEIGHT).with_side(side);
                 self.push(if at > 0 { turn.with_offer(ThingOffer::new(OfferRole::Turn, at)) } else { turn });
                 self.change_room(opening);
             }
             Some(ClauseKind::TurnOut) => {
                 self.push(
                     WayClause::new(ClauseKind::TurnOut, at, MAIN_WEIGHT)
-                        .to_side(side)
+                        .with_side(side)
                         .with_room(&opening.from)
-                        .from_room(&opening.from),
+                        .with_start_room(&opening.from),
                 );
                 self.enter_room(None);
             }
             Some(kind) => {
                 let told = !matches!(kind, ClauseKind::DoorOnSide | ClauseKind::TurnThroughDoor);
-                self.push(WayClause::new(kind, at, MAIN_WEIGHT).to_side(side).with_room(&opening.to));
+                self.push(WayClause::new(kind, at, MAIN_WEIGHT).with_side(side).with_room(&opening.to));
                 self.enter_room(to.as_deref().filter(|_| told));
             }
             None => self.change_room(opening),

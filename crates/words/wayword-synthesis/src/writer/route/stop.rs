@@ -24,10 +24,10 @@ impl WayPlanner<'_> {
         let mut kinds: Vec<(f64, ClauseKind)> = Vec::new();
         match flight {
             Some(ClimbDirection::Up) => {
-                kinds.push((self.kind_count(ClauseKind::StopAtTop) * 8.0, ClauseKind::StopAtTop))
+                kinds.push((self.kind_count(ClauseKind::StopAtTop) * 8.0, ClauseKind::StopAtTop));
             }
             Some(ClimbDirection::Down) => {
-                kinds.push((self.kind_count(ClauseKind::StopAtBottom) * 8.0, ClauseKind::StopAtBottom))
+                kinds.push((self.kind_count(ClauseKind::StopAtBottom) * 8.0, ClauseKind::StopAtBottom));
             }
             _ => {}
         }

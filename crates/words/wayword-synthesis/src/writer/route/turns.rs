@@ -48,10 +48,10 @@ impl WayPlanner<'_> {
         let turn = match kind {
             ClauseKind::Along => {
                 self.go_along(at.saturating_sub(1), &room, MAIN_WEIGHT);
-                WayClause::new(bare, at, MAIN_WEIGHT).to_side(side)
+                WayClause::new(bare, at, MAIN_WEIGHT).with_side(side)
             }
-            ClauseKind::TurnIn => WayClause::new(kind, at, MAIN_WEIGHT).to_side(side).with_room(&room),
-            kind => WayClause::new(kind, at, MAIN_WEIGHT).to_side(side),
+            ClauseKind::TurnIn => WayClause::new(kind, at, MAIN_WEIGHT).with_side(side).with_room(&room),
+            kind => WayClause::new(kind, at, MAIN_WEIGHT).with_side(side),
         };
         let offer = ThingOffer {
             or_straight: straight_from && kind != ClauseKind::Along,
@@ -108,7 +108,7 @@ impl WayPlanner<'_> {
             (_, false) => !bend.is_slight() && self.rng.random_bool(0.4),
         };
         if is_told {
-            self.push(WayClause::new(kind, 0, MAIN_WEIGHT).to_side(side));
+            self.push(WayClause::new(kind, 0, MAIN_WEIGHT).with_side(side));
         }
     }
 

@@ -1,4 +1,4 @@
-//! Recognises hallways by their shape: narrow, long, and with doors to several rooms. Few things in them show what they are.
+//! Recognises hallways by their shape: narrow, long, and with doors to several rooms. Few hallways have things that show it.
 
 use super::{super::SemanticThing, LEVEL_M, NumberedRooms, ShellPart};
 use std::collections::BTreeMap;
@@ -18,9 +18,10 @@ const MIN_LENGTH_FACTOR: f64 = 2.0;
 const MIN_ADJACENT_ROOMS: usize = 3;
 /// Width of a door or doorway, metres.
 const DOOR_M: std::ops::RangeInclusive<f64> = 0.4..=1.8;
-/// Floors that touch along more than this belong to one open room, metres: their numbers are for parts of it.
+/// Two floors that touch along more than this are parts of one open room, metres, although each part has its own number.
 const OPEN_M: f64 = 2.6;
-/// Most rooms that are examined, and most triangles near one place. Real scenes have fewer, and more would take long.
+/// Most rooms that are examined; the others are no hallways. With more than this many triangles near one place, no room of the
+/// scene is one. Real scenes have fewer of both, and more would take long.
 const MOST_ROOMS: usize = 64;
 const MOST_NEAR: usize = 1000;
 /// Distance of the places at which floors are looked up, metres: less than the thickness of a wall.
@@ -32,8 +33,8 @@ impl NumberedRooms {
         if self.shell.as_ref().is_none_or(|shell| shell.most_near() > MOST_NEAR) {
             return Vec::new();
         }
-        let looked_at = silent.iter().copied().take(MOST_ROOMS);
-        looked_at.filter(|room| self.is_hallway(*room, things)).collect()
+        let examined = silent.iter().copied().take(MOST_ROOMS);
+        examined.filter(|room| self.is_hallway(*room, things)).collect()
     }
 
     /// Whether a room is a hallway: its floor is narrow and long, it has a ceiling, and it leads to three rooms or more, of
@@ -50,6 +51,7 @@ impl NumberedRooms {
         broad_m <= BROAD_M && is_long && size.z <= LEVEL_M && self.leads_on(room, low, high)
     }
 
+    /// Whether a room has doors to enough other rooms, one of which is certainly indoors, and is not a part of an open room.
     fn leads_on(&self, room: u32, low: DVec3, high: DVec3) -> bool {
         let touching_m = self.touching_m(room, low, high);
         let is_door = |(_, metres): &(&u32, &f64)| DOOR_M.contains(metres);
@@ -61,17 +63,18 @@ impl NumberedRooms {
             && touching_m.values().all(|metres| *metres <= OPEN_M)
     }
 
-    /// Along how many metres the floors of other rooms touch a room's floor.
+    /// Along how many metres the floors of other rooms touch a room's floor. Floors are looked up on a grid that reaches a little
+    /// beyond the room, and wherever two neighbouring places lie in different rooms, these touch along one step.
     fn touching_m(&self, room: u32, low: DVec3, high: DVec3) -> BTreeMap<u32, f64> {
         let count = |from: f64, to: f64| ((to - from) / STEP_M) as usize + 4;
-        let at = |column: usize, row: usize| {
+        let room_at = |column: usize, row: usize| {
             let place = DVec3::new(low.x + (column as f64 - 1.5) * STEP_M, low.y + (row as f64 - 1.5) * STEP_M, 0.0);
             self.floor_below(place.with_z(high.z + LEVEL_M / 2.0), LEVEL_M + (high.z - low.z))
                 .map(|surface| surface.room)
         };
         let (columns, rows) = (count(low.x, high.x), count(low.y, high.y));
         let mut touching_m = BTreeMap::new();
-        let mut meet = |one: Option<u32>, other: Option<u32>| {
+        let mut count_border = |one: Option<u32>, other: Option<u32>| {
             if let (Some(one), Some(other)) = (one, other)
                 && one != other
                 && (one == room || other == room)
@@ -79,12 +82,12 @@ impl NumberedRooms {
                 *touching_m.entry(if one == room { other } else { one }).or_insert(0.0) += STEP_M;
             }
         };
-        let mut before: Vec<Option<u32>> = vec![None; columns];
+        let mut row_before: Vec<Option<u32>> = vec![None; columns];
         for row in 0..rows {
-            let line: Vec<Option<u32>> = (0..columns).map(|column| at(column, row)).collect();
-            line.windows(2).for_each(|pair| meet(pair[0], pair[1]));
-            line.iter().zip(&before).for_each(|(one, other)| meet(*one, *other));
-            before = line;
+            let row_rooms: Vec<Option<u32>> = (0..columns).map(|column| room_at(column, row)).collect();
+            row_rooms.windows(2).for_each(|pair| count_border(pair[0], pair[1]));
+            row_rooms.iter().zip(&row_before).for_each(|(one, other)| count_border(*one, *other));
+            row_before = row_rooms;
         }
         touching_m
     }

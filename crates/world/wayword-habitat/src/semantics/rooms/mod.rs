@@ -64,15 +64,15 @@ struct RoomSurface {
 impl NumberedRooms {
     /// The rooms of these things. `shell` has the triangles of floors, stairs and ceilings, each with the index of its thing.
     pub(super) fn from_things(things: &[SemanticThing], shell: Vec<([Vec3; 3], u32)>) -> Self {
-        let mut inside: BTreeMap<u32, Vec<&str>> = BTreeMap::new();
+        let mut things_in_room: BTreeMap<u32, Vec<&str>> = BTreeMap::new();
         // A thing without triangles has no place, so it is in no room.
         for thing in things.iter().filter(|thing| thing.bounds.is_some()) {
             if let Some(room) = thing.room {
                 let ceiling = (thing.part == Some(ShellPart::Ceiling)).then_some("ceiling");
-                inside.entry(room).or_default().extend(thing.name.as_deref().or(ceiling));
+                things_in_room.entry(room).or_default().extend(thing.name.as_deref().or(ceiling));
             }
         }
-        let verdicts = inside.into_iter().map(|(room, names)| (room, room_verdict(names.into_iter())));
+        let verdicts = things_in_room.into_iter().map(|(room, names)| (room, room_verdict(names.into_iter())));
         let (mut names, mut silent) = (BTreeMap::new(), Vec::new());
         for (room, verdict) in verdicts {
             match verdict {
@@ -144,6 +144,7 @@ impl NumberedRooms {
         over.min_by(|a, b| a.height_m.total_cmp(&b.height_m))
     }
 
+    /// The surfaces of rooms that a vertical line through a place meets, in no order.
     fn surfaces_at(&self, place: DVec3) -> impl Iterator<Item = RoomSurface> {
         let met = self.shell.iter().flat_map(move |shell| shell.tags_at(place));
         met.filter_map(|(height_m, thing)| {

@@ -34,8 +34,10 @@ pub(super) fn room_verdict<'a>(names: impl Iterator<Item = &'a str>) -> RoomVerd
     ROOM_RULES.judge_names(&names.collect())
 }
 
+/// The contents of `rooms.txt`.
 #[derive(Debug, Default)]
 struct RoomRules {
+    /// The parts of a room's shell, by the names of the things that are one.
     parts: BTreeMap<&'static str, ShellPart>,
     /// The word that the rules use instead of each of its synonyms.
     same: BTreeMap<&'static str, &'static str>,
@@ -44,11 +46,13 @@ struct RoomRules {
     odd: Vec<&'static str>,
 }
 
+/// The rule for one kind of room.
 #[derive(Debug)]
 struct RoomRule {
     room: &'static str,
     /// Each group decides if all its things are in the room.
     decides: Vec<Vec<&'static str>>,
+    /// Things that only suggest the room.
     speaks: Vec<&'static str>,
     /// Other rooms: things that suggest them may lie in this room too.
     also: Vec<&'static str>,
@@ -60,23 +64,25 @@ fn list_entries(list: &'static str) -> impl Iterator<Item = &'static str> {
 }
 
 impl RoomRules {
+    /// Parses the text of `rooms.txt`, of which the head explains the lines.
     fn parse(list: &'static str) -> Self {
         let mut rules = Self::default();
         for line in list.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#')) {
-            let mut tells = |part: ShellPart, names| rules.parts.extend(list_entries(names).map(|name| (name, part)));
+            let mut add_parts =
+                |part: ShellPart, names| rules.parts.extend(list_entries(names).map(|name| (name, part)));
             match line.split_once(':') {
-                Some(("floors", names)) => tells(ShellPart::Floor, names),
-                Some(("stairs", names)) => tells(ShellPart::Stairs, names),
-                Some(("ceilings", names)) => tells(ShellPart::Ceiling, names),
+                Some(("floors", names)) => add_parts(ShellPart::Floor, names),
+                Some(("stairs", names)) => add_parts(ShellPart::Stairs, names),
+                Some(("ceilings", names)) => add_parts(ShellPart::Ceiling, names),
                 Some(("same", names)) => {
                     let first = list_entries(names).next().unwrap_or_default();
                     rules.same.extend(list_entries(names).skip(1).map(|name| (name, first)));
                 }
                 Some(("room", columns)) => match columns.split('|').collect::<Vec<_>>()[..] {
-                    [room, decides, speaks, also] => rules.rooms.push(RoomRule {
+                    [room, decides, suggests, also] => rules.rooms.push(RoomRule {
                         room: room.trim(),
                         decides: list_entries(decides).map(|all| all.split('+').map(str::trim).collect()).collect(),
-                        speaks: list_entries(speaks).collect(),
+                        speaks: list_entries(suggests).collect(),
                         also: list_entries(also).collect(),
                     }),
                     _ => rules.odd.push(line),
@@ -87,19 +93,20 @@ impl RoomRules {
         rules
     }
 
+    /// The verdict on a room with things of these names.
     fn judge_names(&self, names: &BTreeSet<&str>) -> RoomVerdict {
         let names: BTreeSet<&str> = names.iter().map(|name| self.same.get(name).copied().unwrap_or(name)).collect();
-        let decides = |rule: &&RoomRule| rule.decides.iter().any(|all| all.iter().all(|thing| names.contains(thing)));
-        let speaks = |rule: &&RoomRule| decides(rule) || rule.speaks.iter().any(|thing| names.contains(thing));
-        let spoken_for: Vec<&RoomRule> = self.rooms.iter().filter(speaks).collect();
-        if spoken_for.is_empty() {
+        let is_decided =
+            |rule: &&RoomRule| rule.decides.iter().any(|all| all.iter().all(|thing| names.contains(thing)));
+        let suggests = |rule: &&RoomRule| is_decided(rule) || rule.speaks.iter().any(|thing| names.contains(thing));
+        let suggested: Vec<&RoomRule> = self.rooms.iter().filter(suggests).collect();
+        if suggested.is_empty() {
             return RoomVerdict::Silent;
         }
-        let is_free = |rule: &&RoomRule| {
-            spoken_for.iter().all(|other| other.room == rule.room || rule.also.contains(&other.room))
-        };
-        let mut sure = spoken_for.iter().copied().filter(decides).filter(is_free);
-        match (sure.next(), sure.next()) {
+        let is_free =
+            |rule: &&RoomRule| suggested.iter().all(|other| other.room == rule.room || rule.also.contains(&other.room));
+        let mut decided = suggested.iter().copied().filter(is_decided).filter(is_free);
+        match (decided.next(), decided.next()) {
             (Some(rule), None) => RoomVerdict::Named(rule.room),
             _ => RoomVerdict::Doubtful,
         }

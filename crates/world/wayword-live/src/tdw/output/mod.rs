@@ -194,7 +194,7 @@ pub struct OnNavMesh {
 pub struct VersionOutput<'a> {
     /// TDW's own version.
     pub tdw: &'a str,
-    /// Unity's.
+    /// Unity's version.
     pub unity: &'a str,
     /// Whether it is a build rather than Unity's editor.
     pub standalone: bool,

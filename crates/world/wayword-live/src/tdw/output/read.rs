@@ -24,6 +24,7 @@ impl<'a> BuildOutput<'a> {
         Self::for_id(id, frame).map_err(|source| OutputError { id: id.escape_ascii().to_string(), source })
     }
 
+    /// Reads a frame that has this id.
     fn for_id(id: [u8; 4], frame: &'a [u8]) -> Result<Self, FlatBufferError> {
         let table = || FlatBufferTable::root_table(frame);
         Ok(match &id {
@@ -57,6 +58,7 @@ fn has_length(
     if count == fitting { Ok(()) } else { Err(table.field_error(slot, expected)) }
 }
 
+/// A colour as three bytes; an error that names the field if a channel is out of range.
 fn byte_colour((table, slot): (&FlatBufferTable<'_>, usize), rgb: [i32; 3]) -> Result<[u8; 3], FlatBufferError> {
     if rgb.iter().all(|channel| (0..256).contains(channel)) {
         Ok(rgb.map(|channel| channel as u8))
@@ -166,10 +168,10 @@ fn read_bounds(table: &FlatBufferTable<'_>) -> Result<Vec<TdwObjectBounds>, Flat
 }
 
 fn read_categories<'a>(table: &FlatBufferTable<'a>) -> Result<Vec<(&'a str, [u8; 3])>, FlatBufferError> {
-    let one = |category: FlatBufferTable<'a>| {
+    let read_category = |category: FlatBufferTable<'a>| {
         Ok((category.read_text(1)?, byte_colour((&category, 0), category.three_i32(0)?)?))
     };
-    table.read_tables(0)?.into_iter().map(one).collect()
+    table.read_tables(0)?.into_iter().map(read_category).collect()
 }
 
 fn read_camera<'a>(table: &FlatBufferTable<'a>) -> Result<TdwCameraMatrices<'a>, FlatBufferError> {
@@ -186,7 +188,7 @@ fn read_camera<'a>(table: &FlatBufferTable<'a>) -> Result<TdwCameraMatrices<'a>,
 }
 
 fn read_sensors<'a>(table: &FlatBufferTable<'a>) -> Result<BuildOutput<'a>, FlatBufferError> {
-    let one = |sensor: FlatBufferTable<'a>| {
+    let read_sensor = |sensor: FlatBufferTable<'a>| {
         Ok(AvatarSensor {
             name: sensor.read_text(0)?,
             is_on: sensor.read_bool(1)?,
@@ -195,7 +197,7 @@ fn read_sensors<'a>(table: &FlatBufferTable<'a>) -> Result<BuildOutput<'a>, Flat
             field_of_view_deg: sensor.read_f32(4)?,
         })
     };
-    let sensors = table.read_tables(1)?.into_iter().map(one).collect::<Result<_, _>>()?;
+    let sensors = table.read_tables(1)?.into_iter().map(read_sensor).collect::<Result<_, _>>()?;
     Ok(BuildOutput::Sensors(table.read_text(0)?, sensors))
 }
 
@@ -214,6 +216,7 @@ fn read_version(frame: &[u8]) -> Result<VersionOutput<'_>, FlatBufferError> {
     Ok(VersionOutput { unity: table.read_text(0)?, tdw: table.read_text(1)?, standalone: table.read_bool(2)? })
 }
 
+/// The version in the layout from 1.13 on; `None` if the frame does not have it.
 fn plain_version(frame: &[u8]) -> Option<VersionOutput<'_>> {
     let [standalone @ 0..=1, length, texts @ ..] = frame.get(8..)? else { return None };
     let (tdw, unity) = texts.split_at_checked(usize::from(*length))?;

@@ -11,6 +11,7 @@ use serde_json::Value;
 use wayword_core::DVec3;
 use wayword_house::NumberedObject;
 
+/// The version of Unity that the stand-in reports.
 const UNITY_VERSION: &str = "2020.3.24f1";
 /// Smallest cell of an occupancy map, metres.
 const FINEST_CELL_M: f64 = 0.1;
@@ -50,6 +51,7 @@ pub(super) fn due_pictures(state: &mut BuildState) -> Vec<Vec<u8>> {
     wanted.filter_map(|avatar| images_frame(state, avatar)).collect()
 }
 
+/// The frame `imag` of an avatar; `None` if its camera cannot be drawn.
 fn images_frame(state: &BuildState, avatar: &StandInAvatar) -> Option<Vec<u8>> {
     let (width, height) = state.size;
     let (scene, camera) = (&state.world.scene, avatar.render_camera(state.size));
@@ -84,10 +86,12 @@ fn version_frame(version: &str) -> Vec<u8> {
     [b"\0\0\0\0vers\x01", &[version.len() as u8][..], version.as_bytes(), UNITY_VERSION.as_bytes()].concat()
 }
 
+/// The ids of all objects that have a colour.
 fn object_ids(state: &BuildState) -> Vec<i32> {
     state.world.coloured_objects().map(|(id, _)| id as i32).collect()
 }
 
+/// A field with one text for each object.
 fn object_texts(state: &BuildState, text: impl Fn(&NumberedObject) -> String) -> FlatBufferField {
     FlatBufferField::Texts(state.world.coloured_objects().map(|(_, object)| text(object)).collect())
 }

@@ -1,4 +1,4 @@
-//! Writes FlatBuffers that TDW's own client can read. The reader is in the parent module.
+//! Writes FlatBuffers that TDW's own client can read. `flatbuffer_reader.rs` explains the format.
 
 /// A field of a table.
 pub(super) enum FlatBufferField {
@@ -72,10 +72,10 @@ fn fill_field(bytes: &mut Vec<u8>, at: usize, field: FlatBufferField) {
         FlatBufferField::Text(text) => append_vector(bytes, at, text.len(), text.as_bytes()),
         FlatBufferField::Bytes(raw) => append_vector(bytes, at, raw.len(), &raw),
         FlatBufferField::I32s(numbers) => {
-            append_vector(bytes, at, numbers.len(), &little_endian_words(&numbers, |number| number.to_le_bytes()))
+            append_vector(bytes, at, numbers.len(), &little_endian_words(&numbers, |number| number.to_le_bytes()));
         }
         FlatBufferField::F32s(numbers) => {
-            append_vector(bytes, at, numbers.len(), &little_endian_words(&numbers, |number| number.to_le_bytes()))
+            append_vector(bytes, at, numbers.len(), &little_endian_words(&numbers, |number| number.to_le_bytes()));
         }
         FlatBufferField::Structs(size, raw) => append_vector(bytes, at, raw.len() / size, &raw),
         FlatBufferField::Texts(texts) => {

@@ -120,10 +120,12 @@ impl Drop for TdwStandIn {
     }
 }
 
+/// The part of a stand-in that runs in its thread.
 struct StandInBuild {
     controller: SocketAddr,
     options: StandInOptions,
     stop: Arc<AtomicBool>,
+    /// Number of lists of commands received so far.
     answered: u32,
 }
 
@@ -136,16 +138,17 @@ impl StandInBuild {
     fn run_until_stopped(&mut self) {
         let mut worlds = None;
         while !self.is_stopped() {
-            let talked = TcpStream::connect(self.controller)
+            let outcome = TcpStream::connect(self.controller)
                 .map_err(|source| WireError::Io { doing: "connecting", source })
                 .and_then(|stream| self.serve_controller(stream, &mut worlds));
-            match talked {
+            match outcome {
                 Ok(()) => return,
                 Err(_) => sleep(STOP_CHECK_INTERVAL),
             }
         }
     }
 
+    /// Greets a controller and answers it until the build has to end or the connection breaks.
     fn serve_controller(&mut self, stream: TcpStream, worlds: &mut Option<StandInWorlds>) -> Result<(), WireError> {
         let mut peer = ZmtpPeer::greet(stream, SocketRole::Req, Instant::now() + EXCHANGE_TIMEOUT)?;
         peer.send(&[b"hello"])?;
@@ -178,6 +181,7 @@ impl StandInBuild {
         }
     }
 
+    /// The frames that answer a list of commands, the last one with the frame number.
     fn answer_frames(&mut self, state: &mut BuildState, commands: &[Vec<u8>]) -> Vec<Vec<u8>> {
         if self.options.deaf > 0 {
             self.options.deaf -= 1;

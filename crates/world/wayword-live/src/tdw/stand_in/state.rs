@@ -25,6 +25,7 @@ pub(super) enum PictureDemand {
     Always(Vec<String>),
 }
 
+/// The state of the imitated build.
 #[derive(Debug)]
 pub(super) struct BuildState {
     pub(super) worlds: StandInWorlds,
@@ -32,7 +33,9 @@ pub(super) struct BuildState {
     pub(super) world: Arc<StandInWorld>,
     pub(super) version: &'static str,
     pub(super) avatars: Vec<StandInAvatar>,
+    /// Width and height of pictures, pixels.
     pub(super) size: (u32, u32),
+    /// Whether the `_img` pass is PNG; otherwise JPEG.
     pub(super) png: bool,
     pub(super) pictures: PictureDemand,
     pub(super) has_quit: bool,
@@ -72,6 +75,7 @@ impl BuildState {
                 id: command["id"].as_str().unwrap_or("a").to_owned(),
                 position: [0.0; 3],
                 rotation: [0.0, 0.0, 0.0, 1.0],
+                // The default of the genuine build.
                 field_of_view_deg: 54.43223,
                 pass_masks: vec!["_img".to_owned()],
             }),

@@ -16,6 +16,7 @@ const MAX_COMMANDS: usize = 64;
 /// The header of a frame.
 pub(super) struct FrameHeader {
     pub(super) command: bool,
+    /// Whether more frames of the message follow.
     more: bool,
     length: u64,
 }
@@ -28,10 +29,10 @@ impl ZmtpPeer {
     pub(crate) fn receive(&mut self) -> Result<Vec<Vec<u8>>, WireError> {
         let mut frames = Vec::new();
         let mut in_envelope = true;
-        let (mut left, mut commands) = (MAX_MESSAGE_BYTES, 0);
+        let (mut bytes_left, mut commands) = (MAX_MESSAGE_BYTES, 0);
         loop {
             let header = self.read_header()?;
-            let body = self.read_body(&header, left)?;
+            let body = self.read_body(&header, bytes_left)?;
             if header.command {
                 commands += 1;
                 if commands > MAX_COMMANDS {
@@ -39,7 +40,7 @@ impl ZmtpPeer {
                 }
                 continue;
             }
-            left -= body.len() as u64;
+            bytes_left -= body.len() as u64;
             match in_envelope {
                 true => in_envelope = !body.is_empty(),
                 false => frames.push(body),
@@ -86,6 +87,7 @@ impl ZmtpPeer {
         self.reader.get_mut().stream.flush().map_err(|source| WireError::from_io(source, "sending"))
     }
 
+    /// Reads the header of the next frame.
     pub(super) fn read_header(&mut self) -> Result<FrameHeader, WireError> {
         let doing = "waiting for a message";
         let [flags] = self.take_bytes(doing)?;
@@ -101,8 +103,9 @@ impl ZmtpPeer {
         Ok(FrameHeader { command: flags & 4 != 0, more: flags & 1 != 0, length })
     }
 
-    pub(super) fn read_body(&mut self, header: &FrameHeader, most: u64) -> Result<Vec<u8>, WireError> {
-        if header.length > most {
+    /// Reads the content of a frame; a frame of more than `max_bytes` is refused before it is read.
+    pub(super) fn read_body(&mut self, header: &FrameHeader, max_bytes: u64) -> Result<Vec<u8>, WireError> {
+        if header.length > max_bytes {
             let found = format!("one of {} bytes", header.length);
             return Err(self.malformed_error(
                 8,

@@ -3,8 +3,9 @@
 
 use super::{SocketRole, WireError, ZmtpPeer};
 
-/// As libzmq writes it, so that the oldest peers see a frame of length 1.
+/// The first bytes of a connection, as libzmq writes them: the oldest peers see a frame of length 1 in them.
 const SIGNATURE: [u8; 10] = [0xff, 0, 0, 0, 0, 0, 0, 0, 1, 0x7f];
+/// The step that errors name.
 const GREETING_ACTION: &str = "greeting";
 /// Longest command that is read, bytes.
 const MAX_COMMAND_BYTES: u64 = 4096;
@@ -37,6 +38,7 @@ impl SocketRole {
     }
 }
 
+/// Sends our greeting, checks that of the peer, and finishes in the revision of ZMTP that both know.
 pub(super) fn exchange_greetings(peer: &mut ZmtpPeer, role: SocketRole) -> Result<(), WireError> {
     peer.write_bytes(&[&SIGNATURE[..], &[3]].concat(), GREETING_ACTION)?;
     let theirs: [u8; 10] = peer.take_bytes(GREETING_ACTION)?;
@@ -90,6 +92,7 @@ fn finish_zmtp3(peer: &mut ZmtpPeer, role: SocketRole) -> Result<(), WireError> 
     Ok(())
 }
 
+/// The frame with the command READY, which names the type of our socket.
 fn ready_command(role: SocketRole) -> Vec<u8> {
     let mut body = b"\x05READY".to_vec();
     for (name, value) in [("Socket-Type", role.name()), ("Identity", "")] {

@@ -88,6 +88,7 @@ struct DeadlineStream {
 }
 
 impl DeadlineStream {
+    /// The time until the deadline; an error if it has passed.
     fn time_left(&self) -> io::Result<Duration> {
         let left = self.deadline.saturating_duration_since(Instant::now());
         // For the system, a timeout of zero means "for ever".
@@ -133,6 +134,7 @@ impl ZmtpPeer {
             || (stream.set_read_timeout(Some(within)).is_ok() && stream.peek(&mut [0]).is_ok())
     }
 
+    /// Takes exactly `N` bytes.
     fn take_bytes<const N: usize>(&mut self, doing: &'static str) -> Result<[u8; N], WireError> {
         let mut bytes = [0; N];
         self.reader.read_exact(&mut bytes).map_err(|source| WireError::from_io(source, doing))?;
@@ -143,8 +145,8 @@ impl ZmtpPeer {
     /// Takes as many bytes as were announced. Memory grows with the bytes that really come.
     fn take_long(&mut self, length: u64, doing: &'static str) -> Result<Vec<u8>, WireError> {
         let mut bytes = Vec::with_capacity(length.min(1 << 20) as usize);
-        let taken = (&mut self.reader).take(length).read_to_end(&mut bytes);
-        taken.map_err(|source| WireError::from_io(source, doing))?;
+        let outcome = (&mut self.reader).take(length).read_to_end(&mut bytes);
+        outcome.map_err(|source| WireError::from_io(source, doing))?;
         self.taken += bytes.len() as u64;
         if (bytes.len() as u64) < length {
             return Err(WireError::Gone { doing });
@@ -154,13 +156,14 @@ impl ZmtpPeer {
 
     fn write_bytes(&mut self, bytes: &[u8], doing: &'static str) -> Result<(), WireError> {
         let timed = self.reader.get_mut();
-        let put = timed.time_left().and_then(|left| {
+        let written = timed.time_left().and_then(|left| {
             timed.stream.set_write_timeout(Some(left))?;
             io::Write::write_all(&mut timed.stream, bytes)
         });
-        put.map_err(|source| WireError::from_io(source, doing))
+        written.map_err(|source| WireError::from_io(source, doing))
     }
 
+    /// The error for bytes that begin `back` bytes before the end of those taken so far.
     fn malformed_error(&self, back: u64, expected: &'static str, found: impl Into<String>) -> WireError {
         WireError::Malformed { at: self.taken.saturating_sub(back), expected, found: found.into() }
     }

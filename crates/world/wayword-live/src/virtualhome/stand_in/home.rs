@@ -13,6 +13,7 @@ use wayword_render::PinholeCamera;
 /// The first id of a room: above the ids of objects.
 const FIRST_ROOM: usize = 100_000;
 
+/// A generated house that is presented as a home.
 #[derive(Debug)]
 pub(super) struct GeneratedHome {
     world: StandInWorld,

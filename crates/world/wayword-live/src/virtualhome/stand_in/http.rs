@@ -7,8 +7,9 @@ use std::{
     time::Duration,
 };
 
-/// Longest head and body of a request, bytes.
+/// Longest head of a request, bytes; a longer one counts as broken off.
 const MAX_HEAD: u64 = 16 << 10;
+/// Longest body of a request, bytes; the rest is not read.
 const MAX_BODY: u64 = 16 << 20;
 
 /// Reads a request, sends the answer, and closes the connection.

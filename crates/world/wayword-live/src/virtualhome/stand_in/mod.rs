@@ -93,10 +93,10 @@ impl Drop for VirtualHomeStandIn {
     }
 }
 
-/// The home that is shown, and the cameras in it.
+/// The home that is loaded, and the cameras that film it.
 #[derive(Debug, Default)]
 struct FilmedHome {
-    /// The houses that it has; without them one for each number.
+    /// The houses of homes 0, 1, and so on; if `None`, every home number has a generated house.
     houses: Option<StandInHouses>,
     home: Option<GeneratedHome>,
     cameras: Vec<Value>,

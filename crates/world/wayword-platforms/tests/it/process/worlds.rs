@@ -35,10 +35,10 @@ fn objects_are_named_and_found_by_labels_if_the_world_offers_neither() {
     let (good, lamp) = (scene("good"), ObjectId::new("7").unwrap());
     let graph = platform.graph_for_scene(&good).unwrap();
     let frame = graph.path_frames(&[ViewpointId::new("a").unwrap()], None).unwrap().remove(0);
-    assert_eq!(platform.object_name(&good, &frame, &lamp).unwrap().as_deref(), Some("lamp"));
-    assert_eq!(platform.object_name(&good, &frame, &ObjectId::new("8").unwrap()).unwrap(), None);
+    assert_eq!(platform.catalogue().object_name(&good, &frame, &lamp).unwrap().as_deref(), Some("lamp"));
+    assert_eq!(platform.catalogue().object_name(&good, &frame, &ObjectId::new("8").unwrap()).unwrap(), None);
     let everywhere: BTreeSet<ViewpointId> = graph.viewpoints().cloned().collect();
-    assert_eq!(platform.visible_from(&good, &lamp).unwrap(), Some(everywhere));
+    assert_eq!(platform.catalogue().visible_from(&good, &lamp).unwrap(), Some(everywhere));
     let view = platform.look_without_picture(&good, &frame, ViewGaze::quarter_view(Heading::NORTH)).unwrap();
     assert!(view.image.is_none() && view.ground_truth().is_some());
 }

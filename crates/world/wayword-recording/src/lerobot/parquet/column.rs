@@ -1,4 +1,7 @@
 //! The values of a column in a row group, some rows at a time.
+//!
+//! Parquet stores two small numbers with each value, its levels. The repetition level is 0 where a row begins, and larger
+//! within a list. The definition level is lower than the column's maximum where the value is missing.
 
 use super::pages::ColumnPages;
 use parquet::{
@@ -20,6 +23,7 @@ pub(super) struct ParquetColumn {
     reader: ColumnReader,
     /// Number of values that pages announced since the last request.
     announced: Arc<AtomicU64>,
+    /// The definition level of values that are not missing.
     max_definition: i16,
 }
 
@@ -75,8 +79,8 @@ impl ParquetColumn {
     pub(super) fn skip_rows(&mut self, rows: u64) -> Result<(), String> {
         self.announced.store(0, Relaxed);
         let rows = usize::try_from(rows).map_err(|error| error.to_string())?;
-        let passed = run_decoder(|| {
-            let passed = match &mut self.reader {
+        let skipped = run_decoder(|| {
+            let skipped = match &mut self.reader {
                 ColumnReader::Int32ColumnReader(reader) => reader.skip_records(rows),
                 ColumnReader::Int64ColumnReader(reader) => reader.skip_records(rows),
                 ColumnReader::FloatColumnReader(reader) => reader.skip_records(rows),
@@ -84,12 +88,13 @@ impl ParquetColumn {
                 ColumnReader::ByteArrayColumnReader(reader) => reader.skip_records(rows),
                 _ => Ok(0),
             };
-            passed.map_err(|error| error.to_string())
+            skipped.map_err(|error| error.to_string())
         })?;
-        if passed == rows { Ok(()) } else { Err("ends early".to_owned()) }
+        if skipped == rows { Ok(()) } else { Err("ends early".to_owned()) }
     }
 }
 
+/// Reads at most `rows` rows, and joins their values with their levels.
 fn read_cells<T: DataType, V: 'static>(
     reader: &mut ColumnReaderImpl<T>,
     rows: u64,
@@ -105,7 +110,7 @@ fn read_cells<T: DataType, V: 'static>(
     let count = if max_definition > 0 { definitions.len() } else { values.len() };
     let mut values = values.into_iter().map(value);
     Ok(Box::new((0..count).map(move |at| {
-        let there = definitions.get(at).is_none_or(|definition| *definition == max_definition);
-        (repetitions.get(at).is_none_or(|repetition| *repetition == 0), if there { values.next() } else { None })
+        let is_present = definitions.get(at).is_none_or(|definition| *definition == max_definition);
+        (repetitions.get(at).is_none_or(|repetition| *repetition == 0), if is_present { values.next() } else { None })
     })))
 }

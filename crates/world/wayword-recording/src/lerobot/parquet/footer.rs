@@ -21,8 +21,9 @@ use std::{
 use wayword_core::contain_panics::run_decoder;
 
 const PARQUET_MAGIC: &[u8; 4] = b"PAR1";
+/// Longest footer that is read, and most bytes of columns' names in it; more is an error.
 const MAX_FOOTER_BYTES: u64 = 64 << 20;
-/// Most nodes of a schema (columns and their groups), and deepest nesting.
+/// Most nodes of a schema (columns and their groups), and their deepest nesting; more is an error.
 const MAX_COLUMNS: u64 = 100_000;
 const MAX_NESTING: usize = 16;
 /// Most rows for each byte of a file. A dataset numbers its rows in at least one column, which takes more than a bit
@@ -36,6 +37,7 @@ const MAX_ROWS_PER_BYTE: u64 = 16;
 pub(super) fn read_footer(mut file: &File) -> Result<ParquetMetaData, String> {
     let wrong = |error: std::io::Error| error.to_string();
     let length = file.metadata().map_err(wrong)?.len();
+    // The last eight bytes are the footer's length and the magic bytes.
     let end = length.checked_sub(8).ok_or("is too short for a Parquet file")?;
     file.seek(SeekFrom::Start(end)).map_err(wrong)?;
     let mut tail = [0; 8];
@@ -54,25 +56,26 @@ pub(super) fn read_footer(mut file: &File) -> Result<ParquetMetaData, String> {
     decode_footer(&bytes, length).map_err(|reason| format!("footer at byte {start}: {reason}"))
 }
 
+/// Builds the schema of a footer, gives both to the crate, and checks the crate's result.
 fn decode_footer(footer: &[u8], file_bytes: u64) -> Result<ParquetMetaData, String> {
     let root = read_schema(footer)?;
-    let about = run_decoder(|| {
+    let metadata = run_decoder(|| {
         let options = ParquetMetaDataOptions::new()
             .with_schema(Arc::new(SchemaDescriptor::new(Arc::new(root))))
             .with_column_stats_policy(ParquetStatisticsPolicy::SkipAll)
             .with_encoding_stats_policy(ParquetStatisticsPolicy::SkipAll)
             .with_size_stats_policy(ParquetStatisticsPolicy::SkipAll);
-        let about = ParquetMetaDataReader::decode_metadata_with_options(footer, Some(&options));
-        about.map_err(|error| error.to_string())
+        let metadata = ParquetMetaDataReader::decode_metadata_with_options(footer, Some(&options));
+        metadata.map_err(|error| error.to_string())
     })?;
-    check_lengths(&about, file_bytes)?;
-    Ok(about)
+    check_lengths(&metadata, file_bytes)?;
+    Ok(metadata)
 }
 
 /// Returns an error if the footer announces more than a file of this length can hold.
-fn check_lengths(about: &ParquetMetaData, file_bytes: u64) -> Result<(), String> {
+fn check_lengths(metadata: &ParquetMetaData, file_bytes: u64) -> Result<(), String> {
     let (mut rows, mut bytes) = (0_u64, 0_u64);
-    for group in about.row_groups() {
+    for group in metadata.row_groups() {
         let more = u64::try_from(group.num_rows()).map_err(|_| "a row group has no valid number of rows")?;
         rows = rows.saturating_add(more);
         for chunk in group.columns() {
@@ -100,6 +103,7 @@ fn read_schema(footer: &[u8]) -> Result<Type, String> {
     let mut thrift = ThriftReader::new(footer);
     let (mut number, mut root) = (0, None);
     while let Some(kind) = thrift.next_field(&mut number)? {
+        // Field 2 of `FileMetaData` is the schema.
         if (number, kind) != (2, thrift::KIND_LIST) {
             thrift.skip_value(kind)?;
             continue;
@@ -134,6 +138,7 @@ impl SchemaTree<'_, '_> {
         }
         self.elements = self.elements.checked_sub(1).ok_or("the schema has fewer columns than it says")?;
         let (mut name, mut physical, mut repetition, mut children) = ("", None, Repetition::REQUIRED, 0);
+        // The numbers of the fields are those of `SchemaElement` in parquet.thrift.
         let mut number = 0;
         while let Some(kind) = self.thrift.next_field(&mut number)? {
             match (number, kind) {
@@ -164,6 +169,7 @@ impl SchemaTree<'_, '_> {
     }
 }
 
+/// The repetition type with this number in parquet.thrift.
 fn repetition_of(number: i64) -> Result<Repetition, String> {
     match number {
         0 => Ok(Repetition::REQUIRED),
@@ -173,6 +179,7 @@ fn repetition_of(number: i64) -> Result<Repetition, String> {
     }
 }
 
+/// The type of values with this number in parquet.thrift.
 fn physical_of(number: i64) -> Result<Physical, String> {
     use Physical::{BOOLEAN, BYTE_ARRAY, DOUBLE, FIXED_LEN_BYTE_ARRAY, FLOAT, INT32, INT64, INT96};
     let kinds = [BOOLEAN, INT32, INT64, INT96, FLOAT, DOUBLE, BYTE_ARRAY, FIXED_LEN_BYTE_ARRAY];

@@ -1,6 +1,6 @@
 //! The pages of a column, decompressed to a limited size.
 //!
-//! The crate has a reader of pages as well, but it takes as much memory as a page's header announces, up to 2 GiB, and
+//! The crate `parquet` has a reader of pages as well, but it takes as much memory as a page's header announces, up to 2 GiB, and
 //! decompresses gzip to any length. Five bytes of a broken header can keep it busy for minutes if they announce a long
 //! list in a field that it skips. So headers are read and pages are decompressed here, before the crate decodes them.
 
@@ -24,7 +24,7 @@ use std::{
 /// Bytes that are read for a page's header: the first number is enough for nearly all, the second for one with long
 /// statistics.
 const HEADER_BYTES: [u64; 2] = [1 << 9, 1 << 20];
-/// A page may always decompress to this many bytes: writers close pages at 1 MiB.
+/// Any page may decompress to this many bytes: writers close pages at 1 MiB.
 const USUAL_BYTES: usize = 8 << 20;
 /// A larger page may decompress to this many times its compressed size.
 const MAX_RATIO: usize = 256;
@@ -52,6 +52,7 @@ struct PageHeader {
     stored: u64,
     /// Fields 1 to 6 of this kind of header in `parquet.thrift`.
     numbers: [i64; 6],
+    /// Whether the values of a page in the layout of version 2 are compressed; true for other pages.
     folded: bool,
 }
 
@@ -62,6 +63,7 @@ impl PageHeader {
         let mut header = Self { kind: -1, stored: 0, numbers: [-1; 6], folded: true };
         let mut number = 0;
         while let Some(kind) = thrift.next_field(&mut number)? {
+            // Fields of `PageHeader`: its kind, its compressed size, and three that hold the numbers of one kind each.
             match (number, kind) {
                 (1, thrift::KIND_I32) => header.kind = thrift.read_number()?,
                 (3, thrift::KIND_I32) => {
@@ -74,6 +76,7 @@ impl PageHeader {
         Ok((header, (bytes.len() - thrift.remaining_bytes().len()) as u64))
     }
 
+    /// Reads the header's part that only pages of its kind have.
     fn read_numbers(&mut self, thrift: &mut ThriftReader<'_>) -> Result<(), String> {
         let mut number = 0;
         while let Some(kind) = thrift.next_field(&mut number)? {
@@ -86,14 +89,14 @@ impl PageHeader {
         Ok(())
     }
 
-    /// A field that is a count or a length.
+    /// Field `field` of this kind of header, which is a count or a length.
     fn count_at(&self, field: usize) -> Result<u32, String> {
         let number = self.numbers[field - 1];
         u32::try_from(number).map_err(|_| format!("a page has the invalid count {number}"))
     }
 
-    /// The encoding of values. Delta encodings of texts are refused, because the crate reserves memory for any number of
-    /// texts that a page announces.
+    /// Field `field` of this kind of header, which is the encoding of values. Delta encodings of texts are refused, because
+    /// the crate reserves memory for any number of texts that a page announces.
     fn encoding_at(&self, field: usize) -> Result<Encoding, String> {
         match self.numbers[field - 1] {
             0 => Ok(Encoding::PLAIN),
@@ -116,6 +119,7 @@ pub(super) struct ColumnPages {
     codec: CompressionCodec,
     /// Number of values of the pages that were read since the counter was last 0.
     announced: Arc<AtomicU64>,
+    /// The limit for `announced`; more is an error.
     max_announced: u64,
 }
 
@@ -138,15 +142,15 @@ impl ColumnPages {
         }
         while !self.place.is_empty() {
             let wrong = |reason: String| format!("byte {}: not a page header: {reason}", self.place.start);
-            let left = self.place.end - self.place.start;
-            let short = PageHeader::read(&self.peek_bytes(left.min(HEADER_BYTES[0]))?);
-            let read = short.or_else(|_| PageHeader::read(&self.peek_bytes(left.min(HEADER_BYTES[1]))?));
+            let left_bytes = self.place.end - self.place.start;
+            let short = PageHeader::read(&self.peek_bytes(left_bytes.min(HEADER_BYTES[0]))?);
+            let read = short.or_else(|_| PageHeader::read(&self.peek_bytes(left_bytes.min(HEADER_BYTES[1]))?));
             let (header, length) = read.map_err(wrong)?;
-            if header.stored > left - length {
+            if header.stored > left_bytes - length {
                 return Err(wrong(format!(
                     "a page of {} bytes, but the column has only {} left",
                     header.stored,
-                    left - length
+                    left_bytes - length
                 )));
             }
             self.place.start += length;
@@ -255,34 +259,36 @@ impl PageReader for ColumnPages {
     }
 }
 
-/// A page's decompressed bytes. The first `front` bytes are not compressed.
-fn decompress_page(codec: CompressionCodec, stored: Vec<u8>, front: usize) -> Result<Vec<u8>, String> {
+/// A page's decompressed bytes. The first `plain_length` bytes of `stored` are not compressed.
+fn decompress_page(codec: CompressionCodec, stored: Vec<u8>, plain_length: usize) -> Result<Vec<u8>, String> {
     if codec == CompressionCodec::UNCOMPRESSED {
         return Ok(stored);
     }
-    let (front, folded) = stored.split_at(front);
-    let most = USUAL_BYTES.max(folded.len().saturating_mul(MAX_RATIO));
-    let too_long = || format!("{} bytes decompress to more than {most}", folded.len());
-    let filled = |from: &mut dyn Read| {
-        let mut unfolded = front.to_vec();
-        from.take(most as u64 + 1).read_to_end(&mut unfolded).map_err(|error| error.to_string())?;
-        if unfolded.len() - front.len() > most { Err(too_long()) } else { Ok(unfolded) }
+    let (plain, compressed) = stored.split_at(plain_length);
+    let max_bytes = USUAL_BYTES.max(compressed.len().saturating_mul(MAX_RATIO));
+    let too_long = || format!("{} bytes decompress to more than {max_bytes}", compressed.len());
+    let read_limited = |from: &mut dyn Read| {
+        let mut unpacked = plain.to_vec();
+        from.take(max_bytes as u64 + 1).read_to_end(&mut unpacked).map_err(|error| error.to_string())?;
+        if unpacked.len() - plain.len() > max_bytes { Err(too_long()) } else { Ok(unpacked) }
     };
     match codec {
         // If all values are missing, there are no compressed bytes.
-        _ if folded.is_empty() => Ok(front.to_vec()),
+        _ if compressed.is_empty() => Ok(plain.to_vec()),
         CompressionCodec::SNAPPY => {
-            let length = snap::raw::decompress_len(folded).map_err(|error| error.to_string())?;
-            if length > most {
+            let length = snap::raw::decompress_len(compressed).map_err(|error| error.to_string())?;
+            if length > max_bytes {
                 return Err(too_long());
             }
-            let mut unfolded = vec![0; front.len() + length];
-            unfolded[..front.len()].copy_from_slice(front);
-            let read = snap::raw::Decoder::new().decompress(folded, &mut unfolded[front.len()..]);
-            read.map(|_| unfolded).map_err(|error| error.to_string())
+            let mut unpacked = vec![0; plain.len() + length];
+            unpacked[..plain.len()].copy_from_slice(plain);
+            let read = snap::raw::Decoder::new().decompress(compressed, &mut unpacked[plain.len()..]);
+            read.map(|_| unpacked).map_err(|error| error.to_string())
         }
-        CompressionCodec::GZIP => filled(&mut flate2::read::MultiGzDecoder::new(folded)),
-        CompressionCodec::ZSTD => filled(&mut zstd::Decoder::with_buffer(folded).map_err(|error| error.to_string())?),
+        CompressionCodec::GZIP => read_limited(&mut flate2::read::MultiGzDecoder::new(compressed)),
+        CompressionCodec::ZSTD => {
+            read_limited(&mut zstd::Decoder::with_buffer(compressed).map_err(|error| error.to_string())?)
+        }
         other => Err(format!("is compressed with {other}, which cannot be read")),
     }
 }

@@ -1,6 +1,7 @@
 //! Reads Thrift's compact protocol, the format of Parquet's metadata. Skipped values take no memory.
 
-/// Kinds of values, as numbers of the protocol.
+/// Kinds of values, as numbers of the protocol. Kinds that are only skipped have no name here: 3 is a byte, 4 and 6 are other
+/// integers, 7 is a double, and 10 is a set.
 pub(super) const KIND_TRUE: u8 = 1;
 pub(super) const KIND_FALSE: u8 = 2;
 pub(super) const KIND_I32: u8 = 5;
@@ -8,7 +9,7 @@ pub(super) const KIND_BYTES: u8 = 8;
 pub(super) const KIND_LIST: u8 = 9;
 pub(super) const KIND_STRUCT: u8 = 12;
 
-/// Deepest nesting: a footer's is 6 deep.
+/// Deepest nesting of skipped values; deeper ones are an error. A footer's are 6 deep.
 const MAX_DEPTH: usize = 16;
 
 /// Bytes that are read one value after another.
@@ -38,6 +39,7 @@ impl<'a> ThriftReader<'a> {
         Ok(self.take_bytes(1)?[0])
     }
 
+    /// A number without a sign: seven bits in each byte, the lowest first, until a byte without its highest bit.
     fn read_varint(&mut self) -> Result<u64, String> {
         let mut value = 0_u64;
         for shift in (0..64).step_by(7) {
@@ -91,6 +93,7 @@ impl<'a> ThriftReader<'a> {
         self.pass_within(kind, 0)
     }
 
+    /// Skips a value that lies in `depth` other values.
     fn pass_within(&mut self, kind: u8, depth: usize) -> Result<(), String> {
         match kind {
             // The value of a boolean field is in the kind itself.

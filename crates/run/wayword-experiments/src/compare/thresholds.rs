@@ -1,0 +1,139 @@
+//! The thresholds at which the agents of a comparison decide: the defaults for a grounder, and those of a user's file. They are
+//! looked up by the names of the agents.
+
+use std::{collections::BTreeMap, path::Path};
+use wayword_navigation::agents::{BacktrackParameters, PhraseWalkParameters, ToolWalkLimits};
+use wayword_run::{error::CommandError, text_file};
+
+/// The agent that reads every clause and knows only where it was, and the one that also knows the map.
+pub(super) const READER_AGENT_NAME: &str = "reader";
+pub(super) const READER_MAP: &str = "reader-map";
+/// The agent whose moves a language model decides.
+pub(super) const TOOLS_AGENT_NAME: &str = "tools";
+/// The agent that uses a detector.
+pub(super) const BY_DETECTOR: &str = "glip-nav";
+
+/// The value of `--grounder` that means the detector of `--detector`.
+pub(super) const BY_NAME: &str = "detector";
+
+/// The thresholds of the agents.
+#[derive(Debug, Default)]
+pub(super) struct AgentThresholds {
+    /// The thresholds of the agents that walk by phrases, by agent.
+    pub(super) of_phrases: BTreeMap<String, PhraseWalkParameters>,
+    /// The lowest score with which the agent that reads counts a thing as seen; `None` if it takes things from labels.
+    pub(super) of_reader: Option<f32>,
+    /// The limits of a walk of the agent `tools`: hops, calls and money.
+    pub(super) of_tools: ToolWalkLimits,
+}
+
+/// Reads the thresholds of each agent: the defaults for its grounder, overridden by the TOML file of `--parameters`.
+///
+/// # Errors
+/// When an agent is named twice, or the file names an unknown agent or threshold.
+pub(super) fn read_thresholds(
+    names: &[String],
+    (grounder, detector): (&str, Option<&str>),
+    file: Option<&Path>,
+) -> Result<AgentThresholds, CommandError> {
+    if let Some(name) = (1..names.len()).find(|at| names[..*at].contains(&names[*at])).map(|at| &names[at]) {
+        return Err(CommandError::usage(format!("--agents {name}: this agent is named twice"), "name it once"));
+    }
+    let mut tables = toml::Table::new();
+    if let Some(file) = file {
+        let wrong = |error: toml::de::Error| parameter_error(file, error.to_string().trim());
+        tables = text_file::read_text_file(file, "read the parameters")?.parse().map_err(wrong)?;
+    }
+    let mut all = AgentThresholds::default();
+    for name in names {
+        let default = PhraseWalkParameters::default_of(name, scored_by(name, grounder, detector));
+        let own = tables.remove(name);
+        if name == TOOLS_AGENT_NAME {
+            let limits = own.map_or(Ok(ToolWalkLimits::default()), parse_tool_limits);
+            all.of_tools = limits.map_err(|problem| parameter_error(file.unwrap_or(Path::new("")), &problem))?;
+            continue;
+        }
+        let is_reader = name == READER_AGENT_NAME && !grounder.starts_with("labels");
+        let changed = match (name.as_str(), own) {
+            (_, None) => Ok(default),
+            (READER_AGENT_NAME, Some(own)) if is_reader => changed_for_reader(&default, own),
+            (READER_AGENT_NAME | READER_MAP, Some(_)) => {
+                Err(format!("{name} has no thresholds here: it is told the labels"))
+            }
+            (_, Some(own)) => change_parameters(&default, own),
+        };
+        let changed = changed.map_err(|problem| parameter_error(file.unwrap_or(Path::new("")), &problem))?;
+        match name.as_str() {
+            READER_AGENT_NAME if is_reader => all.of_reader = Some(changed.phrase_threshold),
+            READER_AGENT_NAME | READER_MAP => {}
+            _ => drop(all.of_phrases.insert(name.clone(), changed)),
+        }
+    }
+    match (tables.keys().next(), file) {
+        (Some(unused), Some(file)) => {
+            Err(parameter_error(file, &format!("no agent of this command is named {unused}")))
+        }
+        _ => Ok(all),
+    }
+}
+
+/// The name of the scorer for which an agent's default thresholds are looked up. It is the detector for an agent that walks by
+/// boxes, and the grounder for the others.
+pub(super) fn scored_by<'a>(agent: &str, grounder: &'a str, detector: Option<&str>) -> &'a str {
+    let by_boxes = agent == BY_DETECTOR && detector.is_some();
+    if by_boxes || detector == Some(grounder) { BY_NAME } else { grounder }
+}
+
+fn parameter_error(file: &Path, problem: &str) -> CommandError {
+    let hint = "write a table per agent, as in: [clip-nav] on one line and stop_threshold = 0.7 on the next";
+    CommandError::usage(format!("{}: {problem}", file.display()), hint)
+}
+
+/// The limits of a walk of the agent `tools`: hops, calls and money.
+fn parse_tool_limits(own: toml::Value) -> Result<ToolWalkLimits, String> {
+    let limits: ToolWalkLimits = own.try_into().map_err(|error: toml::de::Error| error.message().to_owned())?;
+    let are_sane = limits.max_hops <= 1000 && (1..=1000).contains(&limits.max_calls) && limits.memory <= 12;
+    let is_money = limits.max_usd.is_none_or(|usd| usd.is_finite() && usd > 0.0);
+    if are_sane && is_money {
+        return Ok(limits);
+    }
+    Err("[tools]: max_hops must be at most 1000, max_calls from 1 to 1000, memory at most 12, and max_usd above 0"
+        .to_owned())
+}
+
+/// Overrides the threshold of the agent that reads. It has only one, and no other value may be set.
+fn changed_for_reader(default: &PhraseWalkParameters, own: toml::Value) -> Result<PhraseWalkParameters, String> {
+    let has_other = |own: &toml::Table| own.keys().any(|key| key != "phrase_threshold");
+    match own {
+        toml::Value::Table(own) if has_other(&own) => Err("reader has no threshold but phrase_threshold".to_owned()),
+        own => change_parameters(default, own),
+    }
+}
+
+/// Overrides some values of default parameters, and checks the result.
+fn change_parameters(default: &PhraseWalkParameters, own: toml::Value) -> Result<PhraseWalkParameters, String> {
+    let mut table = toml::Table::try_from(default).map_err(|error| error.to_string())?;
+    let toml::Value::Table(own) = own else { return Err("the thresholds of an agent must be a table".to_owned()) };
+    for (name, value) in own {
+        match (table.get_mut(&name), value) {
+            (Some(toml::Value::Table(inner)), toml::Value::Table(own)) => inner.extend(own),
+            (_, value) => drop(table.insert(name, value)),
+        }
+    }
+    let parameters: PhraseWalkParameters =
+        toml::Value::Table(table).try_into().map_err(|error: toml::de::Error| error.message().to_owned())?;
+    let BacktrackParameters { window, threshold, .. } =
+        parameters.back.unwrap_or(BacktrackParameters { window: 1, threshold: 0.0, nodes: 0 });
+    let thresholds = [parameters.phrase_threshold, parameters.stop_threshold, threshold];
+    let is_sane = parameters.max_hops <= 1000 && (1..=1000).contains(&window);
+    if !is_sane {
+        return Err("max_hops must be at most 1000, and back.window from 1 to 1000".to_owned());
+    }
+    if thresholds.iter().any(|threshold| !threshold.is_finite()) {
+        return Err("a threshold must be a finite number".to_owned());
+    }
+    if default.back.is_none() && parameters.back.is_some() {
+        return Err("this agent never goes back; seq-clip-nav does".to_owned());
+    }
+    Ok(parameters)
+}
