@@ -1,7 +1,7 @@
 //! Corrupts instructions that passed the checks, so that it can be counted how many corruptions the checks catch.
 //!
 //! The first kinds change the instruction's mentions: words that the checks recognised when the instruction was made. They cannot
-//! show which words the checks fail to recognise. The other kinds use only the path and its labels ([`by_path`]).
+//! show which words the checks fail to recognise. The other kinds use only the path and its labels (`by_path`).
 
 mod by_path;
 

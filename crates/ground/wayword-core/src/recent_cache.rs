@@ -46,7 +46,7 @@ impl<K: Clone + Eq + Hash, V> RecentCache<K, V> {
     }
 
     /// The value of a key; it is made if the cache does not have it. A thread that asks for it meanwhile waits and gets
-    /// the same value. `make` must not ask this cache for a value that has to be made; it may [`put_entry`](Self::put_entry)
+    /// the same value. `make` must not ask this cache for a value that has to be made; it may [`put`](Self::put)
     /// others.
     ///
     /// # Errors

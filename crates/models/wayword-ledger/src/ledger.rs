@@ -103,7 +103,7 @@ impl Ledger {
 
     /// A ledger in a database, which programs on any number of machines share: each call is made once, the limits of a
     /// run hold for all of them together, and so do rates ([`crate::LedgerRun::wait_turn`]). Makes the tables
-    /// ([`crate::TABLES`]) if it may and they are missing.
+    /// ([`crate::LEDGER_TABLES`]) if it may and they are missing.
     ///
     /// # Errors
     /// When the database cannot be used, or its tables are missing and this role may not make them.

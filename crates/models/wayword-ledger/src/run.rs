@@ -59,7 +59,7 @@ pub struct RunTotals {
     pub maybe_usd: f64,
 }
 
-/// The attempts to get an answer to one call. Each attempt is a request, which has to be announced with [`CallAttempts::begin`] before it
+/// The attempts to get an answer to one call. Each attempt is a request, which has to be announced with [`CallAttempts::begin_request`] before it
 /// is sent.
 pub struct CallAttempts<'a> {
     run: &'a LedgerRun,

@@ -11,7 +11,7 @@ pub struct LedgerFilter {
     pub run: Option<String>,
     /// Only calls with an answer older than this, seconds.
     pub older_than_s: Option<u64>,
-    /// At most this many, the latest ones. [`Ledger::list_calls`] alone uses this.
+    /// At most this many, the latest ones. [`crate::Ledger::list_calls`] alone uses this.
     pub limit: Option<usize>,
 }
 

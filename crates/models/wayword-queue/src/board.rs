@@ -42,7 +42,7 @@ pub trait ChunkBoard {
     /// When the board cannot be reached.
     fn hand_back(&self, claimed: ChunkClaim) -> Result<(), QueueError>;
 
-    /// Reports that a chunk could not be made. It is tried again, and given up after [`crate::TRIES`] tries.
+    /// Reports that a chunk could not be made. It is tried again, and given up after [`crate::MAX_CHUNK_TRIES`] tries.
     ///
     /// # Errors
     /// When the board cannot be reached.

@@ -21,7 +21,7 @@ pub enum ServiceFault {
     Reset,
     /// The connection is closed before any byte of a response.
     Closed,
-    /// The body comes a byte at a time, with [`FaultSchedule::send_trickle`] between two bytes.
+    /// The body comes a byte at a time, with [`FaultSchedule::trickle`] between two bytes.
     Trickle,
     /// Half of the JSON, with a `content-length` that matches the half, so that HTTP looks complete.
     Truncated,

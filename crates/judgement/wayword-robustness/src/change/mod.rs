@@ -82,7 +82,7 @@ impl Change {
         self.dose_kind().and_then(DoseKind::unchanged_value)
     }
 
-    /// How strong the change is, from 0 to 1: the distance of the dose from [`unchanged`](Self::unchanged), divided by the distance
+    /// How strong the change is, from 0 to 1: the distance of the dose from [`unchanged_dose`](Self::unchanged_dose), divided by the distance
     /// of the end of the range on the same side.
     #[must_use]
     pub fn dose_strength(&self) -> Option<f64> {

@@ -12,7 +12,7 @@ use wayword_core::{DVec3, Frame, ObjectLabel, Path, PathMotion, PlatformError, P
 /// logged under the wrong one. So a thing ahead of the camera stays ahead of it, but seems to lie elsewhere in the world.
 ///
 /// "Before" is the truth, "after" the log. An error is drawn by the seed, the scene and the frame's
-/// [`place`](Frame::place), so the errors of two values of `deg` with one seed are proportional.
+/// [`place_key`](Frame::place_key), so the errors of two values of `deg` with one seed are proportional.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HeadingNoise {
     /// Standard deviation of the error, degrees.

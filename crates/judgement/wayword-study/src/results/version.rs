@@ -28,7 +28,7 @@ pub struct ResultVersion {
     pub answers: usize,
     /// One for each condition, in the order of the plan.
     pub rows: Vec<ConditionRow>,
-    /// Each condition minus the first one. Empty where texts are compared; [`ResultVersion::pair_tables`] then has the comparisons.
+    /// Each condition minus the first one. Empty where texts are compared; [`ResultVersion::pairs`] then has the comparisons.
     pub differences: Vec<ConditionDifference>,
     /// How well participants who judged the same item agree.
     pub agreement: Vec<QuestionAgreement>,

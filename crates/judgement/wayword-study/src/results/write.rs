@@ -19,7 +19,7 @@ impl StudyReport {
         self.render_files()?.into_iter().map(|(name, text)| write_file(folder, name, &text)).collect()
     }
 
-    /// The files with their names, as [`StudyReport::write`] writes them.
+    /// The files with their names, as [`StudyReport::write_files`] writes them.
     ///
     /// # Errors
     /// When the page cannot be drawn.

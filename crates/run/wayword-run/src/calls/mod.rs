@@ -48,7 +48,7 @@ pub struct ModelCalls {
 }
 
 impl ModelCalls {
-    /// Makes the checks of [`ModelCalls::open_ledger`] on names, prices, providers and files, before a file is written. Gives each model's
+    /// Makes the checks of [`ModelCalls::open`] on names, prices, providers and files, before a file is written. Gives each model's
     /// price, if it is known.
     ///
     /// # Errors

@@ -1,7 +1,7 @@
 //! Finds the words of a text that a reader should doubt, because the known walk fits better with other words, and
 //! suggests these.
 //!
-//! [`sites`] computes the gain of each possible change. [`find_doubts`] selects those with enough gain, by [`DoubtBounds`];
+//! [`find_sites`] computes the gain of each possible change. [`find_doubts`] selects those with enough gain, by [`DoubtBounds`];
 //! [`from_checks`] adds the doubts from checks and ambiguity. [`wayword_core::doubt::apart_in`] combines all of them.
 
 mod bounds;

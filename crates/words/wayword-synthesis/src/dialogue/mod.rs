@@ -56,7 +56,7 @@ pub enum DialogueMode {
 pub enum DialogueNeed {
     /// A question from the asker: give it to [`Dialogue::take_question`].
     Question,
-    /// The answer to this question: give it to [`Dialogue::answer`].
+    /// The answer to this question: give it to [`Dialogue::take_answer`].
     Answer(String),
     /// A caption from the summariser; the dialogue is over.
     Summary,

@@ -1,6 +1,6 @@
 //! The vocabulary of the listener. It is independent of the reader's lexicon.
 
-/// How a thing is told from its namesakes by its place among them.
+/// What sets a thing apart from its namesakes by its place among them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum NamesakeRank {
     Leftmost,
