@@ -6,7 +6,7 @@ use std::{fmt, path::PathBuf};
 use wayword_core::{ClimbDirection, PathMove, TurnKind, Verdict};
 use wayword_formats::jsonl::{self, InstructionRecord};
 use wayword_house::scene_name;
-use wayword_report::pages as report;
+use wayword_report::pages;
 use wayword_run::generate::generate_into;
 use wayword_run::{
     count::count_phrase,
@@ -44,7 +44,7 @@ pub(crate) fn run_demo(args: &DemoArgs, output: &CommandOutput) -> Result<Exit, 
         return Ok(summary.exit);
     }
     let report = args.out.join(file::REPORT);
-    report::write_report(&args.out, &report, DEMO_ITEMS)?;
+    pages::write_report(&args.out, &report, DEMO_ITEMS)?;
     let shown = DemoOutput {
         walks: read_lines(&args.out.join(file::WALKS))?,
         records: jsonl::read_records(&args.out.join(file::INSTRUCTIONS))?,

@@ -6,7 +6,7 @@ use std::{
     path::{Path, PathBuf},
 };
 use wayword_experiments::compare;
-use wayword_report::pages as report;
+use wayword_report::pages;
 use wayword_run::{
     error::{CommandError, Exit},
     output::CommandOutput,
@@ -47,7 +47,7 @@ pub(crate) fn run_report(args: &ReportArgs, output: &CommandOutput) -> Result<Ex
         output.print_result(&written, &written);
         return Ok(Exit::Done);
     }
-    let written = report::write_report(&args.run, &out, args.items.unwrap_or(MAX_REPORT_ITEMS))?;
+    let written = pages::write_report(&args.run, &out, args.items.unwrap_or(MAX_REPORT_ITEMS))?;
     output.print_result(&written, &written);
     Ok(Exit::Done)
 }

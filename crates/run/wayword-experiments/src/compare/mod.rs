@@ -39,10 +39,10 @@ use wayword_run::{
     output::CommandOutput,
     plan::JobModels,
     platforms::SCENES_KEPT,
-    run_folder as run,
+    run_folder,
     run_folder::Journal,
     settings::RolePlayer,
-    settings_file as config,
+    settings_file,
 };
 
 pub use page::{is_comparison, write_of_folder};
@@ -82,7 +82,7 @@ pub fn run_comparison(args: &CompareArgs, output: &CommandOutput) -> Result<Exit
         return Err(CommandError::usage(problem, "leave it out; `wayword check` and `wayword generate` take it"));
     }
     settings::refuse_flags_of_tools(args)?;
-    let job = args.asked_settings().or_file(config::read_call_settings(args.config.as_deref())?).into_job()?;
+    let job = args.asked_settings().or_file(settings_file::read_call_settings(args.config.as_deref())?).into_job()?;
     let kept = ComparisonSettings::from_args(args, &job.settings)?;
     let models = JobModels::for_job(&job)?;
     tools::refuse_unknown_price(&kept, &models)?;
@@ -110,15 +110,15 @@ pub fn run_comparison(args: &CompareArgs, output: &CommandOutput) -> Result<Exit
     }
     let grounders = ComparisonGrounders::open(&kept, output)?;
     // A new folder is made after the models are loaded, so that a model that does not fit into the memory leaves none.
-    run::refuse_file(&args.out)?;
-    let begun = run::is_begun(&args.out).then(|| begin_folder(&args.out, &kept)).transpose()?;
-    let id = run::id_of(&args.out, "compare")?;
+    run_folder::refuse_file(&args.out)?;
+    let begun = run_folder::is_begun(&args.out).then(|| begin_folder(&args.out, &kept)).transpose()?;
+    let id = run_folder::id_of(&args.out, "compare")?;
     let calls = models.open_calls(&id, output)?;
     let grounders = grounders.with_detector(&kept, calls.as_ref())?;
     let splitter = open_splitter(&kept.split, calls.as_ref())?;
     let _held = begun.map_or_else(|| begin_folder(&args.out, &kept), Ok)?;
     if calls.is_some() {
-        run::keep_id(&args.out, &id)?;
+        run_folder::keep_id(&args.out, &id)?;
     }
     let toolbox = AgentToolbox::open(&kept, &job.settings, (calls.as_ref(), &models, items.len()), platform.as_ref())?;
     let surveys = RecentCache::new(SCENES_KEPT);
@@ -145,7 +145,7 @@ pub fn run_comparison(args: &CompareArgs, output: &CommandOutput) -> Result<Exit
     let (resamples, results) = (args.resamples as usize, &gathered.results);
     let comparison = score::build_comparison(&kept, &crew, sets, &judge, results, (resamples, failed));
     outputs::write_outputs(&args.out, &comparison, &gathered)?;
-    let page = args.out.join(run::file::REPORT);
+    let page = args.out.join(run_folder::file::REPORT);
     page::write_page(&args.out, &page, &comparison, &judge, platform.as_ref(), args.replays)?;
     output.print_result(&comparison, wayword_report::pages::comparison::screen_text(&comparison));
     output.say(format_args!("walks, tables and page: {}", args.out.display()));
@@ -159,10 +159,10 @@ pub fn run_comparison(args: &CompareArgs, output: &CommandOutput) -> Result<Exit
 }
 
 /// Makes or continues the folder, and locks it against other processes.
-fn begin_folder(folder: &Path, kept: &ComparisonSettings) -> Result<run::FolderLock, CommandError> {
+fn begin_folder(folder: &Path, kept: &ComparisonSettings) -> Result<run_folder::FolderLock, CommandError> {
     fs::create_dir_all(folder).map_err(CommandError::io(folder, "make the folder"))?;
-    let held = run::lock_folder(folder)?;
-    run::keep_config(folder, kept)?;
+    let held = run_folder::lock_folder(folder)?;
+    run_folder::keep_config(folder, kept)?;
     Ok(held)
 }
 

@@ -8,7 +8,7 @@ use wayword_navigation::{
     comparison::{AgentComparison, UNREAD_SET_NAME, WalkScores},
     walk::AgentWalkRecord,
 };
-use wayword_report::pages as report;
+use wayword_report::pages;
 use wayword_robustness::sets::FollowResult;
 use wayword_run::{error::CommandError, run_folder::write_whole};
 
@@ -72,8 +72,8 @@ pub(super) fn write_outputs(
     let json = serde_json::to_string_pretty(comparison)
         .map_err(|error| CommandError::usage(format!("the result cannot be kept: {error}"), "report this as a bug"))?;
     write_whole(&folder.join(file::COMPARISON), &json)?;
-    write_whole(&folder.join(file::MARKDOWN), &report::comparison::markdown_tables(comparison))?;
-    write_whole(&folder.join(file::LATEX), &report::comparison::latex_table(comparison))?;
+    write_whole(&folder.join(file::MARKDOWN), &pages::comparison::markdown_tables(comparison))?;
+    write_whole(&folder.join(file::LATEX), &pages::comparison::latex_table(comparison))?;
     let mut lines = String::new();
     for one in &gathered.followed {
         let line = serde_json::to_string(one)

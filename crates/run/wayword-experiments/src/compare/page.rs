@@ -14,11 +14,11 @@ use wayword_report::pages::{
     comparison::{self, WrittenComparison},
     replay::{WalkReplay, WalkSample},
 };
-use wayword_run::{error::CommandError, run_folder as run, text_file};
+use wayword_run::{error::CommandError, run_folder, text_file};
 
 /// Whether a folder holds a comparison, finished or not.
 pub fn is_comparison(folder: &Path) -> bool {
-    run::table_of(folder).is_ok_and(|kept| kept.contains_key("agents"))
+    run_folder::table_of(folder).is_ok_and(|kept| kept.contains_key("agents"))
 }
 
 /// Writes the page of a finished comparison from its folder. It needs the platform and the episodes, but not the sets of instructions.
@@ -26,13 +26,13 @@ pub fn is_comparison(folder: &Path) -> bool {
 /// # Errors
 /// When the folder, the platform or the episodes cannot be read, or the page cannot be written.
 pub fn write_of_folder(folder: &Path, out: &Path, most: usize) -> Result<WrittenComparison, CommandError> {
-    let kept: ComparisonSettings = run::config_of(folder)?;
+    let kept: ComparisonSettings = run_folder::config_of(folder)?;
     let path = folder.join(file::COMPARISON);
     if !path.is_file() {
         let problem = format!("{} holds a comparison that was not finished", folder.display());
         return Err(CommandError::usage(problem, "give the same `wayword compare` command again"));
     }
-    if kept.inputs.get("episodes") != Some(&run::hash_of_file(&kept.episodes)?) {
+    if kept.inputs.get("episodes") != Some(&run_folder::hash_of_file(&kept.episodes)?) {
         let problem = format!("{}: the file has changed since the comparison", kept.episodes.display());
         return Err(CommandError::usage(problem, "put the old file back, or compare again in another folder"));
     }

@@ -27,7 +27,7 @@ use wayword_run::{
     run_folder::fresh_id,
     scene_selection,
     settings::{Perception, RolePlayer, RunJob, RunSettings},
-    settings_file as config,
+    settings_file,
     team::RoleTeam,
 };
 use wayword_synthesis::{
@@ -86,7 +86,7 @@ struct ScoredCaption {
 /// # Errors
 /// When the settings are wrong, the platform cannot be opened, a file cannot be written, and as [`measure_perception`].
 pub fn run_perceive(args: &PerceiveArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
-    let mut asked = args.asked_settings().or_file(config::read_settings(args.config.as_deref())?);
+    let mut asked = args.asked_settings().or_file(settings_file::read_settings(args.config.as_deref())?);
     // As many random paths as views are enough, because each new path gives at least one view.
     asked.walks.paths = asked.walks.episodes.is_none().then_some(args.views);
     let mut job = asked.into_job()?;

@@ -28,7 +28,7 @@ use std::{
     path::{Path as FilePath, PathBuf},
 };
 use wayword_core::{Path, Platform};
-use wayword_report::pages as report;
+use wayword_report::pages;
 use wayword_report::pages::robustness::results::{RefusedChange, RobustnessResults};
 use wayword_robustness::{Change, ChangeSetting, SightSource, ratio::BootstrapOptions, worlds::EyeQuality};
 use wayword_run::{
@@ -42,10 +42,10 @@ use wayword_run::{
     own_format::OwnFormat,
     plan::JobModels,
     platforms::{self, RememberingPlatform},
-    run_folder as run,
+    run_folder,
     run_folder::{Journal, hash_of_file, lines},
     settings::{AskedSettings, RolePlayer, RunJob, RunSettings},
-    settings_file as config,
+    settings_file,
     team::RoleTeam,
 };
 use write_texts::{ArmContext, ArmTextWriter};
@@ -127,10 +127,10 @@ pub fn run_robustness(args: &RobustnessArgs, output: &CommandOutput) -> Result<E
         return Err(CommandError::usage("no change is left to make", "see `wayword robustness --list`"));
     }
     let _held = begin_folder(args, &base, out)?;
-    let id = run::id_of(out, "robustness")?;
+    let id = run_folder::id_of(out, "robustness")?;
     let calls = JobModels::for_job(&job)?.open_calls(&id, output)?;
     if calls.is_some() {
-        run::keep_id(out, &id)?;
+        run_folder::keep_id(out, &id)?;
     }
     let failed = make_texts(args, &base, &changes, eye, (platform.as_ref(), calls.as_ref()), output)?;
     if let Some(calls) = &calls {
@@ -141,8 +141,8 @@ pub fn run_robustness(args: &RobustnessArgs, output: &CommandOutput) -> Result<E
     let json = serde_json::to_string_pretty(&results).map_err(|error| {
         CommandError::usage(format!("the results cannot be written: {error}"), "report this as a bug")
     })?;
-    run::write_whole(&out.join(file::RESULTS), &json)?;
-    report::robustness::write_robustness(&out.join(run::file::REPORT), &results)?;
+    run_folder::write_whole(&out.join(file::RESULTS), &json)?;
+    pages::robustness::write_robustness(&out.join(run_folder::file::REPORT), &results)?;
     output.print_result(&results, screen::format_results(&results));
     output.say(format_args!("texts, figures and page: {}", out.display()));
     Ok(if failed == 0 { Exit::Done } else { Exit::WithLoss })
@@ -166,7 +166,7 @@ fn parse_changes(typed: &[String]) -> Result<Vec<Change>, CommandError> {
 
 /// The job of the run, with how models are reached now.
 fn job_with_service(args: &RobustnessArgs, settings: &RunSettings) -> Result<RunJob, CommandError> {
-    let AskedSettings { service, providers, .. } = config::read_call_settings(args.config.as_deref())?;
+    let AskedSettings { service, providers, .. } = settings_file::read_call_settings(args.config.as_deref())?;
     let asked = AskedSettings { service: args.service.clone(), ..AskedSettings::default() };
     let asked = asked.or_file(AskedSettings { service, providers, ..AskedSettings::default() });
     Ok(RunJob { settings: settings.clone(), ..asked.into_job()? })
@@ -209,20 +209,20 @@ fn sorted_out(changes: Vec<Change>, setting: &ChangeSetting<'_>) -> (Vec<Change>
 }
 
 /// Makes or continues the folder, and locks it against other processes.
-fn begin_folder(args: &RobustnessArgs, base: &BaseRun, out: &FilePath) -> Result<run::FolderLock, CommandError> {
-    run::refuse_file(out)?;
+fn begin_folder(args: &RobustnessArgs, base: &BaseRun, out: &FilePath) -> Result<run_folder::FolderLock, CommandError> {
+    run_folder::refuse_file(out)?;
     let folder = &base.folder;
     let kept = RobustnessSettings {
         run: folder.canonicalize().map_err(CommandError::io(folder, "find"))?,
-        walks: hash_of_file(&folder.join(run::file::WALKS))?,
+        walks: hash_of_file(&folder.join(run_folder::file::WALKS))?,
         eye: args.eye.clone(),
         scene_names: scene_names::parse_names(&args.scene_name)?,
         limit: args.limit,
         seed: args.seed,
     };
     fs::create_dir_all(out).map_err(CommandError::io(out, "make the folder"))?;
-    let held = run::lock_folder(out)?;
-    run::keep_config(out, &kept)?;
+    let held = run_folder::lock_folder(out)?;
+    run_folder::keep_config(out, &kept)?;
     Ok(held)
 }
 

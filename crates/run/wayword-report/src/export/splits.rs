@@ -9,9 +9,7 @@ use std::{
 };
 use wayword_core::SceneId;
 use wayword_formats::{DatasetFormat, OfficialSplit, jsonl, jsonl::InstructionRecord};
-use wayword_run::{
-    count::count_phrase, error::CommandError, output::CommandOutput, run_folder as run, run_folder::file,
-};
+use wayword_run::{count::count_phrase, error::CommandError, output::CommandOutput, run_folder, run_folder::file};
 
 /// The split of a text if neither its episode nor its scene determines one.
 const DEFAULT_SPLIT: &str = "train";
@@ -94,7 +92,7 @@ fn read_declared_splits(runs: &[PathBuf], records: &[InstructionRecord]) -> Resu
     let mut declared = DeclaredSplits::new();
     for run in runs {
         // A run folder that a user put together has no settings.
-        let episodes = run::settings_of(run).ok().and_then(|settings| settings.episodes);
+        let episodes = run_folder::settings_of(run).ok().and_then(|settings| settings.episodes);
         let Some(episodes) = episodes else { continue };
         let by_item = of_items(&episodes);
         let of_file = of_file_name(&episodes);

@@ -22,7 +22,7 @@ use crate::{
     platforms::has_hops,
     run_folder::{RunFolder, WorldData, continued_settings, id_of, is_begun, keep_id, refuse_file},
     settings::{RunJob, RunSettings},
-    settings_file as config, stores,
+    settings_file, stores,
     team::RoleTeam,
     watch::{self, CommandWatch},
 };
@@ -39,7 +39,7 @@ pub use workers::ChunkHandout;
 /// # Errors
 /// When the settings or the flags do not fit together, a model is not ready, and as [`generate_into`].
 pub fn run_generate(args: &GenerateArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
-    let job = args.asked.clone().or_file(config::read_settings(args.config.as_deref())?).into_job()?;
+    let job = args.asked.clone().or_file(settings_file::read_settings(args.config.as_deref())?).into_job()?;
     if args.dry_run {
         let prepared = PreparedRun::open(&job, None, ModelCheck::Rehearsal, output)?;
         let chunk = args.workers.is_asked().then(|| args.workers.chunk_items());

@@ -19,7 +19,7 @@ use wayword_run::{
     platforms,
     run_folder::fresh_id,
     settings::{RolePlayer, RunSettings},
-    settings_file as config,
+    settings_file,
     team::settings_prompts,
 };
 
@@ -54,7 +54,7 @@ struct DoctorReport {
 }
 
 pub(crate) fn run_doctor(args: &DoctorArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
-    let mut job = args.to_asked().or_file(config::read_settings(args.config.as_deref())?).into_job()?;
+    let mut job = args.to_asked().or_file(settings_file::read_settings(args.config.as_deref())?).into_job()?;
     let mut findings = Vec::new();
     let mut examined = Ok(Vec::new());
     if args.scenes {

@@ -30,6 +30,6 @@ pub(super) fn run_database(args: &RunsDatabase, output: &CommandOutput) -> Resul
 }
 
 #[cfg(not(feature = "queue"))]
-pub fn run_database(_: &RunsDatabase, _: &CommandOutput) -> Result<Exit, CommandError> {
+pub(super) fn run_database(_: &RunsDatabase, _: &CommandOutput) -> Result<Exit, CommandError> {
     Err(CommandError::not_built("no database can be used: this build has no way to one"))
 }
