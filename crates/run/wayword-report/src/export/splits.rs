@@ -9,7 +9,12 @@ use std::{
 };
 use wayword_core::SceneId;
 use wayword_formats::{DatasetFormat, OfficialSplit, jsonl, jsonl::InstructionRecord};
-use wayword_run::{count::count_phrase, error::CommandError, output::CommandOutput, run_folder, run_folder::file};
+use wayword_run::{
+    count::count_phrase,
+    error::CommandError,
+    output::CommandOutput,
+    run_folder::{self, file},
+};
 
 /// The split of a text if neither its episode nor its scene determines one.
 const DEFAULT_SPLIT: &str = "train";
