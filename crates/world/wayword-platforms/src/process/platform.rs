@@ -132,7 +132,7 @@ impl ProcessPlatform {
         }
         let image: Option<Image> =
             file.map(|file| picture::decode_child_picture(&file, size_px)).transpose().map_err(misfit)?;
-        let truth = self.ground_truth_from(seen, &pose, gaze).map_err(misfit)?;
+        let truth = self.labels_and_room(seen, &pose, gaze).map_err(misfit)?;
         Ok(View::new(pose, gaze.horizontal_fov_rad, image.map(Arc::new), truth))
     }
 
@@ -160,7 +160,7 @@ impl ProcessPlatform {
     }
 
     /// The ground truth in an answer; `None` if the child offers neither labels nor rooms.
-    fn ground_truth_from(
+    fn labels_and_room(
         &self,
         seen: ObserveAnswer,
         pose: &Pose,
